@@ -49,10 +49,14 @@ def check_depth(sentence: Sentence) -> Diagnostic | None:
 
 def too_deep(sentence: Sentence) -> Diagnostic:
     """F115."""
+    return _too_deep(sentence.span)
+
+
+def _too_deep(place: Span | None) -> Diagnostic:
     return Diagnostic(
         Code.TOO_DEEP,
         "an expression has too many operators within each other",
-        sentence.span,
+        place,
         help="give parts of it names of their own",
     )
 
@@ -81,14 +85,29 @@ def has_units(sentence: Sentence) -> bool:
 def check_names(sentence: Sentence) -> Iterator[Diagnostic]:
     """F109 for each name that is a reserved word."""
     for expression in conditions(sentence):
-        for id, span in _names(expression):
-            if id in RESERVED:
-                yield Diagnostic(
-                    Code.RESERVED,
-                    f"`{id}` is reserved by the languages that requirements are exported to",
-                    span,
-                    help=f"choose another name, such as `{id}_`",
-                )
+        yield from _reserved(expression)
+
+
+def check_value(expression: e.Expression, place: Span) -> Iterator[Diagnostic]:
+    """The same checks, of the number or the truth value that a variable stands for."""
+    if depth(expression) > MOST:
+        yield _too_deep(place)
+        return
+    yield from _reserved(expression)
+    is_truth = _is_boolean(expression, expected=True)
+    yield from _check_kinds(expression, place, boolean=is_truth)
+
+
+def _reserved(expression: e.Expression) -> Iterator[Diagnostic]:
+    """F109."""
+    for id, span in _names(expression):
+        if id in RESERVED:
+            yield Diagnostic(
+                Code.RESERVED,
+                f"`{id}` is reserved by the languages that requirements are exported to",
+                span,
+                help=f"choose another name, such as `{id}_`",
+            )
 
 
 def _names(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:
@@ -106,9 +125,11 @@ def check_response_kinds(sentence: Sentence) -> Iterator[Diagnostic]:
         yield from _check_kinds(expression, sentence.span)
 
 
-def _check_kinds(expression: e.Expression, place: Span | None) -> Iterator[Diagnostic]:
+def _check_kinds(
+    expression: e.Expression, place: Span | None, *, boolean: bool = True
+) -> Iterator[Diagnostic]:
     """A name may be either: its kind is what its place asks for."""
-    waiting: list[tuple[e.Expression, bool, Span | None]] = [(expression, True, place)]
+    waiting: list[tuple[e.Expression, bool, Span | None]] = [(expression, boolean, place)]
     while waiting:
         part, boolean, near = waiting.pop()
         here = getattr(part, "span", None) or near
@@ -195,7 +216,7 @@ def _at_least(number: Span) -> Mend | None:
 
 LOOK_BACK = frozenset("preBool persisted occurred prevOcc FTP".split())
 LOOK_AHEAD = frozenset("persists occurs nextOcc".split())
-_NUMBERS_BACK = frozenset({"preInt", "preReal"})
+NUMBERS_BACK = frozenset({"preInt", "preReal"})
 
 
 def temporal_predicates(sentence: Sentence) -> Iterator[Diagnostic]:
@@ -203,14 +224,14 @@ def temporal_predicates(sentence: Sentence) -> Iterator[Diagnostic]:
     ids: set[str] = set()
     for expression in conditions(sentence):
         for id, span in _names(expression):
-            if id in ids or id not in LOOK_BACK | LOOK_AHEAD | _NUMBERS_BACK:
+            if id in ids or id not in LOOK_BACK | LOOK_AHEAD | NUMBERS_BACK:
                 continue
             ids.add(id)
             yield _not_formalized(id, span)
 
 
 def _not_formalized(id: str, span: Span | None) -> Diagnostic:
-    if id in _NUMBERS_BACK:
+    if id in NUMBERS_BACK:
         consequence, mend = (
             "it stays in the formulas as it is",
             "a monitor keeps the number of the tick before; an audit needs a proposition",

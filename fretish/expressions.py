@@ -6,7 +6,7 @@ Spans do not compare: two expressions are equal when they say the same, wherever
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, assert_never
 
@@ -17,6 +17,8 @@ Order = Literal["<", "<=", ">", ">="]
 MIRRORED: Mapping[str, Order] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 """What says the same when both sides are exchanged."""
 ArithmeticOperator = Literal["+", "-", "*", "/", "mod", "^"]
+MOST_EXPONENT = 16
+"""Of a power that is computed: it is a product."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,6 +206,25 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return (left, right)
 
 
+def with_children(expression: Expression, parts: Sequence[Expression]) -> Expression:
+    """The expression with other direct parts, as many; `&` and `|` stay flat."""
+    match expression:
+        case Truth() | Name() | Number() | Quantity() | Word():
+            return expression
+        case Not() | Negation() | Persistence():
+            return replace(expression, arg=parts[0])
+        case And():
+            return And(tuple(arg for part in parts for arg in _flat(And, part)))
+        case Or():
+            return Or(tuple(arg for part in parts for arg in _flat(Or, part)))
+        case Call():
+            return replace(expression, args=tuple(parts))
+        case Xor() | Implies() | Iff() | Arithmetic() | Comparison():
+            return replace(expression, left=parts[0], right=parts[1])
+        case _:
+            assert_never(expression)
+
+
 def with_comparisons(
     expression: Expression, rewrite: Callable[[Comparison], Expression]
 ) -> Expression:
@@ -233,11 +254,6 @@ def parts(expression: Expression) -> Iterator[Expression]:
         waiting.extend(reversed(children(part)))
 
 
-def names(expression: Expression) -> Iterator[Name]:
-    """Every `Name` in it, left to right, with repetitions."""
-    return (part for part in parts(expression) if isinstance(part, Name))
-
-
 def truths(expression: Expression) -> Iterator[Name]:
     """Every `Name` in it that stands for a truth value; those in calls are left out."""
     waiting = [expression]
@@ -247,6 +263,11 @@ def truths(expression: Expression) -> Iterator[Name]:
             yield part
         elif not isinstance(part, Comparison | Arithmetic | Negation | Call):
             waiting.extend(reversed(children(part)))
+
+
+def names(expression: Expression) -> Iterator[Name]:
+    """Every `Name` in it, left to right, with repetitions."""
+    return (part for part in parts(expression) if isinstance(part, Name))
 
 
 def depth(expression: Expression) -> int:

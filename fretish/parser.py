@@ -21,7 +21,7 @@ from lark.visitors import Transformer_NonRecursive
 
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.checking import check_depth, check_names, check_response_kinds
+from fretish.checking import check_depth, check_names, check_response_kinds, check_value
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.mends import Mended
 from fretish.diagnostics.source import Span
@@ -39,6 +39,20 @@ _UNITS: dict[str, s.TimeUnit] = {
     "MINUTE": "minute",
     "HOUR": "hour",
 }
+
+
+def parse_value(text: Span) -> e.Expression | Diagnostic:
+    """Read one expression, all of it: what a variable stands for.
+
+    Args:
+        text: the expression, somewhere in a source; spans of the tree point into that source.
+    """
+    words = _divided(text, "value")
+    if isinstance(words, Diagnostic):
+        return words
+    with _places_in(text):  # no callback of an expression has a mistake to tell
+        value = cast(e.Expression, _Build().transform(words))
+    return next(check_value(value, text), value)
 
 
 def parse(text: Span) -> s.Sentence | Diagnostic:
@@ -96,8 +110,13 @@ def _words(text: Span) -> ParseTree | Diagnostic:
     """The text as the grammar divides it."""
     if not text.text.strip():
         return no_sentence(text)
+    return _divided(text, "start")
+
+
+def _divided(text: Span, start: str) -> ParseTree | Diagnostic:
+    """The text as a rule of the grammar divides it."""
     try:
-        return _lark().parse(text.text)
+        return _lark().parse(text.text, start=start)
     except UnexpectedToken as error:
         return _unexpected(error, text)
     except UnexpectedCharacters as error:
@@ -187,6 +206,7 @@ def _lark() -> Lark:
     grammar = files("fretish").joinpath("grammar.lark").read_text(encoding="utf-8")
     return Lark(
         grammar + _QUANTITY,
+        start=["start", "value"],
         parser="lalr",
         lexer="basic",
         propagate_positions=True,
@@ -382,6 +402,9 @@ class _Build(Transformer_NonRecursive[Token, Any]):
             unit_name = f"{_UNITS[unit.type]}s"
             raise _MistakeError(bad_duration(digits_span, unit_name, _meta_span(meta)))
         return s.Duration(int(text), _UNITS[unit.type], _meta_span(meta))
+
+    def value(self, meta: Any, children: list[e.Expression]) -> e.Expression:
+        return children[0]
 
     def start(self, meta: Any, children: list[Any]) -> s.Sentence:
         *parts, response = _parts(children)

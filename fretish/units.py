@@ -1,7 +1,8 @@
 """Physical units of the bindings, and exact conversion between them.
 
 Seven base dimensions; angles count as one, so that radians never pass for plain numbers.
-Source of the factors: The International System of Units (SI Brochure, 9th edition), tables 2-8.
+Source of the factors: The International System of Units (SI Brochure, 9th edition), tables 2-8; of
+ft and kn, the units of aviation and shipping, ICAO Annex 5, table 3-3.
 """
 
 from __future__ import annotations
@@ -59,6 +60,8 @@ _UNITS: dict[str, Unit] = {
     "cm": _base("m", Fraction(1, 100)),
     "mm": _base("m", Fraction(1, 1000)),
     "um": _base("m", Fraction(1, 10**6)),
+    "ft": _base("m", Fraction(3048, 10**4)),
+    "kn": Unit((1, 0, -1, 0, 0, 0), Fraction(1852, 3600)),
     "s": SECOND,
     "ms": _base("s", Fraction(1, 1000)),
     "us": _base("s", Fraction(1, 10**6)),

@@ -6,7 +6,7 @@ carry the same time.
 
 import os
 import secrets
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import StrEnum
@@ -82,12 +82,13 @@ class Recording:
         encoding: Encoding = Encoding.ROS2,
         faults: Recorder = Recorder(),  # noqa: B008 - frozen
         epoch: int = 0,
+        topics: Sequence[Topic] = TOPICS,
     ) -> None:
         # Any: the writer's `finish` carries no annotations.
         self._writer: Any = Writer(stream, compression=CompressionType.ZSTD)
         self._ros1 = _ros1_types() if encoding is Encoding.ROS1 else None
         self._writer.start(profile=str(encoding), library=f"fretc simulation {__version__}")
-        self._channels = {topic.name: self._register(topic) for topic in TOPICS}
+        self._channels = {topic.name: self._register(topic) for topic in topics}
         self._counts = dict.fromkeys(self._channels, 0)
         self._jump = round(faults.jump_by * _SECOND)
         self._jump_at = None if faults.jump_at is None else epoch + round(faults.jump_at * _SECOND)
@@ -98,7 +99,7 @@ class Recording:
         return sum(self._counts.values())
 
     def write(self, topic: str, message: "Msg", time: int) -> None:
-        """Add a message; `topic` is one of `TOPICS`, `time` in nanoseconds."""
+        """Add a message of one of the topics; `time` in nanoseconds."""
         self._counts[topic] += 1
         if self._jump_at is not None and time >= self._jump_at:
             time += self._jump
@@ -151,6 +152,7 @@ def recording(
     encoding: Encoding = Encoding.ROS2,
     faults: Recorder = Recorder(),  # noqa: B008 - frozen
     epoch: int = 0,
+    topics: Sequence[Topic] = TOPICS,
 ) -> Iterator[Recording]:
     """Write a log that is there complete or not at all.
 
@@ -163,6 +165,7 @@ def recording(
         encoding: of its messages.
         faults: of the recorder; a file that is to be cut is cut when it is complete.
         epoch: when simulated time began, nanoseconds.
+        topics: what messages may be about.
 
     Raises:
         OSError: the folder does not exist or cannot be written.
@@ -170,7 +173,7 @@ def recording(
     partial = path.with_name(f".{path.name}.{secrets.token_hex(4)}.partial")
     try:
         with open(partial, "xb", opener=_private) as stream:
-            yield Recording(stream, encoding, faults, epoch)
+            yield Recording(stream, encoding, faults, epoch, topics)
         if faults.keep < 1:
             os.truncate(partial, round(partial.stat().st_size * faults.keep))
         mask = os.umask(0o077)

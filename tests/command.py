@@ -1,5 +1,6 @@
 """The command as its users meet it: what one run prints, and what it exits with."""
 
+import re
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,6 +16,11 @@ class Run:
     status: int
     out: str
     err: str
+
+
+def untimed(text: str) -> str:
+    """What an audit prints, without the time that it took."""
+    return re.sub(r"  \d+\.\d s\n$", "\n", text)
 
 
 Fretc = Callable[..., Run]

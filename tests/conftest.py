@@ -5,19 +5,25 @@
 
 import os
 import signal
+import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
-from hypothesis import settings
+# Bytecode is kept, whatever the shell says: each worker, and each process that a test starts, would
+# compile the same text again, pytest's own forms of the assertions and of hypothesis among it.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+import pytest  # noqa: E402
+from hypothesis import settings  # noqa: E402
 
 with warnings.catch_warnings():
     # Spot's bindings warn while they are imported, and crash where a warning is an error.
     warnings.simplefilter("ignore", DeprecationWarning)
     import spot  # noqa: F401
 
-from tests.command import Fretc, runner
+from tests.command import Fretc, runner  # noqa: E402
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell starts what runs in its background so, and every process that a test starts would

@@ -17,6 +17,7 @@ TWICE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", TWICE)
 def test_a_key_that_comes_twice_is_refused(tmp_path: Path, kind: str) -> None:
     reader = readers(tmp_path / "sound")[kind]

@@ -91,6 +91,7 @@ DOORS = {
     "mcap_ros2": {"fretc/logs/messages/decoding.py"},
     "zstandard": {"fretc/logs/mcap/container.py"},
     "lz4": {"fretc/logs/mcap/container.py"},
+    "wcwidth": {"fretc/terminal/screen.py"},
     "click": CLICK,
 }
 """Each library, and the modules that import it."""
@@ -193,6 +194,7 @@ def test_the_kernel_needs_nothing_of_ours_but_itself() -> None:
         assert imported(module) <= {"monitors.kernel"}, module
 
 
+@pytest.mark.slow
 def test_the_interceptor_needs_the_standard_library_only() -> None:
     """Its text is copied into every emitted one."""
     assert libraries(ROOT / "monitors/interceptor.py") <= {*sys.stdlib_module_names}

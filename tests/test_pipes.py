@@ -26,6 +26,7 @@ def patience() -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
+@pytest.mark.slow
 def test_no_reader_waits_for_a_pipe(tmp_path: Path) -> None:
     for number, (kind, reader) in enumerate(readers(tmp_path / "sound").items()):
         folder = tmp_path / str(number)

@@ -48,6 +48,7 @@ def test_every_module_grammar_and_template_is_inside(wheel: Path) -> None:
     assert sentence == (ROOT / "requirements/r1.fret").read_bytes()
 
 
+@pytest.mark.slow
 def test_it_makes_a_monitor_far_from_the_checkout(wheel: Path, tmp_path: Path) -> None:
     installed = tmp_path / "installed"
     zipfile.ZipFile(wheel).extractall(installed)

@@ -18,6 +18,7 @@ from compiler.formalization.letters import (
     MOST_ATOMS,
     Valuation,
     atoms_of,
+    excluded,
     meanings,
     temporal_predicate,
 )
@@ -28,6 +29,7 @@ from compiler.formalization.reference import (
     TooManyStatesError,
     explore,
 )
+from compiler.logic.orders import only_possible
 
 MOST_STATES = 120_000
 """Seconds of search; a longer bound gets no examples."""
@@ -69,7 +71,9 @@ def examples(rule: Formalized, wanted: int = WANTED) -> Examples:
     atoms = atoms_of(rule.sentence)
     if len(atoms) > MOST_ATOMS:
         return Examples(atoms, (), (), f"{len(atoms)} propositions are more than {MOST_ATOMS}")
-    letters = _quiet_first(meanings(rule.sentence, atoms))
+    every = meanings(rule.sentence, atoms)
+    possible = only_possible(tuple(every), atoms, excluded(rule))
+    letters = _quiet_first({valuation: every[valuation] for valuation in possible})
     counted = counters.template(rule.sentence, rule.ticks or 0)
     try:
         automaton = explore(counted, letters, MOST_STATES)

@@ -17,11 +17,12 @@ from fretish import expressions as e
 from fretish import units
 from fretish.bindings.canonical import expression as meaning
 from fretish.bindings.comparisons import FUNCTIONS, bound, is_measured
-from fretish.bindings.declarations import Declarations, Proposition
+from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.checking import conditions
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.parser import parse
+from fretish.printer import identifier
 from fretish.reading.toml_text import as_key
 from fretish.syntax import Sentence
 
@@ -174,7 +175,7 @@ def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic
     is proposed in its place: the nearest name may be another safety claim.
     """
     for name in rule.watched:
-        mistakes = declarations.mistakes.get(("proposition", name), ())
+        mistakes = _mistakes(rule, name, declarations)
         yield from mistakes
         if mistakes or name in declarations.propositions:
             continue
@@ -182,8 +183,49 @@ def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic
             Code.UNBOUND,
             f"`{name}` of {rule.id} has no binding in {declarations.source.name}",
             place(rule, name),
-            help=f"add `[proposition.{as_key(name)}]` there",
+            help=_way_out(rule, name, declarations),
         )
+
+
+def _mistakes(rule: Formalized, name: str, declarations: Declarations) -> list[Diagnostic]:
+    """Those of its own table, and of the signals that it compares."""
+    stated = _stated(rule.sentence).get(name)
+    read = [("signal", each.id) for each in e.names(stated)] if stated is not None else []
+    parts = [("proposition", name), *read]
+    return [mistake for part in parts for mistake in declarations.mistakes.get(part, ())]
+
+
+def missing_signals(rule: Formalized, name: str, signals: Mapping[str, Signal]) -> tuple[str, ...]:
+    """The signals that a comparison of the sentence lacks, without which it must be bound itself.
+
+    Beside `=` and `!=` a second name is taken for a word of the first.
+    """
+    stated = _stated(rule.sentence).get(name)
+    if not isinstance(stated, e.Comparison) or atom(stated) != name:
+        return ()
+    calls = {part.name for part in e.parts(stated) if isinstance(part, e.Call)}
+    operators = {part.op for part in e.parts(stated) if isinstance(part, e.Arithmetic)}
+    if not calls <= FUNCTIONS.keys() or operators & {"mod", "^"}:
+        return ()
+    words = stated.op in ("=", "!=") and isinstance(stated.left, e.Name)
+    read = stated.left if words and isinstance(stated.right, e.Name) else stated
+    return tuple(dict.fromkeys(each.id for each in e.names(read) if each.id not in signals))
+
+
+def _way_out(rule: Formalized, name: str, declarations: Declarations) -> str:
+    """Signals for a comparison; a comparison for the word of a signal; else a binding."""
+    missing = missing_signals(rule, name, declarations.signals)
+    if missing:
+        tables = " and ".join(f"`[signal.{as_key(each)}]`" for each in missing)
+        return f"add {tables} there; `fretc bind --from LOG` drafts signals"
+    bind = f"add `[proposition.{as_key(name)}]` there"
+    signal = next((s.name for s in declarations.signals.values() if name in s.values), None)
+    if signal is None:
+        return bind
+    return (
+        f"`{name}` is a word of `{signal}`: write `{signal} = {identifier(name)}` (as a scope "
+        f"`while {signal} = {identifier(name)}`), or {bind}"
+    )
 
 
 def place(rule: Formalized, name: str) -> Span:

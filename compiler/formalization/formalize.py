@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import chain
 
 from compiler.formalization import predicates
 from compiler.formalization.anticipation import anticipated
@@ -17,16 +18,21 @@ from compiler.formalization.past import past, watch
 from compiler.formalization.resolution import in_own_units, resolved
 from compiler.logic.formula import endless
 from compiler.logic.printing import identifier
+from fretish.bindings.comparisons import is_measured
 from fretish.bindings.declarations import Declarations, Modality, Variable
-from fretish.checking import temporal_predicates, too_deep
+from fretish.bindings.definitions import Definitions, expanded, used
+from fretish.bindings.types import misuses, misuses_of_value
+from fretish.checking import check_response_kinds, conditions, temporal_predicates, too_deep
 from fretish.clock import Clock, assumed_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Span
 from fretish.documents import Requirement
+from fretish.expressions import Comparison, Expression, Truth, with_comparisons
 from fretish.parser import mistakes, parse
 from fretish.pitfalls import surprises
 from fretish.reading.limits import within
 from fretish.reading.recursion import deep
-from fretish.syntax import Sentence
+from fretish.syntax import Sentence, with_expressions
 
 
 @deep
@@ -52,15 +58,18 @@ def _formalized(
     written = parse(requirement.wording)
     if isinstance(written, Diagnostic):
         return None, mistakes(requirement.wording)
-    place = requirement.wording
-    sentence = in_own_units(written, declarations, place) if declarations else written
+    definitions = used(written, declarations.definitions) if declarations else {}
+    wrong = _misuses(written, definitions, declarations, requirement.wording)
+    if wrong:
+        return None, wrong
+    sentence = _judged(written, definitions, declarations, requirement.wording)
     if isinstance(sentence, Diagnostic):
         return None, (sentence,)
     ticks = in_ticks(sentence, _clock(declarations))
     if isinstance(ticks, Diagnostic):
         return None, (ticks,)
     try:
-        rule = _rule(requirement, written, sentence, ticks, declarations)
+        rule = _rule(requirement, written, sentence, ticks, declarations, definitions)
     except RecursionError:  # some versions of Python bound it below what `deep` asks for
         return None, (too_deep(sentence),)
     wrong = (*clashes([rule]), *(disagreements(rule, declarations) if declarations else ()))
@@ -70,6 +79,29 @@ def _formalized(
     if isinstance(bound, Diagnostic):
         return None, (bound,)
     return bound, tuple(_remarks(sentence, declarations))
+
+
+def _misuses(
+    written: Sentence, definitions: Definitions, declarations: Declarations | None, place: Span
+) -> tuple[Diagnostic, ...]:
+    """F344 in the sentence, and in what its names stand for."""
+    if declarations is None:
+        return ()
+    variables = declarations.variables
+    inside = [misuses(each, variables, place) for each in conditions(written)]
+    values = [misuses_of_value(variables[name], variables) for name in definitions]
+    return tuple(dict.fromkeys(chain(*inside, *values)))
+
+
+def _judged(
+    written: Sentence, definitions: Definitions, declarations: Declarations | None, place: Span
+) -> Sentence | Diagnostic:
+    """The sentence that formulas are of: with what its names stand for, in the signals' units."""
+    sentence = expanded(written, definitions)
+    if isinstance(sentence, Diagnostic) or declarations is None:
+        return sentence
+    wrong = next(check_response_kinds(sentence), None)
+    return wrong or in_own_units(sentence, declarations, place)
 
 
 @deep
@@ -107,6 +139,7 @@ def _rule(
     sentence: Sentence,
     ticks: int | None,
     declarations: Declarations | None,
+    definitions: Definitions,
 ) -> Formalized:
     """The three formulas and the watch, each from the same obligation."""
     ahead = obligation(sentence, ticks or 0, predicates.Future())
@@ -126,6 +159,7 @@ def _rule(
         pctl=probabilistic(ahead, odds.op, odds.digits) if odds else None,
         glossary=_glossary(declarations),
         declarations=declarations,
+        definitions=definitions,
     )
 
 
@@ -147,6 +181,11 @@ def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
         )
         for name, p in declarations.propositions.items()
     }
+    bound |= {
+        name: Variable(name, role=str(signal.role))
+        for name, signal in declarations.signals.items()
+        if signal.role is not None and name not in bound
+    }
     named = {
         name: _with_bound(variable, bound[name]) if name in bound else variable
         for name, variable in declarations.variables.items()
@@ -157,7 +196,8 @@ def _glossary(declarations: Declarations | None) -> Mapping[str, Variable]:
 def _with_bound(variable: Variable, bound: Variable) -> Variable:
     """What FRET's glossary says of a name, and what only its binding says."""
     modality = bound.modality if variable.modality is Modality.BELIEF else variable.modality
-    return replace(variable, modality=modality, action=variable.action or bound.action)
+    action, role = variable.action or bound.action, variable.role or bound.role
+    return replace(variable, modality=modality, action=action, role=role)
 
 
 def _free_text(requirement: Requirement) -> Diagnostic:
@@ -180,7 +220,17 @@ def _remarks(sentence: Sentence, declarations: Declarations | None) -> Iterator[
     if assumed is not None:
         yield assumed
     yield from surprises(sentence)
-    yield from temporal_predicates(sentence)
+    yield from temporal_predicates(_without_signals(sentence, declarations))
+
+
+def _without_signals(sentence: Sentence, declarations: Declarations | None) -> Sentence:
+    """The sentence without the comparisons that are judged as they stand: by signals."""
+    signals = declarations.signals if declarations else {}
+
+    def answered(comparison: Comparison) -> Expression:
+        return Truth(True) if is_measured(comparison, signals) else comparison
+
+    return with_expressions(sentence, partial(with_comparisons, rewrite=answered))
 
 
 def duplicates(requirements: Sequence[Requirement]) -> Mapping[int, Diagnostic]:

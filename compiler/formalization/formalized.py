@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from compiler.formalization.obligation import obligation
 from compiler.formalization.past import Watch
 from compiler.formalization.predicates import Past
 from compiler.logic.formula import Formula, atoms
 from fretish.bindings.declarations import Declarations, Variable
+from fretish.bindings.definitions import Definitions
 from fretish.checking import conditions
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.expressions import Name, names
-from fretish.printer import canonical
+from fretish.printer import canonical, expression
 from fretish.printer import sentence as printed
 from fretish.syntax import Sentence
 
@@ -27,9 +28,10 @@ class Formalized:
 
     requirement: Requirement
     written: Sentence
-    """As it was written, with units."""
+    """As it was written, with units, and with names that stand for something else."""
     sentence: Sentence
-    """With bare numbers, in the units of the signals; a unit stays where no signal is declared."""
+    """With what names stand for, and with bare numbers, in the units of the signals; a unit stays
+    where no signal is declared."""
     ticks: int | None
     """What the duration counts; None where the sentence has none."""
     clock: Clock | None
@@ -47,6 +49,8 @@ class Formalized:
     """Every variable that the bindings declare, bound or not."""
     declarations: Declarations | None = None
     """The bindings as a whole; None where none are at hand."""
+    definitions: Definitions = field(default_factory=dict)
+    """What names of the sentence as written stand for, each after those that it needs."""
 
     @property
     def id(self) -> str:
@@ -88,8 +92,13 @@ class Formalized:
 
     @property
     def fingerprint(self) -> str:
-        """SHA-256 of the canonical sentence: white space and wording of key words do not count."""
-        return hashlib.sha256(canonical(self.written).encode()).hexdigest()
+        """SHA-256 of the canonical sentence: white space and wording of key words do not count.
+
+        What its names stand for counts.
+        """
+        lines = [canonical(self.written)]
+        lines += [f"{name} = {expression(value)}" for name, value in self.definitions.items()]
+        return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
 
 def _place(name: Name) -> int:

@@ -1,6 +1,7 @@
 """The letters of a sentence: what the truth of its atoms at one tick makes of its parts.
 
-Parts may share atoms, so not every combination of their values can occur.
+Parts may share atoms, so not every combination of their values can occur. Nor can every combination
+of atoms, where they compare the same signals: `battery < 20` and `battery > 30`.
 """
 
 from __future__ import annotations
@@ -8,12 +9,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import product
 
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.formalization.reference import Letter
+from compiler.formalization.resolution import candidates
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
+from compiler.logic.orders import Exclusion, exclusions
 from fretish import expressions as e
 from fretish import syntax as s
+from fretish.bindings.comparisons import is_measured
+from fretish.bindings.declarations import Aggregate, Declarations
 from fretish.checking import LOOK_AHEAD, LOOK_BACK, calls, conditions
 from fretish.reading.recursion import deep
 
@@ -100,3 +106,47 @@ def parts(sentence: s.Sentence) -> Parts:
 
 def _formula(expression: e.Expression) -> f.Formula:
     return boolean(expression, Uninterpreted().alone())
+
+
+# Valuations that cannot occur ------------------------------------------------------------------
+
+
+def excluded(rule: Formalized) -> tuple[Exclusion, ...]:
+    """The comparisons of a rule that cannot have these values together, whatever is measured."""
+    signals = rule.declarations.signals if rule.declarations else {}
+    scales = {name: signal.scale for name, signal in signals.items()}
+    words = {name: signal.values for name, signal in signals.items() if signal.values}
+    return exclusions(comparisons(rule), scales, words)
+
+
+def exclusion_in_words(exclusion: Exclusion) -> str:
+    """`(battery < 20)` and not `(battery > 30)`."""
+    return " and ".join(f"{'' if value else 'not '}`{name}`" for name, value in exclusion)
+
+
+def comparisons(rule: Formalized) -> Mapping[str, e.Comparison]:
+    """The atoms that compare numbers of one moment, by their names.
+
+    A proposition that is declared for a comparison may be more than that: true where a sample of
+    the tick makes it true, or where nothing is known.
+    """
+    written = dict(candidates(rule.sentence))
+    return {
+        name: part
+        for name in atoms_of(rule.sentence)
+        if isinstance(part := written.get(name), e.Comparison)
+        and (rule.declarations is None or _is_of_one_moment(name, part, rule.declarations))
+    }
+
+
+def _is_of_one_moment(name: str, part: e.Comparison, declarations: Declarations) -> bool:
+    signals = declarations.signals
+    read = [signals[each.id] for each in e.names(part) if each.id in signals]
+    if any(signal.scale != signal.unit.factor for signal in read):
+        return False  # its numbers are not compared in the unit of the sentence
+    declared = declarations.propositions.get(name)
+    if declared is None:
+        return ("proposition", name) not in declarations.mistakes
+    last = declared.aggregate is Aggregate.LAST and declared.on_unknown is None
+    plain = isinstance(declared.expression, e.Comparison)
+    return last and plain and is_measured(part, signals)

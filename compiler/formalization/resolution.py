@@ -67,7 +67,7 @@ def resolved(rule: Formalized, declarations: Declarations) -> Formalized | Diagn
     propositions: dict[str, Proposition] = {}
     mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
     atoms = {*rule.propositions, *rule.watched}
-    for name, part in _candidates(rule.sentence):
+    for name, part in candidates(rule.sentence):
         if name not in atoms or name in propositions:
             continue
         if name in declarations.propositions or ("proposition", name) in declarations.mistakes:
@@ -99,7 +99,7 @@ def extended(
     )
 
 
-def _candidates(sentence: Sentence) -> Iterator[tuple[str, e.Expression]]:
+def candidates(sentence: Sentence) -> Iterator[tuple[str, e.Expression]]:
     """Comparisons and variables, by the names that formulas give them."""
     waiting = list(conditions(sentence))
     while waiting:

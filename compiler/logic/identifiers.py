@@ -16,7 +16,10 @@ _SYMBOL = re.compile("|".join(re.escape(symbol) for symbol in _OPERATORS))
 
 
 def legal_names(
-    propositions: Iterable[str], reserved: Collection[str], prefix: str = ""
+    propositions: Iterable[str],
+    reserved: Collection[str],
+    prefix: str = "",
+    names: Mapping[str, str] | None = None,
 ) -> Mapping[str, str]:
     """A name for each proposition: letters, digits and `_`, none of them twice or reserved.
 
@@ -27,15 +30,16 @@ def legal_names(
         propositions: names of variables, and texts of comparisons and calls.
         reserved: what a name may not be; capitals count.
         prefix: what all names begin with.
+        names: what some propositions are called where that is not reserved.
     """
     taken = set(reserved)
-    names: dict[str, str] = {}
+    found: dict[str, str] = {}
     everything = tuple(dict.fromkeys(propositions))
     for name in sorted(everything, key=is_compound):
-        wanted = prefix + _plain(name)
-        names[name] = next(free for free in _variants(wanted) if free not in taken)
-        taken.add(names[name])
-    return {name: names[name] for name in everything}
+        wanted = prefix + (names or {}).get(name, _plain(name))
+        found[name] = next(free for free in _variants(wanted) if free not in taken)
+        taken.add(found[name])
+    return {name: found[name] for name in everything}
 
 
 def _plain(name: str) -> str:

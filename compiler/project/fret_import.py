@@ -20,9 +20,14 @@ import tomli_w
 
 from compiler.files.artifact import Artifact
 from compiler.files.checked_json import parsed
+from compiler.project.lustre import fretish, lustre
+from fretish import expressions as e
+from fretish.bindings.declarations import Role
+from fretish.bindings.definitions import circle
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.source import Source
-from fretish.parser import parse
+from fretish.parser import parse, parse_value
+from fretish.printer import expression
 from fretish.reading.limits import within
 
 STATUSES = {"completed": "approved", "deprecated": "retired"}
@@ -34,7 +39,7 @@ _FRET_FIELDS = ("project", "comments", "status", "_id", "reqid")
 _VARIABLE_FIELDS = frozenset(
     "_id project component_name variable_name dataType idType description reqs".split()
 )
-_IGNORED_FIELDS = frozenset({"modeldoc", "completed", "smvCompleted", "r2u2Completed", "_rev"})
+_IGNORED_FIELDS = frozenset({"modeldoc", "_rev", OWN})
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,31 +261,88 @@ def _variables(
         first = tables.setdefault(name, table)
         if first != table:
             diagnostics.append(_merged(name, first, table, source))
+    diagnostics.extend(_without_circles(tables, source))
     return tables
+
+
+def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> Iterator[Diagnostic]:
+    """F342 for variables that stand for one another: each keeps its assignment as a mere text."""
+    values: dict[str, e.Expression] = {}
+    for name, table in tables.items():
+        value = parse_value(Source(name, table.get("value", "")).span())
+        if not isinstance(value, Diagnostic):
+            values[name] = value
+    while chain := circle(values):
+        for name in dict.fromkeys(chain):
+            table = tables[name]
+            kept = {assignment_field(table["role"]): lustre(values.pop(name)) or ""}
+            table["fret"] = kept | table.get("fret", {})
+            del table["value"]
+        yield _warning(
+            Code.DEFINITION_CIRCLE,
+            f"assignments lead in a circle: {' -> '.join(chain[:12])}; they are kept, and not read",
+            source,
+            "let one of them stand for numbers and other variables alone",
+        )
 
 
 def _variable(record: Mapping[str, Any]) -> dict[str, Any]:
     """The `[variable.NAME]` table of one record."""
+    role = _text(record.get("idType")).lower()
+    written = _text(record.get(assignment_field(role)))
+    value = _value(record, written)
     fret = {
         key: _plain(value)
         for key, value in sorted(record.items())
         if key not in _VARIABLE_FIELDS | _IGNORED_FIELDS and value not in ("", None, [], {}, False)
     }
+    if value is not None and (lustre(value) or "") == written:
+        fret.pop(assignment_field(role), None)
     table = {
         "component": _text(record.get("component_name")),
         "type": _text(record.get("dataType")),
-        "role": _text(record.get("idType")).lower(),
+        "role": role,
         "text": _text(record.get("description")),
+        "value": "" if value is None else expression(value),
         "fret": {**fret, **_of_project(record)},
     }
     return {key: value for key, value in table.items() if value}
+
+
+def assignment_field(role: str) -> str:
+    """Where FRET keeps what a variable stands for; a mode has a place of its own for that."""
+    return "modeRequirement" if role == Role.MODE else "assignment"
+
+
+def stands_for_something(role: str) -> bool:
+    """Whether FRET reads an assignment: what an input is nobody defines."""
+    return role in (Role.INTERNAL, Role.MODE)
+
+
+def _value(record: Mapping[str, Any], written: str) -> e.Expression | None:
+    """What a variable stands for: as fretc has written it, where FRET has kept what goes with it.
+
+    None where it stands for nothing, as inputs and outputs do, or its assignment cannot be said
+    in FRETish.
+    """
+    defines = stands_for_something(_text(record.get("idType")).lower())
+    if not defines or record.get("variable_name") == "FTP":  # FRETish's own name of the first tick
+        return None
+    own = record.get(OWN)
+    text = _text(own.get("value")) if isinstance(own, dict) else ""
+    value = parse_value(Source(f"{OWN}.value", text).span()) if text else None
+    if isinstance(value, Diagnostic) or value is None or (lustre(value) or "") != written:
+        return fretish(written)
+    return value
 
 
 def _merged(
     name: str, first: Mapping[str, Any], second: Mapping[str, Any], source: Source
 ) -> Diagnostic:
     lost = [
-        key for key in ("component", "type", "role", "text") if first.get(key) != second.get(key)
+        key
+        for key in ("component", "type", "role", "text", "value")
+        if first.get(key) != second.get(key)
     ]
     fields, second_fields = first.get("fret", {}), second.get("fret", {})
     lost += sorted(

@@ -1,4 +1,7 @@
-"""`fretc check --fix`: the mends that are sure, put into the sentences of `.fret` files."""
+"""`fretc check --fix`: apply the sure mends to the sentences of `.fret` files.
+
+A mend is sure where it can say nothing but what the author means (`Mend.sure`).
+"""
 
 from __future__ import annotations
 
@@ -15,56 +18,72 @@ from fretish.parser import mistakes
 from fretish.reading.limits import within
 from fretish.reading.recursion import deep
 
-_ROUNDS = 100
-"""Of mending a file: each has at most `fretish.parser.MISTAKES` mends for a sentence."""
+_MOST_PASSES = 100
+"""Passes over one file. A pass finds at most `fretish.parser.MISTAKES` mistakes in a sentence, and
+a mend can uncover another mistake, so one pass is not enough. The bound ends mends that would undo
+each other for ever."""
 
 
 @dataclass(frozen=True, slots=True)
 class MendedFile:
-    """A file with all mends in place."""
+    """A file with its sure mends applied; nothing has been written yet."""
 
     path: str
     text: str
     mends: tuple[Mend, ...]
-    """Those that were applied, each at its place before it was."""
+    """In the order of their application. The span of each is in the text that its pass began with,
+    which has the mends of earlier passes in it."""
 
 
 def mended(paths: Sequence[str]) -> tuple[MendedFile, ...]:
-    """Every file that has a sure mend, with it; the others, and those without a text, are left out.
+    """The files that have a sure mend, with all of their sure mends applied.
 
-    What is no mistake, or has a mend that is not sure, stays as it is.
+    Files without a sure mend are left out, and so are those that cannot be read: whoever reads
+    them next reports that.
     """
     sources = (read(path) for path in paths)
-    files = (_file(source) for source in sources if isinstance(source, Source))
+    files = (_mended_file(source) for source in sources if isinstance(source, Source))
     return tuple(file for file in files if file.mends)
 
 
 @deep
-def _file(source: Source) -> MendedFile:
-    found: list[Mend] = []
-    for _ in range(_ROUNDS):
-        mends = sure_mends(source)
+def _mended_file(source: Source) -> MendedFile:
+    """The file after as many passes as find a sure mend."""
+    all_mends: list[Mend] = []
+    for _ in range(_MOST_PASSES):
+        mends = _sure_mends(source)
         if not mends:
             break
-        found += mends
+        all_mends += mends
         source = Source(source.name, applied(source.span(), mends))
-    return MendedFile(source.name, source.text, tuple(found))
+    return MendedFile(source.name, source.text, tuple(all_mends))
 
 
-def sure_mends(source: Source) -> list[Mend]:
-    """Those of all sentences of a text, in its order."""
+def _sure_mends(source: Source) -> list[Mend]:
+    """The sure mends of all sentences of a file, in the order that `applied` needs."""
     entries, _ = requirements(source)
-    found = [mend for entry in entries if _is_sentence(entry) for mend in _mends(entry.wording)]
-    return sorted(found, key=lambda mend: (mend.span.start, mend.span.end))
+    mends = [
+        mend
+        for entry in entries
+        if _has_a_sentence(entry)
+        for mend in _sure_mends_of_sentence(entry.wording)
+    ]
+    return sorted(mends, key=lambda mend: (mend.span.start, mend.span.end))
 
 
-def _is_sentence(requirement: Requirement) -> bool:
-    """Not where it is free text, or where the header does not end and nothing is known of it."""
-    unclosed = any(each.code is Code.UNCLOSED_HEADER for each in requirement.mistakes)
+def _has_a_sentence(requirement: Requirement) -> bool:
+    """Whether its wording is meant as FRETish, so that a mend cannot spoil another text.
+
+    Free text is not. Nor is the wording below a header that does not end: it is the whole file.
+    """
+    unclosed = any(mistake.code is Code.UNCLOSED_HEADER for mistake in requirement.mistakes)
     return not unclosed and not requirement.is_free_text
 
 
-def _mends(wording: Span) -> list[Mend]:
+def _sure_mends_of_sentence(wording: Span) -> list[Mend]:
+    """Those of one sentence; none where reading it would cost too much."""
     found = within(wording.end - wording.start, wording, partial(mistakes, wording))
-    known = () if isinstance(found, Diagnostic) else found
-    return [each.mend for each in known if each.mend is not None and each.mend.sure]
+    if isinstance(found, Diagnostic):
+        return []
+    mends = (mistake.mend for mistake in found)
+    return [mend for mend in mends if mend is not None and mend.sure]

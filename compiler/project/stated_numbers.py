@@ -6,15 +6,17 @@ A title that says 5 cm beside a binding of 0.9 m misleads everyone who reads onl
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
 from compiler.formalization.formalized import Formalized
 from fretish import syntax, units
 from fretish.bindings.constants import Exact, constants
 from fretish.bindings.declarations import Declarations, Proposition
+from fretish.checking import conditions
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Span
+from fretish.expressions import Quantity, parts
 from fretish.syntax import TimeUnit
 
 _WORDS: dict[str, TimeUnit] = {
@@ -36,6 +38,23 @@ def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diag
     """F310 and F351: `params`, title or text state a number, and the bindings have another one."""
     yield from _parameters(rule, declarations)
     yield from _prose(rule, declarations)
+
+
+def first_unit(rules: Iterable[Formalized]) -> Diagnostic | None:
+    """F352 for the first number with a unit in the sentences of a project."""
+    for rule in rules:
+        for expression in conditions(rule.written):
+            for part in parts(expression):
+                if isinstance(part, Quantity):
+                    return Diagnostic(
+                        Code.UNIT_IN_SENTENCE,
+                        f"`{part.digits} {part.unit}`: FRET knows no units; `--emit fret-json` "
+                        "writes each number in the unit of its signal",
+                        part.span,
+                        help="a bare number is in the unit of the signal beside it, in FRET, too",
+                        severity=Severity.NOTE,
+                    )
+    return None
 
 
 # Parameters

@@ -34,6 +34,7 @@ from compiler.formalization.letters import atoms_of, temporal_predicate
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.project.interceptor_options import options as core
+from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.dafny_claims import CHANNELS, Delay, delay, loopless
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from fretish import expressions as e
@@ -163,11 +164,12 @@ _TRIGGERS: Mapping[ConditionKind | None, Trigger] = {
 
 def _monitor(rule: Formalized) -> str:
     sentence, timing = rule.sentence, rule.sentence.timing
-    fields = _fields(atoms_of(sentence))
+    fields = _fields(atoms_of(sentence), comparison_names(rule))
     stop, shape = s.stop(timing), s.SHAPES[type(timing)]
     return render(
         f"dafny/{_COUNTERS[type(timing)]}.dfy.j2",
         fields=fields,
+        meanings=in_words(rule),
         condition=_dafny(sentence.condition.expression, fields) if sentence.condition else None,
         response=_dafny(sentence.response, fields),
         stop=_dafny(stop, fields) if stop else None,
@@ -210,20 +212,6 @@ def _bound(rule: Formalized) -> Mapping[str, object]:
     }
 
 
-_WORDS = {
-    "!=": "ne",
-    "<=": "le",
-    ">=": "ge",
-    "<": "lt",
-    ">": "gt",
-    "=": "eq",
-    "+": "plus",
-    "-": "minus",
-    "*": "times",
-    "/": "over",
-    "^": "power",
-}
-_OPERATORS = re.compile("|".join(map(re.escape, _WORDS)))
 _RESERVED = frozenset(
     """abstract allocated allows array as assert assume bool break by calc case char class
     codatatype
@@ -238,15 +226,15 @@ _RESERVED = frozenset(
 """The key words of Dafny 2.3 and 4, and those of its types that one might write as a name."""
 
 
-def _fields(atoms: Sequence[str]) -> Mapping[str, str]:
+def _fields(atoms: Sequence[str], comparisons: Mapping[str, str]) -> Mapping[str, str]:
     """Atom → a name in Dafny, no two alike; a tick without propositions has one that nobody reads.
 
     A name ends neither with `?` nor in digits that look like an array's, and begins with a letter.
     """
     names: dict[str, str] = {}
     for atom in atoms:
-        worded = _OPERATORS.sub(lambda match: f" {_WORDS[match.group()]} ", atom)
-        name = re.sub(r"[^A-Za-z0-9]+", "_", worded).strip("_") or "p"
+        wanted = comparisons.get(atom, atom)
+        name = re.sub(r"[^A-Za-z0-9]+", "_", wanted).strip("_") or "p"
         name = name if name[0].isalpha() else f"p_{name}"
         if name in _RESERVED or re.fullmatch(r"(array|bv)\d+\??", name):
             name = f"{name}_"

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
+from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
-from compiler.project.fret_import import OWN, STATUSES
+from compiler.project.fret_import import OWN, STATUSES, assignment_field
+from compiler.project.lustre import fretish, lustre
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible
 from fretish import syntax as s
-from fretish.bindings.declarations import Variable
+from fretish.bindings.declarations import Role, Variable
+from fretish.bindings.definitions import expanded
 from fretish.checking import has_units
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
@@ -31,7 +34,7 @@ _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
 
 def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`fret.json` with all rules: `{"requirements": [...], "variables": [...]}`."""
-    rules = tuple(map(_without_units, rules))
+    rules = tuple(map(_in_fretish, rules))
     content = {
         "requirements": [requirement(entry, rule) for entry, rule in _ordered(rules, options)],
         "variables": variables(rules),
@@ -52,15 +55,37 @@ def refuse(rule: Formalized) -> Diagnostic | None:
     )
 
 
+def _in_fretish(rule: Formalized) -> Formalized:
+    """The rule of the sentence that FRET reads.
+
+    Its names stand there as they are written, and FRET has what they stand for. Where a unit is
+    among that, or in the sentence, it is the sentence of bare numbers.
+    """
+    whole = expanded(rule.written, rule.definitions)
+    assert isinstance(whole, s.Sentence), "it has been formalized"
+    if has_units(whole):
+        return _without_units(rule)
+    return _with_names(rule) if rule.definitions else rule
+
+
+def _with_names(rule: Formalized) -> Formalized:
+    """The rule as if the names of its sentence stood for nothing."""
+    assert rule.declarations is not None, "they define the names"
+    variables = {
+        name: replace(variable, value=None)
+        for name, variable in rule.declarations.variables.items()
+    }
+    plain, _ = formalize(rule.requirement, replace(rule.declarations, variables=variables))
+    return replace(plain, glossary=rule.glossary) if plain else _without_units(rule)
+
+
 def _without_units(rule: Formalized) -> Formalized:
     """The rule as if its sentence had been written with bare numbers, in the signals' own units."""
-    if not has_units(rule.written):
-        return rule
     text = Source(rule.requirement.wording.source.name, sentence(rule.sentence)).span()
     written = parse(text)
     assert isinstance(written, s.Sentence), "what is printed is a sentence"
     requirement = replace(rule.requirement, wording=text)
-    return replace(rule, requirement=requirement, written=written, sentence=written)
+    return replace(rule, requirement=requirement, written=written, sentence=written, definitions={})
 
 
 def _ordered(
@@ -204,13 +229,17 @@ def variables(rules: Sequence[Formalized]) -> list[dict[str, Any]]:
 def _variable(glossary: Variable | None, project: str, component: str, name: str) -> dict[str, Any]:
     fret = dict(glossary.fret) if glossary else {}
     fret.pop("project", None)
+    role = glossary.role if glossary else ""
+    if glossary is not None and glossary.value is not None:
+        fret |= _assignment(glossary, fret)
+        role = role or Role.INTERNAL  # of others FRET reads no assignment
     return {
         "project": project,
         "component_name": component,
         "variable_name": name,
         "reqs": [],
         "dataType": glossary.type if glossary else "",
-        "idType": glossary.role.capitalize() if glossary else "",
+        "idType": role.capitalize(),
         "moduleName": "",
         "description": glossary.text if glossary else "",
         "assignment": "",
@@ -220,6 +249,18 @@ def _variable(glossary: Variable | None, project: str, component: str, name: str
         **fret,
         "_id": f"{project}{component}{name}",
     }
+
+
+def _assignment(glossary: Variable, fret: Mapping[str, Any]) -> dict[str, Any]:
+    """What a variable stands for, as FRET has it, where it has it; `fretc import` reads our own."""
+    assert glossary.value is not None
+    field = assignment_field(glossary.role)
+    kept = fret.get(field, "")
+    if isinstance(kept, str) and fretish(kept) == glossary.value:
+        return {}
+    text = lustre(glossary.value) or ""
+    own = {} if fretish(text) == glossary.value else {OWN: {"value": expression(glossary.value)}}
+    return {field: text, **own}
 
 
 TARGET = Target(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
@@ -10,6 +11,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
 from compiler.logic import printing
+from compiler.targets.comparison_names import comparison_names, definitions
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.rendering import visible
 from fretish.meaning import meaning
@@ -25,6 +27,10 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
 def text(rule: Formalized, options: Options = DEFAULT) -> str:
     """What a person reads: the sentence, its meaning, and its formulas."""
     dialect = printing.DIALECTS[options.notation]
+    names = comparison_names(rule) if dialect in _WITHOUT_NUMBERS else {}
+    if names:
+        spelt = dialect.atom
+        dialect = replace(dialect, atom=lambda atom: names[atom] if atom in names else spelt(atom))
     lines = {
         "meaning": meaning(rule.written, rule.ticks, rule.clock),
         "FT": printing.text(rule.ft_infinite, dialect),
@@ -39,6 +45,7 @@ def text(rule: Formalized, options: Options = DEFAULT) -> str:
     )
     if rule.pctl is not None:
         lines["PCTL*"] = printing.pctl(rule.pctl)
+    lines |= definitions(rule) if names else {}
     return render(
         "ltl/requirement.ltl.j2",
         id=rule.id,
@@ -47,6 +54,10 @@ def text(rule: Formalized, options: Options = DEFAULT) -> str:
         lines=lines,
         width=max(map(len, lines)),
     )
+
+
+_WITHOUT_NUMBERS = (printing.SPOT, printing.NUSMV)
+"""The notations in which a comparison is one proposition."""
 
 
 def _simplified(rule: Formalized) -> str:

@@ -23,6 +23,7 @@ from compiler.formalization.record import wording
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
+from compiler.targets.comparison_names import comparison_names, impossible, in_words
 from compiler.targets.target import (
     DEFAULT,
     Options,
@@ -96,13 +97,16 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
 
 def _files(rule: Formalized) -> Iterator[Artifact]:
     assert rule.pctl is not None, "refused"
-    names = legal_names(rule.propositions, _RESERVED)
+    names = legal_names(rule.propositions, _RESERVED, names=comparison_names(rule))
+    meanings = in_words(rule)
     chances = legal_names(names.values(), _RESERVED | {*names.values()}, "p_")
     modules = legal_names(names.values(), {*names.values(), *chances.values()}, "draw_")
     inputs = [
-        (name, proposition, chances[name], modules[name]) for proposition, name in names.items()
+        (name, meanings.get(proposition, proposition), chances[name], modules[name])
+        for proposition, name in names.items()
     ]
     values = {"id": rule.id, "sentence": wording(rule.requirement), "inputs": inputs}
+    values["impossible"] = impossible(rule, names)
     for ending, more in (("props", {"property": property_(rule.pctl, names)}), ("prism", {})):
         text = render(f"prism/requirement.{ending}.j2", stem=stem(rule), **values, **more)
         yield Artifact(PurePosixPath(f"{stem(rule)}.{ending}"), text)

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from compiler.logic.claims import PROVERS, Layer, Proof
 from compiler.project.folder import Project
 from fretc.api.refusal import Refusal, accepted, bounded
-from fretc.verification.ajpf_results import evidence as ajpf_evidence
+from fretc.verification.ajpf_results import ajpf_proofs
 from fretc.verification.engines.sandbox import Limits
 from fretc.verification.layers.request import Request
 from fretc.verification.verify import prove, refusals
@@ -49,7 +49,7 @@ def verify(
         raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is nothing to verify"),))
     if limit < 1:
         raise Refusal((_bad(f"no proof ends in {limit} seconds", "give 1 or more"),))
-    results, remarks = ajpf_evidence(project.rules, [os.fspath(path) for path in ajpf])
+    results, remarks = ajpf_proofs(project.rules, [os.fspath(path) for path in ajpf])
     if has_errors(remarks):
         raise Refusal(remarks)
     request = Request(

@@ -1,8 +1,9 @@
-"""Keys and envelopes: who signs bytes, and whether somebody has signed them.
+"""Keys, and the DSSE envelopes that they sign and verify.
 
-The only module that imports securesystemslib and cryptography, which an extra installs.
+Both stand here because this is the only module that imports securesystemslib and cryptography,
+which an extra installs.
 
-Sources: DSSE 1.0, https://github.com/secure-systems-lab/dsse; for public keys of SSH RFC 4253,
+Sources: DSSE 1.0, https://github.com/secure-systems-lab/dsse; public keys of SSH: RFC 4253,
 section 6.6, and RFC 8709.
 """
 
@@ -35,6 +36,7 @@ from securesystemslib.signer import CryptoSigner, SSlibKey
 from compiler.files.checked_json import Shape, plain
 
 PAYLOAD_TYPE = "application/vnd.in-toto+json"
+"""DSSE's `payloadType` of an in-toto statement; no other payload is signed or read."""
 KEY_TYPES = (
     "ssh-ed25519",
     "ecdsa-sha2-nistp256",
@@ -42,9 +44,12 @@ KEY_TYPES = (
     "ecdsa-sha2-nistp521",
     "ssh-rsa",
 )
-"""As OpenSSH calls them. A key in a token (`sk-...`) signs no plain bytes."""
-_SHORTEST, _LONGEST = 2048, 16384
-"""Bits of an RSA key that counts; OpenSSH knows no longer one."""
+"""The accepted types, as the first word of an OpenSSH public key names them.
+
+Keys in a security token (`sk-...`) are missing: what these sign is never the bytes alone.
+"""
+_RSA_MIN_BITS, _RSA_MAX_BITS = 2048, 16384
+"""NIST SP 800-131A forbids signatures by shorter keys; OpenSSH makes no longer ones."""
 
 
 class UnusableKeyError(ValueError):
@@ -53,12 +58,13 @@ class UnusableKeyError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class PublicKey:
-    """A key that verifies."""
+    """A key that verifies signatures."""
 
     fingerprint: str
     """`SHA256:...`, as `ssh-keygen -l` prints it; envelopes name the key by it."""
     bits: int
     kind: str
+    """`ED25519`, `ECDSA` or `RSA`, as `ssh-keygen -l` prints it; not one of `KEY_TYPES`."""
     verifier: SSlibKey = field(compare=False, repr=False)
 
     @property
@@ -69,25 +75,26 @@ class PublicKey:
 
 @dataclass(frozen=True, slots=True)
 class PrivateKey:
-    """A key that signs."""
+    """A key that signs, with its public half."""
 
     public: PublicKey
     signer: CryptoSigner = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
-class Sealed:
-    """A payload with its signatures, which nobody has looked at yet."""
+class DsseEnvelope:
+    """A payload and its signatures, none of which has been verified yet."""
 
     payload: bytes
-    keys: tuple[str, ...]
-    """Fingerprints of the keys that the signatures name."""
-    envelope: Envelope = field(compare=False, repr=False)
+    key_ids: tuple[str, ...]
+    """The key that each signature says it is of, by its fingerprint: a claim, and no proof."""
+    library_envelope: Envelope = field(compare=False, repr=False)
+    """The same for securesystemslib, which verifies it."""
 
     def is_signed_by(self, key: PublicKey) -> bool:
-        """Whether a signature of exactly this payload is by the key."""
+        """Whether the key verifies one of the signatures of the payload."""
         try:
-            self.envelope.verify([key.verifier], 1)
+            self.library_envelope.verify([key.verifier], 1)
         except UnverifiedSignatureError:
             return False
         return True
@@ -97,10 +104,10 @@ class Sealed:
 
 
 def public_key(text: str) -> PublicKey:
-    """A public key as OpenSSH or as PEM.
+    """The public key in a text in the format of OpenSSH or in PEM.
 
     Raises:
-        UnusableKeyError: it is none, or of a kind that is not taken.
+        UnusableKeyError: the text is no public key, or one of a kind that is not accepted.
     """
     words = text.split()
     is_pem = text.lstrip().startswith("-----BEGIN ")
@@ -108,70 +115,80 @@ def public_key(text: str) -> PublicKey:
         raise UnusableKeyError(f"it is no public key of {', '.join(f'`{t}`' for t in KEY_TYPES)}")
     try:
         load = load_pem_public_key if is_pem else load_ssh_public_key
-        return _public(load(text.strip().encode()))
+        return _public_key(load(text.strip().encode()))
     except (ValueError, TypeError, UnsupportedAlgorithm) as error:
         raise UnusableKeyError(_why(error)) from None
 
 
 def private_key(data: bytes, passphrase: Callable[[], str]) -> PrivateKey:
-    """A private key as OpenSSH or as PEM.
+    """The private key in a file in the format of OpenSSH or in PEM.
 
     Args:
-        data: the content of its file.
-        passphrase: asks for it; called only where the key has one.
+        data: the content of the file.
+        passphrase: asks the user for the passphrase; called only where the key has one.
 
     Raises:
-        UnusableKeyError: it is none, or of a kind that is not taken, or the passphrase is wrong.
+        UnusableKeyError: the file is no private key, or one of a kind that is not accepted, or the
+            passphrase is wrong.
     """
     if not data.lstrip().startswith(b"-----BEGIN ") or b"PRIVATE KEY-----" not in data:
         raise UnusableKeyError("it is no private key")
     try:
-        key = _loaded(data, passphrase)
-        public = _public(key.public_key())
+        key = _library_key(data, passphrase)
+        public = _public_key(key.public_key())
         return PrivateKey(public, CryptoSigner(key, public.verifier))
     except (ValueError, TypeError, UnsupportedAlgorithm) as error:
         raise UnusableKeyError(_why(error)) from None
 
 
-def _loaded(data: bytes, passphrase: Callable[[], str]) -> PrivateKeyTypes:
+def _library_key(data: bytes, passphrase: Callable[[], str]) -> PrivateKeyTypes:
+    """The private key as cryptography has it, decrypted where it is encrypted."""
     load = load_ssh_private_key if b"OPENSSH" in data.split(b"\n", 1)[0] else load_pem_private_key
     try:
         return load(data, None)
-    except TypeError:  # so both say that it is encrypted
-        word = passphrase().encode()
+    except TypeError:  # both functions raise it where an encrypted key comes without a passphrase
+        secret = passphrase().encode()
     try:
-        return load(data, word)
+        return load(data, secret)
     except (ValueError, TypeError, UnsupportedAlgorithm) as error:
+        # The message of another error says nothing beyond "wrong or damaged".
         why = f": {_why(error)}" if isinstance(error, UnsupportedAlgorithm) else ""
         raise UnusableKeyError(f"its passphrase is another one, or it is damaged{why}") from None
 
 
-def _public(key: PublicKeyTypes) -> PublicKey:
-    bits, kind = _size(key)
+def _public_key(key: PublicKeyTypes) -> PublicKey:
+    """The key with its fingerprint, which is the SHA-256 of its binary form (RFC 4253)."""
+    bits, kind = _bits_and_kind(key)
     blob = key.public_bytes(Encoding.OpenSSH, PublicFormat.OpenSSH).split()[1]
     digest = hashlib.sha256(base64.b64decode(blob)).digest()
     fingerprint = f"SHA256:{base64.b64encode(digest).decode().rstrip('=')}"
     return PublicKey(fingerprint, bits, kind, SSlibKey.from_crypto(key, fingerprint))
 
 
-def _size(key: PublicKeyTypes) -> tuple[int, str]:
-    """Its length in bits, and its kind as `ssh-keygen -l` says it."""
+def _bits_and_kind(key: PublicKeyTypes) -> tuple[int, str]:
+    """Both as `ssh-keygen -l` prints them.
+
+    Raises:
+        UnusableKeyError: the key is too short, too long, or of another kind.
+    """
     match key:
         case Ed25519PublicKey():
             return 256, "ED25519"
         case EllipticCurvePublicKey():
             return key.key_size, "ECDSA"
-        case RSAPublicKey() if _SHORTEST <= key.key_size <= _LONGEST:
+        case RSAPublicKey() if _RSA_MIN_BITS <= key.key_size <= _RSA_MAX_BITS:
             return key.key_size, "RSA"
         case RSAPublicKey():
-            raise UnusableKeyError(f"an RSA key has {_SHORTEST} bits at least, {_LONGEST} at most")
+            raise UnusableKeyError(
+                f"an RSA key has {_RSA_MIN_BITS} bits at least, {_RSA_MAX_BITS} at most"
+            )
         case _:
             raise UnusableKeyError("only Ed25519, ECDSA and RSA keys are taken")
 
 
 def _why(error: Exception) -> str:
-    """What a library says, as the end of a sentence."""
-    if isinstance(error, UnusableKeyError):
+    """The message of an error, without a capital and a full stop, for the end of a sentence."""
+    if isinstance(error, UnusableKeyError):  # it is a ValueError, and has our own words
         return str(error)
     message = str(error).strip().rstrip(".") or type(error).__name__
     return f"{message[:1].lower()}{message[1:]}"
@@ -180,18 +197,21 @@ def _why(error: Exception) -> str:
 # Envelopes -------------------------------------------------------------------------------------
 
 
-def sealed(payload: bytes, key: PrivateKey) -> str:
+def signed_envelope(payload: bytes, key: PrivateKey) -> str:
     """The payload in an envelope with one signature, on one line of JSON."""
     envelope = Envelope(payload, PAYLOAD_TYPE, {})
     envelope.sign(key.signer)
     return json.dumps(envelope.to_dict(), sort_keys=True)
 
 
-def opened(line: str) -> Sealed:
-    """An envelope from its JSON, in exactly the form that it must have.
+def read_envelope(line: str) -> DsseEnvelope:
+    """An envelope from its JSON. Its form is checked, its signatures are not.
+
+    The form is stricter than DSSE's: the payload type is `PAYLOAD_TYPE`, every signature names its
+    key, no two name the same, and nothing else stands in the envelope.
 
     Raises:
-        MisshapenError: it is none.
+        MisshapenError: the JSON has another form.
     """
     shape = Shape(plain(line))
     shape.only("payload", "payloadType", "signatures")
@@ -203,20 +223,24 @@ def opened(line: str) -> Sealed:
         signature.only("keyid", "sig")
         signature.field("keyid").text()
         _bytes(signature.field("sig"))
-    keys = tuple(signature.field("keyid").text() for signature in signatures)
-    if len(set(keys)) < len(keys):
+    key_ids = tuple(signature.field("keyid").text() for signature in signatures)
+    if len(set(key_ids)) < len(key_ids):
         raise shape.field("signatures").wrong("one signature for each key")
     payload = _bytes(shape.field("payload"))
-    return Sealed(payload, keys, Envelope.from_dict(json.loads(line)))
+    return DsseEnvelope(payload, key_ids, Envelope.from_dict(json.loads(line)))
 
 
-def _bytes(at: Shape) -> bytes:
-    """What base64 stands for; each content has one text."""
-    text = at.text()
+def _bytes(value: Shape) -> bytes:
+    """The bytes that a value has in base64.
+
+    Base64 has several texts for some bytes. Only the canonical one is read, so that a payload or a
+    signature cannot be written in another way and still verify.
+    """
+    text = value.text()
     try:
         data = base64.b64decode(text, validate=True)
     except (binascii.Error, ValueError):
-        raise at.wrong("base64") from None
+        raise value.wrong("base64") from None
     if base64.b64encode(data).decode() != text:
-        raise at.wrong("base64")
+        raise value.wrong("base64")
     return data

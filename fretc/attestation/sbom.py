@@ -91,8 +91,9 @@ def closure(root: str = TOOL) -> Mapping[str, tuple[str, ...]]:
 
 
 def _installed_extras(root: str) -> Iterator[str]:
+    always = {*_needed(root, [])}
     for extra in distribution(root).metadata.get_all("Provides-Extra", []):
-        mine = [each for each in _needed(root, [extra]) if each not in set(_needed(root, []))]
+        mine = [each for each in _needed(root, [extra]) if each not in always]
         if extra not in _OF_DEVELOPERS and all(map(_is_installed, mine)):
             yield extra
 

@@ -25,7 +25,7 @@ from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import within
 
 if TYPE_CHECKING:
-    from fretc.attestation.keys import Sealed
+    from fretc.attestation.keys import DsseEnvelope
     from fretc.attestation.signers import Signer, Signers
     from fretc.audit.evidence.schema import Evidence
 
@@ -36,9 +36,9 @@ SIGNERS = "allowed_signers"
 
 @dataclass(frozen=True, slots=True)
 class Envelope:
-    """A line of the file."""
+    """A line of the file: a DSSE envelope, and the statement that is its payload."""
 
-    sealed: Sealed
+    dsse: DsseEnvelope
     statement: Statement
     place: Span
 
@@ -62,7 +62,7 @@ def read(path: str) -> tuple[Envelope, ...] | Diagnostic:
 
 
 def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
-    from fretc.attestation.keys import opened
+    from fretc.attestation.keys import read_envelope
 
     envelopes = []
     start = 0
@@ -72,8 +72,8 @@ def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
         if not line.strip():
             continue
         try:
-            sealed = opened(line)
-            envelopes.append(Envelope(sealed, read_statement(sealed.payload), place))
+            dsse = read_envelope(line)
+            envelopes.append(Envelope(dsse, read_statement(dsse.payload), place))
         except MisshapenError as error:
             return _wrong(place, f"the line is no signed statement of fretc: {error}")
     return tuple(envelopes)
@@ -81,10 +81,10 @@ def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
 
 def envelope(line: str) -> Envelope:
     """The envelope of a new line."""
-    from fretc.attestation.keys import opened
+    from fretc.attestation.keys import read_envelope
 
-    sealed = opened(line)
-    return Envelope(sealed, read_statement(sealed.payload), Source("", line).span())
+    dsse = read_envelope(line)
+    return Envelope(dsse, read_statement(dsse.payload), Source("", line).span())
 
 
 def _wrong(place: Span, what: str) -> Diagnostic:
@@ -116,7 +116,7 @@ def kept(
         one
         for one in envelopes
         if (about := one.statement.main & current)
-        and not (one.sealed.keys == new.sealed.keys and about <= new.statement.main)
+        and not (one.dsse.key_ids == new.dsse.key_ids and about <= new.statement.main)
     )
 
 
@@ -157,7 +157,7 @@ class _CheckedEnvelope:
 
 
 @dataclass(frozen=True, slots=True)
-class Book:
+class SignatureBook:
     """All signatures of a project, checked against the signers."""
 
     signers: Signers | None
@@ -188,7 +188,9 @@ class Book:
             return signing
         if not any(one.by for one in agreeing):
             return Signing(State.CHANGED, "the statement that was signed says something else")
-        return Book(self.signers, tuple(agreeing)).of_file(attestation.EVIDENCE, evidence.sha256)
+        return SignatureBook(self.signers, tuple(agreeing)).of_file(
+            attestation.EVIDENCE, evidence.sha256
+        )
 
     def _of(self, about: Sequence[_CheckedEnvelope], subject: Subject, name: str | None) -> Signing:
         by = list(dict.fromkeys(signer for one in about for signer in one.by))
@@ -208,7 +210,7 @@ class Book:
         return Signing(State.NONE, "nobody signed it")
 
     def _unknown(self, about: Sequence[_CheckedEnvelope]) -> str:
-        keys = dict.fromkeys(key for one in about for key in one.envelope.sealed.keys)
+        keys = dict.fromkeys(key for one in about for key in one.envelope.dsse.key_ids)
         names = {signer.key.fingerprint for one in about for signer in one.broken}
         unknown_keys = ", ".join(key for key in keys if key not in names)
         if not unknown_keys:
@@ -231,7 +233,7 @@ def _agrees(signed: Statement, now: Statement) -> bool:
     return signed.of(attestation.LOG) == now.of(attestation.LOG) and says == now.says
 
 
-NO_SIGNATURES = Book(None)
+NO_SIGNATURES = SignatureBook(None)
 
 
 def _has(one: _CheckedEnvelope, kind: str, sha256: str) -> bool:
@@ -271,7 +273,7 @@ def missing() -> Diagnostic | None:
     )
 
 
-def gathered(files: Sequence[str], signers: str | None) -> Book | Diagnostic:
+def read_signatures(files: Sequence[str], signers: str | None) -> SignatureBook | Diagnostic:
     """The signatures beside files, checked against a list of signers.
 
     Args:
@@ -279,7 +281,7 @@ def gathered(files: Sequence[str], signers: str | None) -> Book | Diagnostic:
         signers: path of the list; None: there is none.
     """
     if signers is None and not any(Path(beside(path)).exists() for path in files):
-        return Book(None)
+        return SignatureBook(None)
     absent = missing()
     if absent is not None:
         return absent
@@ -289,7 +291,7 @@ def gathered(files: Sequence[str], signers: str | None) -> Book | Diagnostic:
     return listed if isinstance(listed, Diagnostic) else book(files, listed)
 
 
-def book(files: Sequence[str], signers: Signers | None) -> Book | Diagnostic:
+def book(files: Sequence[str], signers: Signers | None) -> SignatureBook | Diagnostic:
     """The signatures beside files, checked."""
     checked: list[_CheckedEnvelope] = []
     for path in files:
@@ -297,11 +299,11 @@ def book(files: Sequence[str], signers: Signers | None) -> Book | Diagnostic:
         if isinstance(envelopes, Diagnostic):
             return envelopes
         checked.extend(_checked(one, signers.signers if signers else ()) for one in envelopes)
-    return Book(signers, tuple(checked))
+    return SignatureBook(signers, tuple(checked))
 
 
 def _checked(envelope: Envelope, signers: Sequence[Signer]) -> _CheckedEnvelope:
-    named = [one for one in signers if one.key.fingerprint in envelope.sealed.keys]
-    good = tuple(one for one in named if envelope.sealed.is_signed_by(one.key))
+    named = [one for one in signers if one.key.fingerprint in envelope.dsse.key_ids]
+    good = tuple(one for one in named if envelope.dsse.is_signed_by(one.key))
     bad = tuple(one for one in named if one not in good)
     return _CheckedEnvelope(envelope, frozenset(envelope.statement.subjects), good, bad)

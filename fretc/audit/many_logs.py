@@ -86,9 +86,13 @@ class Audit:
             name = f"{result.requirement:<{width}}"
             line = f"  {verdict.sign.glyph} {name}  {verdict.word:<12}  {result.reason}"
             lines.append((line, verdict.sign.colour))
-        for one in self.estimates:
-            lines.extend(_block(one))
+        lines.extend(estimate_lines(self.estimates))
         return tuple((visible(line), colour) for line, colour in lines)
+
+
+def estimate_lines(estimates: Sequence[Estimated]) -> tuple[tuple[str, str | None], ...]:
+    """What all runs say of each requirement with a probability, each line with its colour."""
+    return tuple(line for one in estimates for line in _block(one))
 
 
 def _block(one: Estimated) -> Iterator[tuple[str, str | None]]:

@@ -25,7 +25,8 @@ from fretc.logs.signals.signals import blind_zones
 from fretc.logs.signals.traces import Timeline, Trace, trace
 from fretc.logs.signals.words import Foreign, shown
 from fretish import expressions as e
-from fretish.bindings.amounts import scaled, shared_unit, value
+from fretish.bindings.amounts import margin as margin_text
+from fretish.bindings.amounts import scaled, seconds, shared_unit
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
@@ -240,7 +241,7 @@ def _reason(evidence: Evidence, recording: Recording, declarations: Declarations
             return "what came after the last whole tick leaves it open"
         case kernel.INCONCLUSIVE:
             last = evidence.open[-1] if evidence.open else None
-            since = f" since {last.seconds:.1f} s" if last else ""
+            since = f" since {seconds(last.seconds)}" if last else ""
             return f"{_times(len(evidence.open), 'demand')} open at the end of the log{since}"
         case kernel.VACUOUS:
             return f"never triggered in {outcome.ticks} ticks"
@@ -253,9 +254,9 @@ def _reason(evidence: Evidence, recording: Recording, declarations: Declarations
 
 def _broken(evidence: Evidence) -> str:
     first = evidence.violations[0]
-    trigger = f", triggered at {first.trigger.seconds:.1f} s" if first.trigger else ""
+    trigger = f", triggered at {seconds(first.trigger.seconds)}" if first.trigger else ""
     return (
-        f"broken from {first.first.seconds:.1f} s to {first.last.seconds:.1f} s{trigger}"
+        f"broken from {seconds(first.first.seconds)} to {seconds(first.last.seconds)}{trigger}"
         f"{_more(len(evidence.violations))}"
     )
 
@@ -290,12 +291,13 @@ def _of_whom(evidence: Evidence) -> str:
 
 
 def _latency(evidence: Evidence) -> str:
-    if not evidence.latencies:
+    latencies = evidence.latencies
+    if not latencies:
         return ""
-    return (
-        f", answered after {median(evidence.latencies):.2f} s (median), "
-        f"{max(evidence.latencies):.2f} s (longest)"
-    )
+    if len(latencies) == 1:
+        return f", answered after {seconds(latencies[0])}"
+    middle, longest = seconds(median(latencies)), seconds(max(latencies))
+    return f", answered after {middle} (median), {longest} (longest)"
 
 
 def _margin(evidence: Evidence, signals: Mapping[str, Signal]) -> str:
@@ -304,8 +306,10 @@ def _margin(evidence: Evidence, signals: Mapping[str, Signal]) -> str:
     if least is None:
         return ""
     unit, factor = shared_unit(least.threshold.text, least.threshold.unit, signals)
-    margin = value(scaled(least.distance, factor), unit, [0.0])
-    return f", least margin {margin} ({expression(least.threshold.comparison)})"
+    assert least.distance is not None, "a margin that has a share has a distance"
+    bound = scaled(least.threshold.bound, factor)
+    distance = margin_text(scaled(least.distance, factor), unit, bound)
+    return f", least margin {distance} ({expression(least.threshold.comparison)})"
 
 
 def _times(count: int, one: str, many: str = "") -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,12 +25,13 @@ from fretc.terminal.options import (
 )
 from fretc.terminal.output import (
     BAD,
+    EVIDENCE,
     NOT_SHOWN,
     SHOWN,
     VIOLATION,
-    coloured,
     deliver,
     not_written,
+    painted,
     protect,
     say,
     say_also,
@@ -49,7 +51,7 @@ if TYPE_CHECKING:
 
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
-    "Printed and written": ("form", "output", "parquet", "annotate", "annotations"),
+    "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
     "Many logs": ("jobs", "resume", "engine"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
@@ -67,7 +69,7 @@ _AUDIT = {
 @output_option(
     cls=Renamed,
     earlier="--evidence",
-    default="build/evidence.json",
+    default=EVIDENCE,
     show_default=True,
     help="Where evidence goes; `-` prints it.",
 )
@@ -83,6 +85,9 @@ _AUDIT = {
     "sarif",
     text="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions, "
     "as SARIF.",
+)
+@click.option(
+    "-v", "--verbose", is_flag=True, help="List each result, of many runs too: no table of marks."
 )
 @click.option(
     "--evaluation",
@@ -127,6 +132,7 @@ def audit(
     annotate: bool,
     annotations: str | None,
     form: str,
+    verbose: bool,
     evaluation: str,
     integrity: str,
     confidence: float,
@@ -149,6 +155,7 @@ def audit(
     """
     if summary or query is not None:
         summarize(paths, query, form)
+    began = time.perf_counter()
     _check_outputs(output, parquet, resume=resume)
     from compiler.project.folder import load
     from compiler.project.paths import beside, companions, requirement_files
@@ -191,7 +198,15 @@ def audit(
         deliver({**forms, **annotation_files}, inputs)
         if journal is not None:
             journal.remove()
-    click.echo(_text(result, project, refusals, form), nl=False)
+    if form == "text":
+        from fretc.commands.audit_text import Places, Subject, lines
+        from fretc.terminal.screen import screen
+
+        places, refused = Places(requirements, bindings, output), {one.id for one in plan.refused}
+        subject = Subject(result, project, refused, places, time.perf_counter() - began)
+        click.echo(painted(lines(subject, screen(), every=verbose)), nl=False)
+    else:
+        click.echo(_text(result, project, refusals, form), nl=False)
     if plan.refused or has_errors((*project.diagnostics, *result.diagnostics)):
         raise SystemExit(BAD)
     raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
@@ -210,31 +225,30 @@ def _journal(evidence: str, plan: Plan) -> Journal | None:
 
 
 def _annotation_files(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
+    from fretc.audit.evidence.declared_units import without_samples
     from fretc.audit.outputs.annotations import sidecars
 
-    return sidecars(result.results, project.rules, Path(folder or "build/annotations"))
+    results = without_samples(result.results, project.declarations)
+    return sidecars(results, project.rules, Path(folder or "build/annotations"))
 
 
 def _text(result: Audit, project: Project, refusals: Sequence[Diagnostic], form: str) -> str:
+    from fretc.audit.evidence.declared_units import without_samples
     from fretc.audit.outputs.junit import github, junit
     from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 
-    signals = project.declarations.signals if project.declarations else {}
-    match form:
-        case "json":
-            return result.as_json
-        case "junit":
-            return junit(result.results, result.estimates, signals)
-        case "github":
-            return github(result.results, project.requirements, result.estimates)
-        case "sarif":
-            diagnostics = (*project.diagnostics, *refusals, *result.diagnostics)
-            without_rule = project.without_rule
-            together = [AllRuns.of(one) for one in result.estimates]
-            results = [OneRun.of(one) for one in result.results]
-            return sarif(results, project.rules, diagnostics, together, without_rule)
-        case _:
-            return coloured(result.text)
+    if form == "json":
+        return result.as_json
+    results = without_samples(result.results, project.declarations)
+    if form == "junit":
+        return junit(results, result.estimates)
+    if form == "github":
+        return github(results, project.requirements, result.estimates)
+    assert form == "sarif", "a choice of --format"
+    diagnostics = (*project.diagnostics, *refusals, *result.diagnostics)
+    together = [AllRuns.of(one) for one in result.estimates]
+    each = [OneRun.of(one) for one in results]
+    return sarif(each, project.rules, diagnostics, together, project.without_rule)
 
 
 def _engine(name: str, jobs: int) -> Engine:

@@ -1,4 +1,4 @@
-"""The command about bindings: draft them from a log, and check what they see in logs."""
+"""`fretc bind`: draft bindings from a log, or check what bindings see in logs."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from fretc.terminal.options import (
     PATH,
     bindings_option,
     format_option,
+    is_given,
     jobs_option,
     output_option,
     path_option,
@@ -53,56 +54,62 @@ def bind(
     true, false and unknown, and how often it changed. Exit status of a check: 0 each proposition
     took both values in some log, 3 one did not, 2 bad input.
     """
-    if (source is None) == (not check):
-        stop(_one_of_both())
-    given = _is_given("requirements")
+    drafts = source is not None
+    if drafts == check:
+        stop(_not_one_mode())
     if source is not None:
         if paths:
-            stop(_one_log(paths[0]))
-        project = _project(requirements, bindings, given=given, unread=output)
+            stop(_second_log(paths[0]))
+        project = _project(requirements, bindings, replaced=output)
         _draft(source, project, output, force=force)
     elif not paths:
         stop(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
     else:
-        project = _project(requirements, bindings, given=given)
+        project = _project(requirements, bindings)
         _check(paths, project, requirements, form, jobs)
 
 
-def _is_given(name: str) -> bool:
-    found = click.get_current_context().get_parameter_source(name)
-    return found is not click.core.ParameterSource.DEFAULT
+def _project(requirements: str, bindings: str | None, replaced: str | None = None) -> Project:
+    """The requirements and their bindings, without errors; else the command stops.
 
+    There may be no requirements at all, unless the user names where they are.
 
-def _project(requirements: str, bindings: str | None, *, given: bool, unread: str = "-") -> Project:
-    """The requirements and their bindings; no requirements, where none are asked for or there.
-
-    What is wrong with the bindings does not matter where they are the file that is to be replaced.
+    Args:
+        requirements: a folder or a file.
+        bindings: their file; None: the one beside the requirements, if any.
+        replaced: a file that the command will write; mistakes in what it holds now do not count.
     """
     from compiler.project.folder import load
     from compiler.project.paths import beside, requirement_files
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
-        if given:
+        if is_given("requirements"):
             stop(files)
         files = []
     project = load(files, bindings or beside(requirements, "bindings.toml"))
-    wrong = [
-        diagnostic
-        for diagnostic in project.diagnostics
-        if diagnostic.span is None
-        or os.path.realpath(diagnostic.span.source.name) != os.path.realpath(unread)
-    ]
-    if has_errors(wrong):
-        stop(*wrong)
+    relevant = [d for d in project.diagnostics if replaced is None or not _is_in(d, replaced)]
+    if has_errors(relevant):
+        stop(*relevant)
     return project
 
 
-# Drafts
+def _is_in(diagnostic: Diagnostic, path: str) -> bool:
+    """Whether the place of the diagnostic is in this file."""
+    span = diagnostic.span
+    return span is not None and os.path.realpath(span.source.name) == os.path.realpath(path)
+
+
+# Drafts --------------------------------------------------------------------------------------
 
 
 def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
-    from fretc.audit.bindings.draft import draft, durations, missing_propositions
+    from fretc.audit.bindings.draft import (
+        draft,
+        durations,
+        missing_propositions,
+        missing_signals,
+    )
     from fretc.logs.reader import look
 
     if output != "-" and not force and os.path.lexists(output):
@@ -111,12 +118,15 @@ def _draft(log: str, project: Project, output: str, *, force: bool) -> None:
     if isinstance(contents, Diagnostic):
         stop(contents)
     say(contents.recording.findings)
-    text = draft(contents, missing_propositions(project), durations(project))
+    text = draft(
+        contents, missing_propositions(project), durations(project), missing_signals(project)
+    )
     deliver({Path(output): text}, (log,))
     raise SystemExit(SHOWN)
 
 
 def _exists(path: str) -> Diagnostic:
+    """F905: only `--force` writes over a file."""
     return Diagnostic(
         Code.NOT_WRITTEN,
         f"`{path}` is there already",
@@ -124,7 +134,8 @@ def _exists(path: str) -> Diagnostic:
     )
 
 
-def _one_of_both() -> Diagnostic:
+def _not_one_mode() -> Diagnostic:
+    """F907: neither `--from` nor `--check`, or both."""
     return Diagnostic(
         Code.BAD_USAGE,
         "either draft bindings with `--from LOG`, or check them with `--check LOG...`",
@@ -132,7 +143,8 @@ def _one_of_both() -> Diagnostic:
     )
 
 
-def _one_log(path: str) -> Diagnostic:
+def _second_log(path: str) -> Diagnostic:
+    """F907: a LOG beside the one of `--from`."""
     return Diagnostic(
         Code.BAD_USAGE,
         f"a draft is made from one log, and `{path}` is one more",
@@ -140,7 +152,7 @@ def _one_log(path: str) -> Diagnostic:
     )
 
 
-# Checks
+# Checks --------------------------------------------------------------------------------------
 
 
 def _check(
@@ -155,7 +167,7 @@ def _check(
         stop(logs)
     if project.declarations is None:
         stop(_no_bindings())
-    plan = planned(project)
+    plan = planned(project)  # not a plan where no requirement can be audited: bindings still can
     result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(result, Diagnostic):
         stop(result)
@@ -166,7 +178,10 @@ def _check(
 
 
 def _unbound(project: Project) -> list[Diagnostic]:
-    """What the requirements name and the bindings do not have."""
+    """Of each proposition that a requirement names and the bindings do not define.
+
+    Retired requirements do not count: no audit judges them.
+    """
     from compiler.formalization.binding_agreement import unbound
 
     assert project.declarations is not None

@@ -53,6 +53,7 @@ def check(
     from compiler.files.dates import today
     from compiler.project.folder import whole
     from compiler.project.paths import beside
+    from compiler.project.stated_numbers import first_unit
     from fretc.audit.evidence.reader import read as read_evidence
     from fretc.audit.refusals import refusals
     from fretc.report.diagnostics import idle_waivers, stale_evidence
@@ -69,7 +70,8 @@ def check(
     project = whole(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
         stop(project)
-    said = list(project.diagnostics)
+    units = first_unit(project.rules)
+    said = [*project.diagnostics, *([units] if units is not None else [])]
     audited = read_evidence(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:
         said.append(audited)

@@ -12,7 +12,16 @@ import click
 from compiler.emit import TARGETS
 from fretc.terminal.group import DEFAULT, Compile
 from fretc.terminal.options import PATH, format_option, output_option, path_option
-from fretc.terminal.output import BAD, FOLDER, SHOWN, VIOLATION, deliver, say, say_line, stop
+from fretc.terminal.output import (
+    BAD,
+    REQUIREMENTS_FOLDER,
+    SHOWN,
+    VIOLATION,
+    deliver,
+    say,
+    say_line,
+    stop,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
 
@@ -236,7 +245,7 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
 
 @click.command("import", short_help="Read requirements that FRET exported.")
 @click.argument("file", type=PATH, metavar="FILE")
-@output_option(default=FOLDER, show_default=True, help="Folder; `-` prints.")
+@output_option(default=REQUIREMENTS_FOLDER, show_default=True, help="Folder; `-` prints.")
 @click.option("--id-column", help="CSV: the column of the ids.")
 @click.option("--text-column", help="CSV: the column of the sentences or texts.")
 @click.option("--project-column", help="CSV: the column of the projects.")

@@ -1,4 +1,4 @@
-"""The command that begins a project."""
+"""`fretc init`: begin a project with one requirement, its bindings and its hazards."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from shlex import quote
 import click
 
 from fretc.terminal.options import PATH, path_option
-from fretc.terminal.output import FOLDER, deliver, say, say_line, stop
+from fretc.terminal.output import REQUIREMENTS_FOLDER, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
 
@@ -27,35 +27,43 @@ def init(folder: str, log: str | None) -> None:
     """
     from fretc.audit.bindings.beginning import from_log, without_log
 
-    place = Path(folder) / FOLDER
-    if os.path.lexists(place) and not _is_empty(place):
-        stop(_exists(str(place)))
+    requirements = Path(folder) / REQUIREMENTS_FOLDER
+    if os.path.lexists(requirements) and not _is_empty_folder(requirements):
+        stop(_exists(str(requirements)))
     if log == "-":
-        stop(_twice())
+        stop(_standard_input())
     beginning = without_log() if log is None else from_log(log)
     if isinstance(beginning, Diagnostic):
         stop(beginning)
     say(beginning.findings)
-    deliver({place / name: text for name, text in beginning.files.items()}, [log] if log else [])
-    where = "" if folder == "." else f" --requirements {quote(str(place))}"
-    say_line(visible(f"next: `fretc check{where}` says what is wrong or missing"))
-    run = "LOG" if log is None else quote(log)
-    say_line(visible(f"next: `fretc audit {run}{where}` judges a log"))
+    files = {requirements / name: text for name, text in beginning.files.items()}
+    deliver(files, [log] if log else [])
+    _say_next_commands(folder, requirements, log)
 
 
-def _is_empty(place: Path) -> bool:
-    return place.is_dir() and not any(place.iterdir())
+def _say_next_commands(folder: str, requirements: Path, log: str | None) -> None:
+    """Print the commands to run next, so that they can be copied to the present shell."""
+    option = "" if folder == "." else f" --requirements {quote(str(requirements))}"
+    log_argument = "LOG" if log is None else quote(log)
+    say_line(visible(f"next: `fretc check{option}` says what is wrong or missing"))
+    say_line(visible(f"next: `fretc audit {log_argument}{option}` judges a log"))
 
 
-def _exists(place: str) -> Diagnostic:
+def _is_empty_folder(path: Path) -> bool:
+    return path.is_dir() and not any(path.iterdir())
+
+
+def _exists(path: str) -> Diagnostic:
+    """F905: the place of the requirements is taken."""
     return Diagnostic(
         Code.NOT_WRITTEN,
-        f"`{place}` is there already",
+        f"`{path}` is there already",
         help="name another folder; `fretc bind --from LOG` drafts bindings alone",
     )
 
 
-def _twice() -> Diagnostic:
+def _standard_input() -> Diagnostic:
+    """F907: `--from -`."""
     return Diagnostic(
         Code.BAD_USAGE,
         "standard input can be read once, and a project is drafted from a log in two readings",

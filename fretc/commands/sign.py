@@ -119,14 +119,14 @@ def _passphrase(path: str) -> str:
 
 def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
     """The file with the signatures, and one more in it."""
-    from fretc.attestation.keys import sealed
+    from fretc.attestation.keys import signed_envelope
     from fretc.attestation.signatures import appended, beside, envelope, kept, read
     from fretc.attestation.statement import text
 
     envelopes = read(what.path)
     if isinstance(envelopes, Diagnostic):
         stop(envelopes)
-    new = envelope(sealed(text(what.statement), key))
+    new = envelope(signed_envelope(text(what.statement), key))
     omissions = len(envelopes) - len(kept(envelopes, new, what.current))
     if omissions:
         noun = "earlier signature is" if omissions == 1 else "earlier signatures are"

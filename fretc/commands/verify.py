@@ -1,4 +1,7 @@
-"""The command about proofs: whether what was made of requirements keeps them."""
+"""`fretc verify`: prove that monitors, interceptors and agents keep the requirements.
+
+`fretc.verification` proves; this module reads the options, prints the proofs and writes them.
+"""
 
 from __future__ import annotations
 
@@ -43,12 +46,17 @@ if TYPE_CHECKING:
 _LAYERS = tuple(map(str, Layer))
 _HEADINGS = {
     "What is looked at": ("layers", "monitor", "provers", "requirements", "bindings", "limit"),
-    "Texts in place of new ones": ("path", "interceptor", "agent", "properties", "percepts"),
+    "Texts in place of new ones": (
+        "monitor_file",
+        "interceptor",
+        "agent",
+        "properties",
+        "percepts",
+    ),
     "Found by others": ("ajpf",),
     "Printed and written": ("form", "output", "traces"),
 }
-
-
+"""The names of the parameters of `verify`, under the headings of its help."""
 _HELP = f"""Prove that what is made of requirements keeps them, layer by layer.
 
 FILE holds requirements, or is a folder of such files: in place of `--requirements`.
@@ -82,7 +90,7 @@ is vacuous, not checked, or stays stopped.
     type=click.Choice(PROVERS),
     help="A prover to ask as well, if it is installed.",
 )
-@path_option("--file", "path", help="A monitor that was made before.")
+@path_option("--file", "monitor_file", help="A monitor that was made before.")
 @path_option("--interceptor", help="An interceptor that was made before.")
 @path_option("--agent", help="An agent in Gwendolen; with --properties.")
 @path_option("--properties", help="The properties of the agent, as AJPF reads them.")
@@ -107,7 +115,7 @@ def verify(
     layers: tuple[str, ...],
     monitor: bool,
     provers: tuple[str, ...],
-    path: str | None,
+    monitor_file: str | None,
     interceptor: str | None,
     agent: str | None,
     properties: str | None,
@@ -129,46 +137,63 @@ def verify(
     from fretc.verification.verify import refusals
 
     if (agent is None) != (properties is None):
-        stop(_half(agent))
-    named = dict.fromkeys((*layers, *(["monitor"] if monitor else [])))
-    if path is not None and not named:
-        named = {"monitor": None}
+        stop(_half_an_agent(agent))
+    layer_names = _layer_names(layers, monitor=monitor, monitor_file=monitor_file)
     project = _project(files, requirements, bindings)
-    results = ajpf or (written() if "ajpf" in (named or _LAYERS) else ())
+    results = ajpf or (written() if Layer.AJPF in layer_names else ())
     request = Request(
-        [Layer(name) for name in named or _LAYERS],
-        Limits(seconds=limit),
-        _read(path),
-        _read(interceptor),
-        _read(agent),
-        _read(properties),
-        percepts,
-        provers,
-        _ajpf_evidence(project, results),
-        at_work,
+        layers=[Layer(name) for name in layer_names],
+        limits=Limits(seconds=limit),
+        monitor=_read(monitor_file),
+        interceptor=_read(interceptor),
+        agent=_read(agent),
+        properties=_read(properties),
+        percepts=percepts,
+        provers=provers,
+        ajpf=_ajpf_proofs(project, results),
+        progress=at_work,
     )
     mistakes = refusals(project, request)
     if mistakes:
         stop(*mistakes)
-    proofs = _evidence(project, request)
-    others = (path, interceptor, agent, properties, bindings, *results)
+    proofs = _proofs(project, request)
+    options = (monitor_file, interceptor, agent, properties, bindings, *results)
     sources = [requirement.wording.source.name for requirement in project.requirements]
-    inputs = [*sources, *companions(sources), *(name for name in others if name is not None)]
-    _deliver(proofs, form, output, traces, inputs)
+    inputs = [*sources, *companions(sources), *(name for name in options if name is not None)]
+    _print_and_write(proofs, form, output, traces, inputs)
     raise SystemExit(_status(proofs))
 
 
-def _ajpf_evidence(project: Project, results: Sequence[str]) -> Sequence[Proof]:
-    from fretc.verification.ajpf_results import evidence
+def _layer_names(
+    layers: Sequence[str], *, monitor: bool, monitor_file: str | None
+) -> Sequence[str]:
+    """The layers to look at, each once.
 
-    lines, diagnostics = evidence(project.rules, results)
+    Args:
+        layers: of `--layer`.
+        monitor: whether `--monitor` is given.
+        monitor_file: of `--file`. Who gives a monitor and names no layer asks about that monitor
+            alone.
+    """
+    names = dict.fromkeys((*layers, *([Layer.MONITOR.value] if monitor else [])))
+    if names:
+        return tuple(names)
+    return _LAYERS if monitor_file is None else (Layer.MONITOR.value,)
+
+
+def _ajpf_proofs(project: Project, results: Sequence[str]) -> Sequence[Proof]:
+    """The proofs that files of results of AJPF hold; an error in one stops the command."""
+    from fretc.verification.ajpf_results import ajpf_proofs
+
+    proofs, diagnostics = ajpf_proofs(project.rules, results)
     say(diagnostics)
     if has_errors(diagnostics):
         raise SystemExit(BAD)
-    return lines
+    return proofs
 
 
-def _half(agent: str | None) -> Diagnostic:
+def _half_an_agent(agent: str | None) -> Diagnostic:
+    """F907: `--agent` without `--properties`, or the other way round."""
     present, missing = ("properties", "agent") if agent is None else ("agent", "properties")
     return Diagnostic(
         Code.BAD_USAGE,
@@ -178,6 +203,7 @@ def _half(agent: str | None) -> Diagnostic:
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> Project:
+    """The project, which has no error and a rule at least; else the command stops."""
     from compiler.project.folder import load
     from compiler.project.paths import listed, requirement_files
 
@@ -195,6 +221,7 @@ def _project(files: Sequence[str], requirements: str, bindings: str | None) -> P
 
 
 def _read(path: str | None) -> Source | None:
+    """The text of a file that an option names; None where the option is not given."""
     from compiler.files.text_files import read
 
     if path is None:
@@ -205,7 +232,8 @@ def _read(path: str | None) -> Source | None:
     return source
 
 
-def _evidence(project: Project, request: Request) -> Sequence[Proof]:
+def _proofs(project: Project, request: Request) -> Sequence[Proof]:
+    """All proofs; a text of the request that cannot be used stops the command."""
     from fretc.verification.monitor.verifying import NotAMonitorError
     from fretc.verification.verify import prove
 
@@ -226,48 +254,69 @@ def _evidence(project: Project, request: Request) -> Sequence[Proof]:
     return proofs
 
 
-def _deliver(
+def _print_and_write(
     proofs: Sequence[Proof], form: str, output: str, traces: str | None, inputs: Iterable[str]
 ) -> None:
-    """Print it, and write the evidence and the runs."""
+    """Print the proofs, and write them as JSON and their counterexamples as tables.
+
+    `--output -` prints the JSON in the place of the text.
+
+    Args:
+        proofs: all of them.
+        form: how they are printed: `text` or `json`.
+        output: the file for the JSON.
+        traces: the folder for the tables; None: none are written.
+        inputs: files that no output may replace.
+    """
     from compiler.files.edition import __version__
     from compiler.files.records import plain
     from compiler.files.templating import to_json
     from compiler.logic.claims import SCHEMA, Document
     from fretc.verification.text_output import lines
 
-    text = f"{to_json(plain(Document(SCHEMA, __version__, tuple(proofs))))}\n"
-    if output != "-" or form == "json":
-        click.echo(text if form == "json" else coloured([*lines(proofs)]), nl=False)
+    document = f"{to_json(plain(Document(SCHEMA, __version__, tuple(proofs))))}\n"
     files: dict[Path, str | bytes] = {}
-    if output != "-" or form != "json":
-        files[Path(output)] = text
+    if form == "json":
+        click.echo(document, nl=False)
+    elif output != "-":
+        click.echo(coloured([*lines(proofs)]), nl=False)
+    if form != "json" or output != "-":  # else it has just been printed
+        files[Path(output)] = document
     if traces is not None:
-        files.update(_tables(proofs, Path(traces)))
+        files.update(_trace_files(proofs, Path(traces)))
     deliver(files, inputs)
 
 
-def _tables(proofs: Sequence[Proof], folder: Path) -> dict[Path, str]:
-    """Each run that a monitor can step, under the requirement, the layer and a number."""
+def _trace_files(proofs: Sequence[Proof], folder: Path) -> dict[Path, str]:
+    """A CSV file for each run that a monitor can step: `<requirement>_<layer>_<number>.csv`.
+
+    Its columns are propositions alone. A run of a closed loop has others behind them, for which
+    a monitor has no place.
+    """
     from fretc.verification.loop.replay import EXTRA
     from fretc.verification.text_output import as_csv
 
     files: dict[Path, str] = {}
-    for one in proofs:
-        if one.layer not in OF_MONITOR:
+    for proof in proofs:
+        run = proof.run
+        if run is None or proof.layer not in OF_MONITOR:
             continue
-        if one.run is not None:
-            names = one.run.names if one.layer is Layer.MONITOR else one.run.names[: -len(EXTRA)]
-            stem = f"{one.requirement.lower()}_{one.layer}"
-            number = sum(path.name.startswith(f"{stem}_") for path in files) + 1
-            files[folder / f"{stem}_{number}.csv"] = as_csv(one.run, names)
+        propositions = run.names if proof.layer is Layer.MONITOR else run.names[: -len(EXTRA)]
+        stem = f"{proof.requirement.lower()}_{proof.layer}"
+        number = sum(path.name.startswith(f"{stem}_") for path in files) + 1
+        files[folder / f"{stem}_{number}.csv"] = as_csv(run, propositions)
     return files
 
 
 def _status(proofs: Sequence[Proof]) -> int:
-    from compiler.logic.claims import Result
-    from fretc.verification.loop.layer import RELEASED
+    """The exit status, as the help says it.
 
-    if any(one.result is Result.COUNTEREXAMPLE and one.claim != RELEASED for one in proofs):
+    That a stop is never released breaks no requirement: it is 3, and not 1.
+    """
+    from compiler.logic.claims import Result
+    from fretc.verification.loop.closed_loop import RELEASED
+
+    refuted = (proof.claim for proof in proofs if proof.result is Result.COUNTEREXAMPLE)
+    if any(claim != RELEASED for claim in refuted):
         return VIOLATION
-    return SHOWN if all(one.result is Result.PROVED for one in proofs) else NOT_SHOWN
+    return SHOWN if all(proof.result is Result.PROVED for proof in proofs) else NOT_SHOWN

@@ -13,7 +13,7 @@ from fretc.logs.mcap.damage import Damage
 from fretc.logs.messages.decoding import MissingExtra
 from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.signals import FieldError
-from fretc.logs.signals.stamps import STILL
+from fretc.logs.signals.topic_clocks import STILL_RUN
 from fretc.logs.signals.words import Foreign
 from fretc.logs.storage.storage_diagnostics import install
 from fretish.bindings.declarations import Signal, short_type
@@ -359,7 +359,7 @@ def still_clock(
     return Diagnostic(
         Code.STILL_CLOCK,
         f"the clock of `{topic}` stands still: {same} of {count} messages have the {time} of "
-        f"{STILL - 1} or more beside them",
+        f"{STILL_RUN - 1} or more beside them",
         place,
         f"{_other_time(time)}; what happened between them is taken for one instant",
         Severity.WARNING,

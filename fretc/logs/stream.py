@@ -4,7 +4,8 @@ What a tick sees is computed by the functions that judge recorded logs (`signals
 `signals.traces`), over a window of samples. The window begins before the last tick, by the longest
 time that a proposition looks back (`lookback`), and one nanosecond: from there on its steps are
 those of the whole log. Each signal keeps one sample from before the window, the one in force where
-it begins; so no `max_age` makes the window longer. Times are nanoseconds of the declared clock.
+it begins; so no `max_age` makes the window longer. Where propositions look back by ticks, the
+window begins before the earliest of these. Times are nanoseconds of the declared clock.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from fretc.logs.signals.traces import origin, proposition_states
 from fretc.logs.signals.words import UNKNOWN, Foreign, shown, word
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
+from fretish.bindings.expressions import ticks_back
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.kernel.verdicts import Truth
 
@@ -68,6 +70,11 @@ class Stream:
             (lookback(declarations.propositions[name].expression) for name in propositions),
             default=0,
         )
+        self._back = 1 + max(
+            (ticks_back(declarations.propositions[name].expression) for name in propositions),
+            default=0,
+        )
+        """Ticks that those to come look back to."""
         flags = {
             name.id
             for proposition in propositions
@@ -83,7 +90,8 @@ class Stream:
         self._end = 0
         """The last message of all bound topics."""
         self._passed = 0
-        self._last_tick: int | None = None
+        self._recent: list[int] = []
+        """The last ticks, from that of `_back` on; all of one time, if one of that time is one."""
         self._ended = False
 
     # Samples
@@ -216,7 +224,6 @@ class Stream:
         if last is None or last == end:
             return End(self._ticks(times, end), None)
         *ticks, cut = self._ticks([*times, end], end)
-        self._last_tick = last
         return End(tuple(ticks), cut.truth)
 
     def _over(self) -> Diagnostic | None:
@@ -273,7 +280,7 @@ class Stream:
         if not times:
             return ()
         start, first = self._start(), None
-        before = [] if self._last_tick is None else [self._last_tick]
+        before = self._recent
         if before:
             start = max(start, self._window())
         elif self._declarations.clock.period is not None:
@@ -287,7 +294,7 @@ class Stream:
             )
             for name in self._propositions
         }
-        self._last_tick = times[-1]
+        self._recent = self._within_reach([*before, *times])
         return tuple(
             Tick(time, {name: values[i] for name, values in truth.items()})
             for i, time in enumerate(times, len(before))
@@ -295,8 +302,15 @@ class Stream:
 
     def _window(self) -> int:
         """From when on samples count for the ticks to come."""
-        assert self._last_tick is not None
-        return self._last_tick - self._lookback - 1
+        return self._recent[0] - self._lookback - 1
+
+    def _within_reach(self, ticks: list[int]) -> list[int]:
+        """The ticks that those to come look back to."""
+        return ticks[bisect_left(ticks, ticks[-self._back :][0]) :]
+
+    @property
+    def _last_tick(self) -> int | None:
+        return self._recent[-1] if self._recent else None
 
     def _forget(self) -> None:
         """Drop what no later tick sees."""

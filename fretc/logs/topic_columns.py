@@ -16,10 +16,10 @@ from fretc.logs import log_diagnostics
 from fretc.logs.extraction import Extract, Extraction
 from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
-from fretc.logs.mcap.messages import Messages, Stamps
+from fretc.logs.mcap.messages import FileTimes, Messages
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.signals.samples import Gap, Series, Times, Values
-from fretc.logs.signals.stamps import JUMP, placed, unset
+from fretc.logs.signals.topic_clocks import JUMP, forward_fill, unset
 from fretc.logs.signals.words import Foreign
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.clock import TimeSource
@@ -114,7 +114,7 @@ class Column:
         self.unset = ~timeless & unset(logs, times, from_zero=from_zero)
         lost = timeless | self.unset
         self.placed = not lost.all()
-        self.times = array("q", (placed(times, lost) if self.placed else logs).tobytes())
+        self.times = array("q", (forward_fill(times, lost) if self.placed else logs).tobytes())
 
     def stamps(self) -> Times:
         """In the order of the file: by the declared clock, or log times where no signal reads."""
@@ -243,7 +243,7 @@ class Columns:
             self._read(column, pending.stream, logs, publishes, payloads)
 
     def _read(
-        self, column: Column, stream: Stream, logs: Times, publishes: Stamps, payloads: Payloads
+        self, column: Column, stream: Stream, logs: Times, publishes: FileTimes, payloads: Payloads
     ) -> None:
         """Read and keep the data of messages of one stream."""
         column.types[short_type(stream.schema.name) if stream.schema else ""] = None
@@ -282,7 +282,7 @@ class Columns:
         return extract
 
     def _times(
-        self, column: Column, extract: Extract, logs: Times, publishes: Stamps
+        self, column: Column, extract: Extract, logs: Times, publishes: FileTimes
     ) -> tuple[Times, NDArray[np.bool_]]:
         """The times of the messages on the declared clock, and which of them it gives."""
         every = np.ones(len(logs), bool)

@@ -12,7 +12,7 @@ from fretc.logs.first_messages import Examples
 from fretc.logs.messages.json_messages import message_leaves
 from fretc.logs.messages.leaves import Kind
 from fretc.logs.signals.samples import Samples, Topic
-from fretc.logs.signals.stamps import JUMP, Stamps, stamps, still
+from fretc.logs.signals.topic_clocks import JUMP, ClockOffset, clock_offset, count_still
 from fretc.logs.topic_columns import Column, Columns
 from fretish.bindings.declarations import Signal
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -44,11 +44,11 @@ def clocks(columns: Columns, wanted: Sequence[Signal]) -> list[Diagnostic]:
     }
     for topic, signal in signals.items():
         column = columns.topics[topic]
-        clock = _stamps(column)
-        if clock is not None and clock.jumps:
-            found.append(log_diagnostics.clock_jumps(signal, clock.jumps, clock.largest))
-        if clock is not None and not column.unstamped:
-            ahead[topic] = clock.ahead
+        offset = _clock_offset(column)
+        if offset is not None and offset.jumps:
+            found.append(log_diagnostics.clock_jumps(signal, offset.jumps, offset.largest_jump))
+        if offset is not None and not column.unstamped:
+            ahead[topic] = offset.median
     middle = median(ahead.values()) if ahead else 0
     true = min(ahead, key=lambda topic: (abs(ahead[topic] - middle), abs(ahead[topic])), default="")
     for topic, shift in ahead.items():
@@ -63,14 +63,14 @@ def _unmoved(columns: Columns) -> Iterator[Diagnostic]:
         column, time = columns.topics[topic], columns.clock.time
         if zero := int(column.unset.sum()):
             yield log_diagnostics.zero_stamps(topic, place, zero, column.count, time)
-        if same := still(column.stamps()[~column.unset]):
+        if same := count_still(column.stamps()[~column.unset]):
             yield log_diagnostics.still_clock(topic, place, same, column.count, time)
 
 
-def _stamps(column: Column) -> Stamps | None:
-    """Of the messages that the declared clock has a time for."""
+def _clock_offset(column: Column) -> ClockOffset | None:
+    """Of the messages, without those whose time was never set."""
     known = ~column.unset
-    return stamps(np.array(column.logs, np.int64)[known], column.stamps()[known])
+    return clock_offset(np.array(column.logs, np.int64)[known], column.stamps()[known])
 
 
 def topic(column: Column) -> Topic:
@@ -79,7 +79,7 @@ def topic(column: Column) -> Topic:
         return _counted(column)
     times = np.sort(column.stamps())
     steps = np.diff(times)
-    clock = _stamps(column) if column.bound else None  # of another there are only log times
+    offset = _clock_offset(column) if column.bound else None  # others have log times alone
     return Topic(
         name=column.name,
         type=column.type,
@@ -93,7 +93,7 @@ def topic(column: Column) -> Topic:
         median_period_ns=int(np.median(steps)) if len(steps) else None,
         unstamped=column.unstamped,
         zero_stamps=int(column.unset.sum()),
-        clock_jumps=clock.jumps if clock is not None else 0,
+        clock_jumps=offset.jumps if offset is not None else 0,
     )
 
 

@@ -12,7 +12,7 @@ from types import MappingProxyType
 from compiler.files.edition import __version__
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
-from fretc.attestation.signatures import NO_SIGNATURES, Book
+from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.audit.evidence.declared_units import in_declared_units
 from fretc.audit.evidence.probabilities import AVERAGE
 from fretc.audit.evidence.schema import Evidence
@@ -57,7 +57,7 @@ def report(
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
     proofs: Proofs | None = None,
     ajpf: Sequence[Proof] = (),
-    book: Book = NO_SIGNATURES,
+    book: SignatureBook = NO_SIGNATURES,
 ) -> tuple[Report, tuple[Diagnostic, ...]]:
     """The report, and diagnostics about its evidence, waivers and signatures.
 

@@ -1,4 +1,4 @@
-"""The traceability report from files: evidence, proofs, lock, waivers, signatures.
+"""The traceability report of a project and its files: evidence, proofs, lock, waivers, signatures.
 
 This module reads the files; `fretc.report.assembly` makes the report of what they say.
 """
@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from compiler.files.dates import today
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
-from fretc.attestation.signatures import gathered
+from fretc.attestation.signatures import read_signatures
+from fretc.audit.evidence.declared_units import without_samples
 from fretc.audit.evidence.reader import read as read_evidence
 from fretc.audit.evidence.schema import Result
 from fretc.report.assembly import report
@@ -21,26 +22,30 @@ from fretc.report.page.html import html
 from fretc.report.traceability.lock import read as read_lock
 from fretc.report.traceability.waivers import Waiver
 from fretc.report.traceability.waivers import read as read_waivers
-from fretc.verification.ajpf_results import evidence as read_ajpf
+from fretc.verification.ajpf_results import ajpf_proofs
 from fretc.verification.reader import read as read_proofs
 from fretish.diagnostics.diagnostic import Diagnostic
 
 
 @dataclass(frozen=True, slots=True)
 class ReportBuild:
-    """A report with the diagnostics of its files, and what its forms need beside it."""
+    """A report, the diagnostics of the files, and what HTML, SARIF and others need beside them."""
 
     report: Report | None
-    """None where the evidence, the proofs, the lock or the signatures cannot be read."""
+    """None where the evidence, the proofs, the lock or the signatures cannot be read.
+
+    Waivers and results of AJPF that cannot be read do not count; what they would have shown or
+    waived is then open in the report, and the diagnostics say why.
+    """
     diagnostics: tuple[Diagnostic, ...]
     rules: tuple[Formalized, ...] = ()
-    """The formalized requirements; the page draws what they mean."""
+    """The formalized requirements; the HTML page draws what they mean."""
     results: tuple[Result, ...] = ()
-    """Those of the evidence, in its order."""
+    """The results of the evidence, in its order and in declared units."""
 
     @property
     def html(self) -> str | None:
-        """The page."""
+        """The HTML page."""
         return None if self.report is None else html(self.report, self.rules)
 
     @property
@@ -70,35 +75,42 @@ def make(
         ajpf: paths of results that the `run.py` of bundles wrote.
         signers: path of a list of signers; None: no signature counts.
     """
-    audit = read_evidence(evidence)
-    if isinstance(audit, Diagnostic) and audit.is_error:
-        return ReportBuild(None, (audit,))
+    audits = read_evidence(evidence)
+    if isinstance(audits, Diagnostic) and audits.is_error:
+        return ReportBuild(None, (audits,))
     proofs = read_proofs(verification) if verification is not None else None
     if isinstance(proofs, Diagnostic):
         return ReportBuild(None, (proofs,))
     reviews = read_lock(lock) if lock is not None else None
     if isinstance(reviews, Diagnostic):
         return ReportBuild(None, (reviews,))
-    paths = [path for path in (evidence, verification, lock, waivers) if path is not None]
-    book = gathered(paths, signers)
-    if isinstance(book, Diagnostic):
-        return ReportBuild(None, (book,))
-    in_force, waiver_diagnostics = _waivers(project, waivers)
-    ajpf_lines, ajpf_diagnostics = read_ajpf(project.rules, ajpf)
-    no_evidence = (audit,) if isinstance(audit, Diagnostic) else ()
-    present = None if isinstance(audit, Diagnostic) else audit
-    whole, diagnostics = report(
-        project, present, evidence, reviews, in_force, proofs, ajpf_lines, book
+    signed_files = [path for path in (evidence, verification, lock, waivers) if path is not None]
+    signatures = read_signatures(signed_files, signers)
+    if isinstance(signatures, Diagnostic):
+        return ReportBuild(None, (signatures,))
+    waivers_in_force, waiver_diagnostics = _waivers_in_force(project, waivers)
+    proofs_of_ajpf, ajpf_diagnostics = ajpf_proofs(project.rules, ajpf)
+    # A missing file of evidence is a note: the report shows that nothing has been exercised.
+    present, notes = (None, (audits,)) if isinstance(audits, Diagnostic) else (audits, ())
+    full_report, report_diagnostics = report(
+        project,
+        present,
+        path=evidence,
+        lock=reviews,
+        waivers=waivers_in_force,
+        proofs=proofs,
+        ajpf=proofs_of_ajpf,
+        book=signatures,
     )
     return ReportBuild(
-        whole,
-        (*no_evidence, *waiver_diagnostics, *ajpf_diagnostics, *diagnostics),
+        full_report,
+        (*notes, *waiver_diagnostics, *ajpf_diagnostics, *report_diagnostics),
         project.rules,
-        present.results if present else (),
+        without_samples(present.results, project.declarations) if present else (),
     )
 
 
-def _waivers(
+def _waivers_in_force(
     project: Project, path: str | None
 ) -> tuple[Mapping[str, Waiver], tuple[Diagnostic, ...]]:
     """The waivers that count today, and diagnostics about all of them."""

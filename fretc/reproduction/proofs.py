@@ -17,8 +17,7 @@ from compiler.logic.claims import ALL, METHODS, PROVERS, Layer, Proof, Result
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
 from fretc.reproduction.outcome import PROOFS, Finding, Recheck, differs, unknown
-from fretc.verification.ajpf_results import evidence as results_of_ajpf
-from fretc.verification.ajpf_results import written
+from fretc.verification.ajpf_results import ajpf_proofs, written
 from fretc.verification.engines.sandbox import Limits
 from fretc.verification.layers.request import Progress, Request
 from fretc.verification.reader import Proofs
@@ -108,7 +107,7 @@ def _prove(
         layers,
         limits,
         provers=sorted({_prover(record.engine) for record in records} - {""}),
-        ajpf=results_of_ajpf(rules, written())[0] if Layer.AJPF in layers else (),
+        ajpf=ajpf_proofs(rules, written())[0] if Layer.AJPF in layers else (),
         progress=progress,
     )
     return prove(replace(project, rules=tuple(rules)), request)

@@ -9,7 +9,7 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
-from fretc.terminal.output import FOLDER, stop
+from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 Command = Callable[..., Any]
@@ -71,7 +71,7 @@ def format_option(*others: str, text: str = "How it is printed.") -> Callable[[C
 
 
 requirements_option = path_option(
-    "--requirements", default=FOLDER, show_default=True, help="Folder, or one file."
+    "--requirements", default=REQUIREMENTS_FOLDER, show_default=True, help="Folder, or one file."
 )
 bindings_option = path_option(
     "--bindings", help="bindings.toml; the one in the requirements' folder if not given."
@@ -81,7 +81,7 @@ hazards_option = path_option(
 )
 evidence_option = path_option(
     "--evidence",
-    default="build/evidence.json",
+    default=EVIDENCE,
     show_default=True,
     help="What `fretc audit` has written.",
 )

@@ -17,8 +17,12 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import Part, plain, render_all, visible
 from fretish.reading.natural_order import by_place
 
-FOLDER = "requirements"
+Piece = tuple[str, str | None]
+"""A text of a line, with its colour if it has one."""
+REQUIREMENTS_FOLDER = "requirements"
 """Where the requirements of a project are, if nobody says otherwise."""
+EVIDENCE = "build/evidence.json"
+"""Where evidence is, if nobody says otherwise."""
 SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
 
@@ -85,7 +89,7 @@ def say_briefly(diagnostics: Sequence[Diagnostic], requirements: str) -> None:
     counts = Counter(each.code.number for each in warnings)
     codes = ", ".join(f"{count} {code}" for code, count in sorted(counts.items()))
     noun = "warning about a sentence" if len(warnings) == 1 else "warnings about sentences"
-    place = "" if requirements == FOLDER else f" --requirements {quote(requirements)}"
+    place = "" if requirements == REQUIREMENTS_FOLDER else f" --requirements {quote(requirements)}"
     if others:
         say_line("")
     say_line(visible(f"{len(warnings)} {noun} ({codes}): see `fretc check{place}`"))
@@ -144,13 +148,24 @@ def protect(outputs: Iterable[Path], protected: Iterable[str]) -> None:
             stop(not_written(str(path), f"it is `{inputs[target]}`, which is read"))
 
 
-def coloured(lines: Sequence[tuple[str, str | None]]) -> str:
+def coloured(lines: Iterable[Piece]) -> str:
     """The lines, each in its colour where standard output is a terminal that wants colours."""
-    colours = _has_colours(sys.stdout)
+    return painted((line,) for line in lines)
+
+
+def painted(lines: Iterable[Sequence[Piece]]) -> str:
+    """Lines of several colours; signs that standard output cannot write are letters."""
+    from fretc.terminal.screen import screen
+
+    colours, signs = _has_colours(sys.stdout), screen().signs
     return "".join(
-        f"{click.style(text, fg=colour) if colours and colour is not None else text}\n"
-        for text, colour in lines
+        f"{''.join(_styled(signs(text), colour if colours else None) for text, colour in line)}\n"
+        for line in lines
     )
+
+
+def _styled(text: str, colour: str | None) -> str:
+    return text if colour is None else click.style(text, fg=colour)
 
 
 def not_written(path: str, why: str) -> Diagnostic:

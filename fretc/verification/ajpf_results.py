@@ -93,7 +93,7 @@ def written() -> tuple[str, ...]:
     return tuple(sorted(map(str, Path().glob(PLACES))))
 
 
-def evidence(
+def ajpf_proofs(
     rules: Sequence[Formalized], paths: Sequence[str]
 ) -> tuple[tuple[Proof, ...], tuple[Diagnostic, ...]]:
     """A proof for each result, in the order of the paths, and the diagnostics of the files.

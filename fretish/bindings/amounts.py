@@ -1,4 +1,4 @@
-"""Numbers for a reader: in declared units, with the significant digits.
+"""Numbers and times for a reader: in declared units, with the digits that mean something.
 
 Audits count in base units, whatever unit the bindings declare; people think in the declared ones.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
 from decimal import Decimal
 from fractions import Fraction
 from math import copysign, floor, inf, isclose, isfinite, isnan, log10
@@ -69,6 +70,18 @@ def exact(number: float, unit: str) -> str:
     return f"{text} {unit}".rstrip()
 
 
+def margin(distance: float, unit: str, bound: float) -> str:
+    """A distance to a bound: its digits end where those of a value beside the bound would.
+
+    The difference of two near numbers has as many decimals as they have, and fewer digits. A
+    distance never looks like none.
+    """
+    finite = distance and bound and isfinite(distance) and isfinite(bound)
+    lost = floor(log10(abs(bound))) - floor(log10(distance)) if finite else 0
+    meant = float(_decimal(distance, max(1, _DIGITS - lost))) if lost > 0 else distance
+    return value(meant, unit, [0.0])
+
+
 def _least_digits(number: float) -> int:
     """All digits before the point, as long as these are no more than a reader takes in."""
     size = floor(log10(abs(number))) + 1 if number else 1
@@ -82,6 +95,39 @@ def _decimal(number: float, digits: int) -> str:
 
 def _side(number: float, bound: float) -> int:
     return (number > bound) - (number < bound)
+
+
+# Times ----------------------------------------------------------------------------------------
+
+
+def decimal(number: float, thousands: str = "") -> str:
+    """At most three decimals, and no zeros at the end: `39.8`, `0.001`, `2`.
+
+    Args:
+        number: any.
+        thousands: what stands between groups of three digits.
+    """
+    if abs(number) >= 10**7:
+        return f"{number:.6g}"
+    text = f"{number:,.3f}".rstrip("0").rstrip(".").replace(",", thousands)
+    return "0" if text == "-0" else text
+
+
+def seconds(number: float) -> str:
+    """A time or a duration, to the millisecond: `39.8 s`."""
+    return f"{decimal(number)} s"
+
+
+def instant(ns: int | None) -> str:
+    """Nanoseconds since 1970 as `2023-11-14 22:13:20.041 UTC`."""
+    if ns is None:
+        return "not known"
+    whole_seconds, rest = divmod(ns, 10**9)
+    try:
+        moment = datetime.fromtimestamp(whole_seconds, UTC)
+    except (OverflowError, ValueError, OSError):
+        return f"{ns} ns"
+    return f"{moment:%Y-%m-%d %H:%M:%S}.{rest // 10**6:03d} UTC"
 
 
 # Units ----------------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from fractions import Fraction
 from fretish import expressions as e
 from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Signal
+from fretish.bindings.expressions import MOST_TICKS_BACK, is_base, ticks_back
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
 from fretish.units import DIMENSIONLESS, ONE, Unit, number, times, unit, unit_product, unit_quotient
@@ -20,6 +21,7 @@ from fretish.units import DIMENSIONLESS, ONE, Unit, number, times, unit, unit_pr
 FUNCTIONS = {
     "absReal": "abs", "absInt": "abs",
     "maxReal": "max", "maxInt": "max", "minReal": "min", "minInt": "min",
+    "preReal": "pre", "preInt": "pre",
 }  # fmt: skip
 """What a function of sentences is called in bindings."""
 
@@ -49,13 +51,38 @@ _PLAIN = _Measure("", ONE, measured=False)
 
 
 def is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool:
-    """Whether every name in it is a signal, and every call a function of bindings."""
+    """Whether every name in it is a signal, and everything computed is known in bindings."""
     parts = list(e.parts(expression))
     names = {part.id for part in parts if isinstance(part, e.Name)}
     calls = {part.name for part in parts if isinstance(part, e.Call)}
-    operators = {part.op for part in parts if isinstance(part, e.Arithmetic)}
     known = names <= signals.keys() and calls <= FUNCTIONS.keys()
-    return bool(names) and known and operators.isdisjoint({"mod", "^"})
+    computable = known and all(map(_is_computable, parts))
+    return bool(names) and computable and ticks_back(expression) <= MOST_TICKS_BACK
+
+
+def _is_computable(part: e.Expression) -> bool:
+    """Whether a power is one of bindings, and a call has the arguments that it has there."""
+    match part:
+        case e.Arithmetic("^", base, exponent):
+            return is_base(base) and _exponent(exponent) is not None
+        case e.Call(name, args) if FUNCTIONS.get(name) in _COUNTS:
+            return len(args) == _COUNTS[FUNCTIONS[name]]
+        case _:
+            return True
+
+
+_COUNTS = {"abs": 1, "pre": 2}
+"""How many numbers a function takes."""
+
+
+def _exponent(written: e.Expression) -> int | None:
+    """A number of few digits that stands there, or None."""
+    match written:
+        case e.Number(digits) if _is_number(digits):
+            exact = number(digits)
+            return int(exact) if exact in range(1, e.MOST_EXPONENT + 1) else None
+        case _:
+            return None
 
 
 def in_own_units(
@@ -119,6 +146,8 @@ class _Writer:
                 return _Measure(signal.unit_name, signal.unit, measured=True)
             case e.Arithmetic("*" | "/" as op, left, right):
                 return self._product(op, left, right)
+            case e.Arithmetic("^", base, exponent):
+                return self._power(base, exponent)
             case _:
                 parts = e.children(part)
                 plain = all(self._measure(each) is None for each in parts)
@@ -142,6 +171,16 @@ class _Writer:
         combined = times(a.unit, b.unit, 1 if op == "*" else -1)
         name = unit_product(a.name, b.name) if op == "*" else unit_quotient(a.name, b.name)
         return _Measure(name, combined, a.measured or b.measured, a.mixed or b.mixed)
+
+    def _power(self, base: e.Expression, exponent: e.Expression) -> _Measure | None:
+        first, count = self._measure(base), _exponent(exponent)
+        assert count is not None, "the comparison is measured"
+        if first is None:
+            return None
+        name, combined = first.name, first.unit
+        for _ in range(count - 1):
+            name, combined = unit_product(name, first.name), times(combined, first.unit)
+        return replace(first, name=name, unit=combined)
 
     def _common(self, parts: Sequence[e.Expression]) -> _Measure:
         """The unit of parts that are compared or added: that of the signals among them."""
@@ -172,6 +211,8 @@ class _Writer:
                 return replace(part, arg=self._written(arg, target))
             case e.Arithmetic("*" | "/", left, right):
                 return self._factors(part, left, right, target)
+            case e.Arithmetic("^"):
+                return self._raised(part, target)
             case e.Arithmetic(_, left, right):
                 left, right = self._written(left, target), self._written(right, target)
                 return replace(part, left=left, right=right)
@@ -191,7 +232,10 @@ class _Writer:
         zero = isinstance(part, e.Number) and number(part.digits) == 0
         if target.mixed and not zero:
             raise _MistakeError(_which_unit(self._span(part)))
-        if self._bare or not target.name:
+        if self._bare:
+            return part
+        part = _in_bindings(part)
+        if not target.name:
             return part
         if unit(target.name) is None:
             raise _MistakeError(_which_unit(self._span(part)))
@@ -211,13 +255,26 @@ class _Writer:
         self, part: e.Arithmetic, left: e.Expression, right: e.Expression, target: _Measure
     ) -> e.Expression:
         """Each factor in its own unit; a product of quantities is converted as a whole."""
-        own = self._measure(part)
-        assert own is not None
         product = replace(
             part,
             left=self._written(left, self._measure(left) or _PLAIN),
             right=self._written(right, self._measure(right) or _PLAIN),
         )
+        return self._converted(product, part, target)
+
+    def _raised(self, part: e.Arithmetic, target: _Measure) -> e.Expression:
+        """A power of what is in its own unit, converted as a whole."""
+        power = replace(part, left=self._written(part.left, self._measure(part.left) or _PLAIN))
+        if not self._bare:  # bindings write exponents with digits alone
+            power = replace(power, right=e.Number(str(_exponent(part.right))))
+        return self._converted(power, part, target)
+
+    def _converted(
+        self, product: e.Arithmetic, part: e.Arithmetic, target: _Measure
+    ) -> e.Expression:
+        """What was written for a part, in the target's unit where nothing is measured in it."""
+        own = self._measure(part)
+        assert own is not None
         if not self._bare or own.measured or own.unit == target.unit:
             return product
         ratio = plain(own.unit.factor / target.unit.factor, part.span)
@@ -238,6 +295,18 @@ def plain(exact: Fraction, span: Span | None = None) -> e.Expression:
     text = str(scaled.numerator).rjust(digits + 1, "0")
     whole, fraction = text[: len(text) - digits], text[len(text) - digits :].rstrip("0")
     return e.Number(f"{whole}.{fraction}" if fraction else whole, span)
+
+
+def _in_bindings(part: e.Expression) -> e.Expression:
+    """What is made of bare numbers alone, as bindings spell it."""
+    parts = [_in_bindings(each) for each in e.children(part)]
+    match e.with_children(part, parts):
+        case e.Call(name, _) as call:
+            return replace(call, name=FUNCTIONS.get(name, name))
+        case e.Arithmetic("^", _, exponent) as power:
+            return replace(power, right=e.Number(str(_exponent(exponent))))
+        case other:
+            return other
 
 
 def _is_number(digits: str) -> bool:

@@ -36,7 +36,7 @@ def constants(expression: e.Expression) -> set[Exact]:
 
 def constant(expression: e.Expression) -> Exact | None:
     """What is computed of numbers alone; None for a truth, a word, and for what is measured."""
-    if isinstance(expression, e.Word) or any(e.names(expression)):
+    if isinstance(expression, e.Word) or any(e.names(expression)) or binding.ticks_back(expression):
         return None
     dimension = binding.dimension(expression, {}, Source("", "").span())
     assert not isinstance(dimension, Diagnostic), "the reader of bindings refuses the expression"
@@ -92,8 +92,6 @@ def computed(op: e.ArithmeticOperator, left: Fraction, right: Fraction) -> Fract
             return left**exponent
 
 
-MOST_EXPONENT = 16
-"""Of a power: it is computed as a product."""
 _MOST_BITS = 1 << 16
 
 
@@ -101,10 +99,10 @@ def whole_exponent(exponent: Fraction) -> int:
     """The exponent of a power.
 
     Raises:
-        ValueError: it is no whole number from 1 to `MOST_EXPONENT`.
+        ValueError: it is no whole number from 1 to `e.MOST_EXPONENT`.
     """
-    if exponent.denominator != 1 or not 1 <= exponent <= MOST_EXPONENT:
-        raise ValueError(f"an exponent is a whole number from 1 to {MOST_EXPONENT}")
+    if exponent.denominator != 1 or not 1 <= exponent <= e.MOST_EXPONENT:
+        raise ValueError(f"an exponent is a whole number from 1 to {e.MOST_EXPONENT}")
     return int(exponent)
 
 

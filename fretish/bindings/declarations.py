@@ -93,6 +93,15 @@ def path(text: str) -> Path | None:
     )
 
 
+class Role(StrEnum):
+    """FRET's types of variable."""
+
+    INPUT = "input"
+    OUTPUT = "output"
+    INTERNAL = "internal"
+    MODE = "mode"
+
+
 @dataclass(frozen=True, slots=True)
 class Signal:
     """A number, or a word, over time, read from one field of one topic.
@@ -102,7 +111,8 @@ class Signal:
     holds the words themselves, or the message's definition says which number each one is.
     `footprint` are the corners of the robot's outline and `sensor` is the pose of the sensor
     (x, y in metres, yaw in radians), both in the robot's frame; for `Reduce.OUTLINE` only.
-    `max_age` is in nanoseconds; None: a sample counts until the next one.
+    `max_age` is in nanoseconds; None: a sample counts until the next one. `role` is for people and
+    other tools; None: nothing says it.
     """
 
     name: str
@@ -114,6 +124,7 @@ class Signal:
     valid: Expression | None = None
     invalid: Invalid = Invalid()
     max_age: int | None = None
+    role: Role | None = None
     footprint: tuple[tuple[float, float], ...] = ()
     sensor: tuple[float, float, float] = (0.0, 0.0, 0.0)
     values: tuple[str, ...] = ()
@@ -124,15 +135,6 @@ class Signal:
     def scale(self) -> Fraction:
         """Factor from samples to base units; a clearance is in base units already."""
         return Fraction(1) if self.reduce is Reduce.OUTLINE else self.unit.factor
-
-
-class Role(StrEnum):
-    """FRET's types of variable."""
-
-    INPUT = "input"
-    OUTPUT = "output"
-    INTERNAL = "internal"
-    MODE = "mode"
 
 
 class Aggregate(StrEnum):
@@ -186,7 +188,7 @@ class Proposition:
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A name of the sentences that is declared and not bound yet, as FRET's glossary has it."""
+    """A name of the sentences, as FRET's glossary has it; bound or not."""
 
     name: str
     component: str = ""
@@ -200,6 +202,10 @@ class Variable:
     modality: Modality = Modality.BELIEF
     action: str = ""
     """What an agent does to make it true; empty: `do_` and its name."""
+    value: Expression | None = None
+    """What it stands for in every sentence: FRET's assignment, in the words of FRETish."""
+    span: Span | None = field(default=None, compare=False, repr=False)
+    """Where `value` stands."""
 
 
 class Form(StrEnum):
@@ -308,6 +314,15 @@ class Declarations:
     def signal_names(self) -> tuple[str, ...]:
         """Every signal that is declared, with or without a mistake."""
         return (*self.signals, *(name for kind, name in self.mistakes if kind == "signal"))
+
+    @property
+    def definitions(self) -> Mapping[str, Expression]:
+        """What variables stand for."""
+        return {
+            name: variable.value
+            for name, variable in self.variables.items()
+            if variable.value is not None
+        }
 
     def reading(self, propositions: Iterable[str]) -> Declarations:
         """The same without the signals that none of the propositions reads."""

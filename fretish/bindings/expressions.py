@@ -1,7 +1,7 @@
 """Expressions of bindings: text → `Expression`, and their dimensions.
 
 A small language of its own, never Python's: signals, numbers with units, words in quotes,
-comparisons, `and`/`or`/`not`, `abs`, `min`, `max`, and `... for 200 ms`.
+comparisons, `and`/`or`/`not`, `abs`, `min`, `max`, `pre` and `... for 200 ms`.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from fretish.units import (
     unknown_unit,
 )
 
-FUNCTIONS = ("abs", "min", "max")
+FUNCTIONS = ("abs", "min", "max", "pre")
 Kind = Dimension | None
 """The dimension of a number; None for a truth value."""
 
@@ -106,6 +106,13 @@ class _Build(Transformer_NonRecursive[Token, Any]):
         left, op, right = children
         return e.Arithmetic(cast(e.ArithmeticOperator, str(op)), left, right)
 
+    def power(self, children: list[Any]) -> e.Expression:
+        base, _, exponent = children
+        place = self._span(exponent)
+        digits = exponent.strip()
+        place = place.part(len(exponent) - len(digits), len(exponent))
+        return e.Arithmetic("^", base, e.Number(digits, place))
+
     def negation(self, children: list[Any]) -> e.Expression:
         return e.Negation(*_parts(children))
 
@@ -181,6 +188,12 @@ def dimension(
                 return _unknown_function(name, span or place)
             if name == "abs" and len(args) != 1:
                 return _wrong_kind("`abs` takes one number", expression, span or place)
+            if name == "pre" and len(args) != 2:
+                why = "`pre` takes the value at the first tick, and a number: `pre(0 m/s, speed)`"
+                return _wrong_kind(why, expression, span or place)
+            if ticks_back(expression) > MOST_TICKS_BACK:
+                why = f"it looks back by more than {MOST_TICKS_BACK} ticks"
+                return _wrong_kind(why, expression, span or place)
             return _numbers(list(args), kinds, span or place)
         case _:
             return _truths(e.children(expression), kinds, place)
@@ -224,8 +237,10 @@ def _numbers(
 def _arithmetic(
     op: str, left: e.Expression, right: e.Expression, kinds: Mapping[str, Kind], place: Span
 ) -> Kind | Diagnostic:
-    if op in "+-":
+    if op in ("+", "-", "mod"):
         return _numbers([left, right], kinds, place)
+    if op == "^":
+        return _power(left, right, kinds, place)
     first, second = _numbers([left], kinds, place), _numbers([right], kinds, place)
     if isinstance(first, Diagnostic):
         return first
@@ -233,6 +248,35 @@ def _arithmetic(
         return second
     sign = 1 if op == "*" else -1
     return tuple(a + sign * b for a, b in zip(first, second, strict=True))
+
+
+def _power(
+    base: e.Expression, exponent: e.Expression, kinds: Mapping[str, Kind], place: Span
+) -> Kind | Diagnostic:
+    dimension = _numbers([base], kinds, place)
+    if isinstance(dimension, Diagnostic):
+        return dimension
+    exact = Fraction(exponent.digits) if isinstance(exponent, e.Number) else Fraction(0)
+    times = int(exact)
+    if times != exact or not 1 <= times <= e.MOST_EXPONENT:
+        message, part = f"an exponent is a whole number from 1 to {e.MOST_EXPONENT}", exponent
+    elif not is_base(base):
+        message, part = "a power of this may grow too large", base
+    else:
+        return tuple(times * each for each in dimension)
+    return Diagnostic(
+        Code.BAD_EXPRESSION,
+        message,
+        getattr(part, "span", None) or place,
+        help="write such as `x^2`, `10^3`, and a product for a power of a power",
+    )
+
+
+def is_base(base: e.Expression) -> bool:
+    """Whether its powers stay small: it is one number, or measured and no power itself."""
+    if not any(e.names(base)):
+        return isinstance(base, e.Number | e.Quantity)
+    return not any(isinstance(part, e.Arithmetic) and part.op == "^" for part in e.parts(base))
 
 
 def _in_words(dimension: Dimension) -> str:
@@ -256,6 +300,28 @@ def _wrong_kind(message: str, part: e.Expression, place: Span) -> Diagnostic:
         getattr(part, "span", None) or place,
         help="compare numbers, `x < 5 m`, and join truth values by `and`, `or`, `not`",
     )
+
+
+MOST_TICKS_BACK = 16
+"""How deep `pre` may stand within itself."""
+
+
+_PRE = frozenset({"pre", "preReal", "preInt"})
+
+
+def ticks_back(expression: e.Expression) -> int:
+    """By how many ticks its value looks back: calls of `pre` within each other.
+
+    In a sentence it is called `preReal` or `preInt`.
+    """
+    deepest = 0
+    waiting = [(expression, 0)]
+    while waiting:
+        part, back = waiting.pop()
+        back += isinstance(part, e.Call) and part.name in _PRE
+        deepest = max(deepest, back)
+        waiting.extend((child, back) for child in e.children(part))
+    return deepest
 
 
 def is_truth(expression: e.Expression) -> bool:

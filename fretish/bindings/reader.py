@@ -28,12 +28,14 @@ from fretish.bindings.declarations import (
     Variable,
     path,
 )
+from fretish.bindings.definitions import circle
 from fretish.bindings.fields import Fields
 from fretish.bindings.interceptor import Loop
 from fretish.bindings.words import words
 from fretish.clock import Clock, End, Rounding, TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
+from fretish.parser import parse_value
 from fretish.reading.limits import within
 from fretish.reading.toml_text import Tables, as_key, read
 
@@ -43,7 +45,7 @@ _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
 _CLOCK = ("time", "tick", "phase", "end", "rounding")
 _SIGNAL = (
     "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
-    "values",
+    "values", "role",
 )  # fmt: skip
 _OF_NUMBERS = ("unit", "valid", "invalid", "reduce", "footprint", "sensor")
 """Fields of a signal that mean nothing beside `values`."""
@@ -105,13 +107,15 @@ class _Reader(Fields):
         self._check_keys(data, _TABLES, "the bindings")
         signals = self._parts("signal", self._signal)
         propositions = self._parts("proposition", self._proposition)
+        variables = {name: self._variable(name, f) for name, f in self._tables("variable").items()}
+        self._check_definitions(variables)
         loop = Loop(self.tables, self.diagnostics)
         return Declarations(
             self.tables.text.source,
             self._clock(),
             signals,
             propositions,
-            {name: self._variable(name, f) for name, f in self._tables("variable").items()},
+            variables,
             tuple(each for each in self.defaults if each.part not in self.mistakes),
             loop.interceptor(),
             self._assumed(loop),
@@ -267,6 +271,9 @@ class _Reader(Fields):
             max_age=self._max_age(table, at),
             footprint=footprint,
             sensor=self._sensor(table, at),
+            role=self._choice(table, (*at, "role"), Role, Role.INTERNAL)
+            if "role" in table
+            else None,
             span=self.tables.value(*at, "path"),
         )
         self.signals[name] = signal
@@ -383,6 +390,14 @@ class _Reader(Fields):
     def _valid(self, table: Mapping[str, Any], at: tuple[str, ...]) -> e.Expression | None:
         valid = self._expression(table, at)
         if valid is None:
+            return None
+        if binding.ticks_back(valid):
+            self._say(
+                Code.BAD_EXPRESSION,
+                "`pre` is of ticks, and a message has none",
+                self.tables.value(*at),
+                "compare the reading with fields of its message",
+            )
             return None
         if any(isinstance(part, e.Word) for part in e.parts(valid)):
             self._say(
@@ -523,6 +538,8 @@ class _Reader(Fields):
         expression = self._truth(written, at)
         if expression is None:
             return None
+        if not self._ticks_fit(table, expression, at):
+            return None
         if table.get("agg", Aggregate.LAST) == Aggregate.LAST:
             last = f"proposition {name}: the last sample of a tick counts"
             self.defaults.append(Default(("proposition", name), last, "agg" in table))
@@ -567,6 +584,34 @@ class _Reader(Fields):
             self.diagnostics.extend(binding.plain_percents(expression, percents, place))
         return expression if kind is None else None
 
+    def _ticks_fit(
+        self, table: Mapping[str, Any], expression: e.Expression, at: tuple[str, ...]
+    ) -> bool:
+        """Whether what looks back by ticks stands where there are ticks."""
+        if not binding.ticks_back(expression):
+            return True
+        place = self.tables.value(*at, "expr")
+        if table.get("agg", Aggregate.LAST) != Aggregate.LAST:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`pre` sees what is in force at each tick: `agg` can only be `last`",
+                self.tables.value(*at, "agg"),
+                "take it out",
+            )
+        elif any(
+            isinstance(part, e.Persistence) and binding.ticks_back(part)
+            for part in e.parts(expression)
+        ):
+            self._say(
+                Code.BAD_EXPRESSION,
+                "`pre` counts ticks, and `for` the time between them",
+                place,
+                "let the requirement say for how long: `for 2 ticks satisfy ...`",
+            )
+        else:
+            return True
+        return False
+
     # Variables that are not bound
 
     def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
@@ -577,13 +622,60 @@ class _Reader(Fields):
             for key in ("component", "type", "role", "text")
         }
         fret = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
+        value, place = self._value(table, (*at, "value"))
+        if value is not None and texts["role"] not in ("", Role.INTERNAL, Role.MODE):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`{name}` stands for something: its role cannot be `{texts['role']}`",
+                self.tables.value(*at, "role"),
+                "it may be internal or mode",
+            )
         return Variable(
             name,
             **texts,
             fret=fret,
             modality=self._modality(table, at),
             action=self._action(table, at),
+            value=value,
+            span=place,
         )
+
+    def _value(
+        self, table: Mapping[str, Any], at: tuple[str, ...]
+    ) -> tuple[e.Expression | None, Span | None]:
+        """What a variable stands for, and where that is written."""
+        text = self._field(table, at, str, 'an expression in quotes: `"1.5 m/s"`')
+        if text is None:
+            return None, None
+        place = self._inside(at, text)
+        value = parse_value(place)
+        if isinstance(value, Diagnostic):
+            self.diagnostics.append(value)
+            return None, place
+        return value, place
+
+    def _check_definitions(self, variables: Mapping[str, Variable]) -> None:
+        """F342 and F343: what a name stands for is said once, and not by way of itself."""
+        values = {name: v.value for name, v in variables.items() if v.value is not None}
+        for name in values:
+            kinds = [kind for kind in ("signal", "proposition") if name in self._tables(kind)]
+            other = f"by `[{kinds[0]}.{name}]`" if kinds else "by FRETish, as the first tick"
+            if kinds or name == "FTP":
+                self._say(
+                    Code.DOUBLE_DEFINITION,
+                    f"`{name}` is defined twice: by its `value`, and {other}",
+                    self.tables.value("variable", name, "value"),
+                    "take one of them out",
+                )
+        chain = circle(values)
+        if chain:
+            self._say(
+                Code.DEFINITION_CIRCLE,
+                f"the values of variables lead in a circle: {' -> '.join(chain[:_MOST_NAMES])}"
+                f"{' ...' if len(chain) > _MOST_NAMES else ''}",
+                self.tables.value("variable", chain[0], "value"),
+                "let one of them stand for numbers and signals alone",
+            )
 
     def _modality(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Modality:
         if table.get("modality") != "P":
@@ -639,7 +731,9 @@ class _Reader(Fields):
         return None
 
 
-_VARIABLE = ("component", "type", "role", "text", "fret", "modality", "action")
+_VARIABLE = ("component", "type", "role", "text", "value", "fret", "modality", "action")
+_MOST_NAMES = 12
+"""Of a circle that a message shows."""
 _ACTION = re.compile(r"[a-z][A-Za-z0-9_]*")
 
 

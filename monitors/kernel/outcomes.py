@@ -1,4 +1,11 @@
-"""What whole traces show of the requirements, from the columns of their signals."""
+"""The outcome of each requirement over a whole trace, from the columns of the monitor's signals.
+
+Two engines give the columns: `evaluate` computes all ticks at once, `stepped` steps the monitor
+tick by tick. Both compute a certain column (`must`) and a possible one (`may`) of each signal.
+
+The text below the imports is copied into every generated monitor to the letter, names and comments
+included: a change of it changes all of them.
+"""
 
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence

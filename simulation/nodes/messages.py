@@ -87,6 +87,34 @@ def number(value: float) -> "Msg":
     return _new("std_msgs/msg/Float64", data=value)
 
 
+def text(value: str) -> "Msg":
+    """A bare text."""
+    return _new("std_msgs/msg/String", data=value)
+
+
+def battery(time: int, charge: float) -> "Msg":
+    """How full the battery is, from 0 to 1; voltages and all the rest are not measured."""
+    return _new(
+        "sensor_msgs/msg/BatteryState",
+        header=_header(time, BASE),
+        voltage=math.nan,
+        temperature=math.nan,
+        current=math.nan,
+        charge=math.nan,
+        capacity=math.nan,
+        design_capacity=math.nan,
+        percentage=charge,
+        power_supply_status=0,
+        power_supply_health=0,
+        power_supply_technology=0,
+        present=True,
+        cell_voltage=np.zeros(0, np.float32),
+        cell_temperature=np.zeros(0, np.float32),
+        location="",
+        serial_number="",
+    )
+
+
 def clock(time: int) -> "Msg":
     """Simulated time."""
     return _new("rosgraph_msgs/msg/Clock", clock=_stamp(time))

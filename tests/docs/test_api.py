@@ -12,6 +12,7 @@ ROOT = Path(__file__).parent.parent.parent
 DOCS = ROOT / "docs/api.md"
 
 
+@pytest.mark.slow
 def test_the_examples_give_what_they_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for folder in ("requirements", "traces"):
         shutil.copytree(ROOT / folder, tmp_path / folder)

@@ -21,16 +21,3 @@ def test_each_command_has_its_row_with_what_it_reads() -> None:
     }
     assert all(rows.values())
     assert all(len(row) == 5 for row in table)
-
-
-def test_each_link_of_the_policy_and_the_model_leads_somewhere() -> None:
-    for name in ("SECURITY.md", "docs/security.md"):
-        text = (ROOT / name).read_text("utf-8")
-        anchors = {
-            re.sub(r"[^a-z0-9 -]", "", title.lower()).replace(" ", "-")
-            for title in re.findall(r"^#+ (.*)$", text, re.MULTILINE)
-        }
-        for target in re.findall(r"\]\(([^)]*)\)", text):
-            file, _, anchor = target.partition("#")
-            assert not file or (ROOT / name).parent.joinpath(file).is_file(), target
-            assert file or anchor in anchors, target

@@ -126,7 +126,7 @@ def test_emitted_files_go_to_build_and_are_named(fretc: Fretc) -> None:
         "",
         UNDECIDED + "wrote build/r1_monitor.py\nwrote build/r1.psl\n"
         "next: `python build/r1_monitor.py TRACE.csv` judges a table with a column for each "
-        "proposition\n"
+        "of its names\n"
         "next: `fretc explain r1.fret` shows what is meant, with a picture\n",
     )
     assert sorted(path.name for path in Path("build").iterdir()) == ["r1.psl", "r1_monitor.py"]
@@ -167,6 +167,7 @@ def test_a_file_of_all_requirements_is_made_of_all_of_them_or_not_at_all(fretc: 
     assert sorted(path.name for path in Path("build").iterdir()) == ["a.json", "b.json"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mask", [0o022, 0o077])
 def test_a_file_with_a_command_line_can_be_run_by_whoever_can_read_it(
     fretc: Fretc, mask: int
@@ -225,6 +226,7 @@ def test_an_output_that_cannot_be_written_leaves_nothing_behind(fretc: Fretc) ->
     assert [path.name for path in Path("build").iterdir()] == ["r1.psl"]
 
 
+@pytest.mark.slow
 def test_requirements_are_read_from_standard_input() -> None:
     run = subprocess.run(
         [sys.executable, "-c", "from fretc.cli import main; main()", "-", "--emit", "ajpf"]

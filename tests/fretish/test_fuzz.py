@@ -24,6 +24,7 @@ def test_a_thousand_parentheses_around_a_name_are_that_name() -> None:
     assert read("(" * 1_000 + "p" + ")" * 1_000) == read("p")
 
 
+@pytest.mark.slow
 def test_a_thousand_levels_of_operators_are_formalized_or_told_to_be_too_deep() -> None:
     text = "the sw shall always satisfy " + "a & (b | " * 1_000 + "c" + ")" * 1_000
     rule, diagnostics = formalize(Requirement("deep", Source("r.fret", text).span()), None)

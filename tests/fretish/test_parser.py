@@ -392,6 +392,7 @@ def test_a_thousand_conjuncts_are_read() -> None:
     assert tree == e.And((q,) * 1000)
 
 
+@pytest.mark.slow
 @given(sentences)
 @example(s.Sentence(None, None, "sw", None, s.Always(), e.Not(e.Comparison("=", e.Negation(x), y))))
 def test_a_printed_sentence_is_read_back_as_the_same_tree(tree: s.Sentence) -> None:
@@ -432,6 +433,7 @@ def test_every_arithmetic_operator_under_every_other_is_read_back() -> None:
                     assert response(expression(tree)) == tree
 
 
+@pytest.mark.slow
 @given(sentences)
 def test_printing_a_sentence_that_was_read_changes_nothing(tree: s.Sentence) -> None:
     assert printed(read(printed(tree))) == printed(tree)

@@ -21,6 +21,8 @@ from fretish.units import DIMENSIONLESS, NAMES, base_name, nanoseconds, unit
         ("h", Fraction(3600), "s"),
         ("m/s", Fraction(1), "m/s"),
         ("km/h", Fraction(5, 18), "m/s"),
+        ("kn", Fraction(463, 900), "m/s"),
+        ("ft", Fraction(381, 1250), "m"),
         ("m/s^2", Fraction(1), "m/s^2"),
         ("m/s2", Fraction(1), "m/s^2"),
         ("kg*m/s^2", Fraction(1), "m*kg/s^2"),

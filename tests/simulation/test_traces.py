@@ -2,12 +2,14 @@ from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 
+import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
 TRACES = Path(__file__).parents[2] / "traces"
 
 
+@pytest.mark.slow
 def test_the_readme_of_the_traces_says_what_is_in_the_log() -> None:
     (path,) = TRACES.glob("*.mcap")
     text = (TRACES / "README.md").read_text(encoding="utf-8")

@@ -22,9 +22,10 @@ from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
+from compiler.formalization.resolution import candidates
 from compiler.logic import formula as f
-from compiler.logic.printing import is_compound
 from compiler.targets.ajpf import without_next as nextfree
+from compiler.targets.comparison_names import comparison_names, definitions
 from compiler.targets.target import (
     DEFAULT,
     Options,
@@ -34,10 +35,11 @@ from compiler.targets.target import (
     too_long,
 )
 from fretish import syntax as s
+from fretish.bindings.comparisons import FUNCTIONS
 from fretish.bindings.declarations import Modality
 from fretish.checking import LOOK_AHEAD, LOOK_BACK, calls, conditions
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
-from fretish.expressions import names
+from fretish.expressions import Comparison, names
 from fretish.printer import timing as printing_of
 from fretish.reading.recursion import deep
 
@@ -174,10 +176,17 @@ def _refused_name(rule: Formalized) -> Diagnostic | None:
     if not AGENT.fullmatch(agent) or agent in KEY_WORDS:
         mend = "begin with a letter, use letters, digits and `_` only, and no key word of AJPF"
         return _not(rule, f"the agent name `{agent}`", mend)
-    for name in rule.propositions:
-        if is_compound(name):
+    spelt = comparison_names(rule)
+    compared = {
+        atom
+        for atom, part in candidates(rule.sentence)
+        if isinstance(part, Comparison) and FUNCTIONS.keys() >= {*calls(part)}
+    }
+    for atom in rule.propositions:
+        if atom in spelt and atom not in compared:
             mend = "give it a name of its own that begins with a small letter, and bind that"
-            return _not(rule, f"the proposition `{name}`", mend)
+            return _not(rule, f"the proposition `{atom}`", mend)
+        name = spelt.get(atom, atom)
         if not FUNCTOR.fullmatch(name):
             mend = "begin with a small letter, and use letters, digits and `_` only"
             return _not(rule, f"the proposition `{name}`", mend)
@@ -253,12 +262,12 @@ def _controls(rule: Formalized, key: str) -> Iterator[tuple[str, f.Formula, str]
 
 
 def _text(formula: f.Formula, rule: Formalized) -> str:
-    agent = rule.sentence.component
+    agent, spelt = rule.sentence.component, comparison_names(rule)
 
     def spell(name: str) -> str:
         declared = rule.glossary.get(name)
         modality = declared.modality if declared else Modality.BELIEF
-        return f"{modality}({agent},{name})"
+        return f"{modality}({agent},{spelt.get(name, name)})"
 
     return property_text(formula, spell)
 
@@ -317,6 +326,7 @@ def text(rule: Formalized, options: Options = DEFAULT) -> str:
         id=rule.id,
         sentence=" ".join(rule.requirement.wording.text.split()),
         loss=weakened(rule, options),
+        definitions=definitions(rule),
         properties=properties(rule, options),
     )
 

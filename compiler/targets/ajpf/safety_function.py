@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 from compiler.agents.gwendolen import Action, Change, Deed, Guard
 from compiler.formalization.formalized import Formalized
+from compiler.targets.comparison_names import comparison_names
 from compiler.targets.target import not_expressible
 from fretish import expressions as e
 from fretish import syntax as s
@@ -70,6 +71,10 @@ def sif(rule: Formalized, guarded: bool = True) -> Sif | Diagnostic:
         guarded: whether plans ask for the rest of the condition, where there is any.
     """
     sentence = rule.sentence
+    comparison = next(iter(comparison_names(rule)), None)
+    if comparison is not None:
+        mend = "give it a name of its own, and bind that; `--emit ajpf` writes the property alone"
+        return not_expressible(_TARGET, rule, f"`{comparison}`", mend)
     if sentence.condition is None:
         mend = "an agent reacts to an event: state what triggers it, `whenever ...`"
         return not_expressible(_TARGET, rule, "a sentence without a condition", mend)

@@ -20,6 +20,7 @@ from compiler.logic.implicants import Term
 from compiler.targets.automata.chart import PLACES, chart
 from compiler.targets.automata.expressibility import refusal
 from compiler.targets.automata.folding import OPEN, SATISFIED, VIOLATED, Edge, Node, folded
+from compiler.targets.comparison_names import comparison_names, notes, renamed
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.meaning import meaning
@@ -45,7 +46,9 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
 def _text(rule: Formalized) -> str:
     picture = folded(rule)
     automaton = chart(rule)
-    inputs, guard = automaton.inputs, automaton.guard
+    names = comparison_names(rule)
+    inputs = {i: renamed(part, names) for i, part in automaton.inputs.items()}
+    guard = automaton.guard
     long = {i: part for i, part in inputs.items() if len(printing.readable(part)) > _LONGEST}
     spelt = {i: f.Atom(PLACES[i]) if i in long else part for i, part in inputs.items()}
     return render(
@@ -65,6 +68,7 @@ def _caption(rule: Formalized, long: Mapping[int, f.Formula], nodes: Sequence[No
     lines = [f"{rule.id}: {wording(rule.requirement)}"]
     lines.append(meaning(rule.written, rule.ticks, rule.clock))
     lines.extend(f"{PLACES[i]}: {printing.readable(part)}" for i, part in long.items())
+    lines.extend(notes(rule))
     if any(node.counts for node in nodes):
         lines.append("On edges: [a condition on k], / what k becomes.")
     if any(not node.accepts and node.name != VIOLATED for node in nodes):

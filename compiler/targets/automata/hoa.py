@@ -23,6 +23,7 @@ from compiler.logic import printing
 from compiler.logic.implicants import Term
 from compiler.targets.automata.chart import PLACES, Chart, chart, kind, words
 from compiler.targets.automata.expressibility import refusal
+from compiler.targets.comparison_names import comparison_names, notes
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import deep
@@ -44,6 +45,7 @@ def _text(rule: Formalized) -> str:
     atoms = tuple(
         dict.fromkeys(name for part in automaton.inputs.values() for name in f.atoms(part))
     )
+    names = comparison_names(rule)
     numbers = _numbers(automaton)
     rejecting = [old for old in numbers if not automaton.accepts(old)]
     return render(
@@ -51,7 +53,8 @@ def _text(rule: Formalized) -> str:
         id=rule.id,
         version=__version__,
         sentence=_comment(wording(rule.requirement)),
-        propositions=[printing.readable(f.Atom(name)) for name in atoms],
+        propositions=[names.get(name, printing.readable(f.Atom(name))) for name in atoms],
+        notes=[_comment(note) for note in notes(rule)],
         buchi=bool(rejecting),
         # Then no cycle has both accepting and rejecting states.
         weak=set(rejecting) <= {automaton.violated},

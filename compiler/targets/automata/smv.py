@@ -9,20 +9,22 @@ Source of the language: Cavada et al., NuSMV 2.6 User Manual, chapters 2 and 3.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.letters import atoms_of
+from compiler.formalization.letters import atoms_of, excluded
 from compiler.formalization.obligation import TRAITS, Obligation, Trait, obligation
 from compiler.formalization.record import wording
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
+from compiler.logic.orders import Exclusion
 from compiler.targets.automata.expressibility import no_automaton
 from compiler.targets.automata.smv_symbols import monitor
+from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.checking import RESERVED
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -63,7 +65,9 @@ def _text(rule: Formalized) -> str:
     instance = f"the_{monitor_name}"
     # Formulas may lack some propositions: `only after m` drops m where it demands nothing.
     propositions = tuple(dict.fromkeys((*rule.propositions, *atoms_of(rule.sentence))))
-    names = legal_names(propositions, _RESERVED | {instance, monitor_name})
+    reserved = _RESERVED | {instance, monitor_name}
+    names = legal_names(propositions, reserved, names=comparison_names(rule))
+    meanings = in_words(rule)
     module = monitor(demanded)
     dialect = replace(printing.NUSMV, atom=names.__getitem__, full=True)
     actual = {
@@ -76,7 +80,8 @@ def _text(rule: Formalized) -> str:
         "smv/monitor.smv.j2",
         id=rule.id,
         sentence=wording(rule.requirement),
-        variables=[(names[name], name) for name in propositions],
+        variables=[(names[name], meanings.get(name, name)) for name in propositions],
+        impossible=[_together(each, names) for each in excluded(rule)],
         instance=instance,
         module_name=monitor_name,
         module=module,
@@ -84,6 +89,10 @@ def _text(rule: Formalized) -> str:
         negated=demanded.scope is not None and demanded.scope.negates,
         specs=_specs(rule, demanded, (plain, instance), dialect),
     )
+
+
+def _together(exclusion: Exclusion, names: Mapping[str, str]) -> str:
+    return " & ".join(f"{'' if value else '!'}{names[name]}" for name, value in exclusion)
 
 
 def _specs(

@@ -334,5 +334,5 @@ TARGET = Target(
     emit,
     refuse,
     remark,
-    next_step="`python {} TRACE.csv` judges a table with a column for each proposition",
+    next_step="`python {} TRACE.csv` judges a table with a column for each of its names",
 )

@@ -21,6 +21,7 @@ from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
+from fretish.printer import identifier
 
 _PREFERENCE = ("m/s", "m", "rad/s")
 """Units of the signals that a first requirement is best about; any other comes after them."""
@@ -39,11 +40,6 @@ class Bound:
     unit: str
     """Empty: a plain number."""
 
-    @property
-    def comparison(self) -> str:
-        """As an expression of the bindings."""
-        return f"{self.signal} <= {self.limit} {self.unit}".rstrip()
-
 
 @dataclass(frozen=True, slots=True)
 class FirstRequirement:
@@ -53,8 +49,6 @@ class FirstRequirement:
     text: str
     rationale: str
     sentence: str
-    bindings: str
-    """Tables to put behind the signals; empty where the sentence reads these itself."""
 
 
 def first_requirement(bound: Bound, origin: str) -> FirstRequirement:
@@ -64,16 +58,11 @@ def first_requirement(bound: Bound, origin: str) -> FirstRequirement:
         bound: what is required.
         origin: where the limit comes from, as the rest of a sentence.
     """
-    name = f"{bound.signal}_within_limit"
-    text = f"{bound.comparison}, always"
     return FirstRequirement(
         title=f"Limit of {bound.signal}",
-        text=text,
+        text=f"{bound.signal} is at most {bound.limit} {bound.unit}".rstrip() + ", always.",
         rationale=f"To do: say why. The limit {origin}",
-        sentence=f"the robot shall always satisfy {name}",
-        bindings=render(
-            "project/proposition.toml.j2", proposition=name, text=text, expression=bound.comparison
-        ),
+        sentence=f"the robot shall always satisfy {identifier(bound.signal)} <= {bound.limit}",
     )
 
 
@@ -96,7 +85,7 @@ def without_log() -> Beginning:
 
 def from_log(log: str) -> Beginning | Diagnostic:
     """The beginning of a project whose first requirement is about a signal of the log."""
-    overview = look(log)
+    overview = look(log, words=True)
     if isinstance(overview, Diagnostic):
         return overview
     signals = _signals(overview)
@@ -117,17 +106,17 @@ def from_log(log: str) -> Beginning | Diagnostic:
 def _files(requirement: FirstRequirement, signals: str) -> dict[str, str]:
     texts = (
         render("project/r1.fret.j2", requirement=requirement),
-        f"{signals.rstrip()}\n\n{requirement.bindings}".rstrip() + "\n",
+        f"{signals.rstrip()}\n",
         render("project/hazards.toml.j2"),
     )
     return dict(zip(_NAMES, texts, strict=True))
 
 
 def _signals(overview: Overview) -> str:
-    """Clock and signals; of a log without a well-known type of message every plain number."""
+    """Clock and signals; of a log without a well-known type of message every field."""
     text = draft(overview, ())
     plain = () if drafted_signals(overview) else plain_signals(overview)
-    return text + "".join(render("project/signal.toml.j2", signal=signal) for signal in plain)
+    return text + render("project/signals.toml.j2", signals=plain)
 
 
 def _bounds(declarations: Declarations, recording: Recording) -> Iterator[Bound]:
@@ -138,7 +127,7 @@ def _bounds(declarations: Declarations, recording: Recording) -> Iterator[Bound]
     )
     for signal in signals:
         samples = recording.samples.get(signal.name)
-        if samples is None or not samples.values.size:
+        if samples is None or signal.values or not samples.values.size:
             continue
         largest = float(samples.values.max())
         if np.isfinite(samples.values).all():

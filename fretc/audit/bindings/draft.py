@@ -13,16 +13,18 @@ from math import gcd
 
 from compiler.files.edition import __version__
 from compiler.files.templating import render
+from compiler.formalization import binding_agreement
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.audit.bindings.quantities import QUANTITIES, Quantity
-from fretc.logs.messages.leaves import Kind, Leaves, numbers
+from fretc.logs.messages.leaves import Kind, Leaves
 from fretc.logs.reader import Overview
 from fretc.logs.signals.samples import Topic
 from fretc.logs.vocabulary import Words
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.bindings.declarations import Role, path, short_type
+from fretish.bindings.declarations import Declarations, Role, path, short_type
+from fretish.checking import RESERVED
 from fretish.clock import NANOSECONDS, in_words
 
 _TICK = 100 * 10**6
@@ -87,18 +89,30 @@ class MissingProposition:
     aggregate: str
 
 
+@dataclass(frozen=True, slots=True)
+class MissingSignal:
+    """A signal that comparisons of the requirements name and no bindings declare."""
+
+    name: str
+    requirements: tuple[str, ...]
+
+
 def draft(
-    overview: Overview, missing: Sequence[MissingProposition], durations: Sequence[int] = ()
+    overview: Overview,
+    missing: Sequence[MissingProposition],
+    durations: Sequence[int] = (),
+    unread: Sequence[MissingSignal] = (),
 ) -> str:
     """The text of a `bindings.toml`.
 
-    Without missing propositions it can be read as it is; each of these is an error until edited,
-    but for one that is called as a signal that is true or false.
+    With nothing missing it can be read as it is; what is missing is an error until edited, but for
+    a proposition that is called as a signal that is true or false, and a signal of the draft.
 
     Args:
         overview: of a log, with its words.
         missing: propositions that sentences name and nothing declares.
         durations: those of the sentences; each is a whole number of ticks.
+        unread: signals that sentences compare and nothing declares.
     """
     topics = _topics(overview)
     signals = [signal for topic in topics for signal in topic.signals]
@@ -111,6 +125,7 @@ def draft(
         why=why,
         topics=topics,
         missing=missing,
+        unread=[each for each in unread if each.name not in {signal.name for signal in signals}],
         flags={signal.name for signal in signals if _is_flag(overview, signal)},
         example=_example(overview, signals),
     )
@@ -122,19 +137,29 @@ def drafted_signals(overview: Overview) -> tuple[Drafted, ...]:
 
 
 def plain_signals(overview: Overview) -> tuple[Drafted, ...]:
-    """A signal for each number of a message whose type says nothing: without a unit."""
+    """A signal for each field of a message whose type says nothing: a word, or without a unit."""
     taken: set[str] = set()
     return tuple(
-        _named(_plain(topic, field), taken)
+        _named(_plain(topic, field, values), taken)
         for name, topic in overview.recording.topics.items()
-        for field in numbers(overview.leaves.get(name) or {})
-        if topic.count and "[" not in field and _is_worth(field) and path(f"{name}.{field}")
+        for field, values in _fields(overview, name).items()
+        if topic.count and "[" not in field and path(f"{name}.{field}")
     )
 
 
-def _plain(topic: Topic, field: str) -> Drafted:
-    name = _word(f"{topic.name}_{field}")
-    return Drafted(name, topic.name, short_type(topic.type), Quantity(field, ""), _max_age(topic))
+def _plain(topic: Topic, field: str, values: tuple[str, ...]) -> Drafted:
+    name, type_ = _word(f"{topic.name}_{field}"), short_type(topic.type)
+    return Drafted(name, topic.name, type_, Quantity(field, ""), _max_age(topic), values)
+
+
+def _fields(overview: Overview, topic: str) -> dict[str, tuple[str, ...]]:
+    """The fields of a topic that a signal could read, each with the words that it may be."""
+    leaves, words = overview.leaves.get(topic) or {}, overview.words.get(topic, {})
+    return {
+        field: (*leaf.names, *(words.get(field) or ()))
+        for field, leaf in leaves.items()
+        if _is_worth(field) and (leaf.kind is not Kind.TEXT or words.get(field))
+    }
 
 
 def _is_flag(overview: Overview, signal: Drafted) -> bool:
@@ -169,9 +194,28 @@ def missing_propositions(project: Project) -> tuple[MissingProposition, ...]:
         if rule.requirement.status == "retired":
             continue
         for name in rule.watched:
-            if name not in defined:
+            if name not in defined and not _unread(rule, name, declared):
                 users.setdefault(name, []).append(rule)
     return tuple(_missing_proposition(name, rules) for name, rules in users.items())
+
+
+def missing_signals(project: Project) -> tuple[MissingSignal, ...]:
+    """The signals that comparisons of the requirements lack."""
+    users: dict[str, dict[str, None]] = {}
+    for rule in project.rules:
+        if rule.requirement.status == "retired":
+            continue
+        for name in rule.watched:
+            for signal in _unread(rule, name, project.declarations):
+                users.setdefault(signal, {})[rule.id] = None
+    return tuple(MissingSignal(name, tuple(ids)) for name, ids in users.items())
+
+
+def _unread(rule: Formalized, name: str, declared: Declarations | None) -> tuple[str, ...]:
+    """The signals that one of its comparisons lacks; none where it is bound itself."""
+    if declared is not None and name in declared.propositions:
+        return ()
+    return binding_agreement.missing_signals(rule, name, declared.signals if declared else {})
 
 
 def durations(project: Project) -> tuple[int, ...]:
@@ -214,11 +258,7 @@ def _topics(overview: Overview) -> list[TopicDraft]:
         drafted = _drafted(topic, leaves or {}, words)
         signals = tuple(_named(signal, names) for signal in drafted)
         paths_of_signals = {signal.path for signal in signals}
-        fields = {
-            f"{name}.{field}": (*leaf.names, *(words.get(field) or ()))
-            for field, leaf in (leaves or {}).items()
-            if _is_worth(field) and (leaf.kind is not Kind.TEXT or words.get(field))
-        }
+        fields = {f"{name}.{field}": each for field, each in _fields(overview, name).items()}
         others = tuple(
             Other(each, values)
             for each, values in fields.items()
@@ -256,7 +296,8 @@ def _word(text: str) -> str:
     return word if word[:1].isalpha() else f"topic_{word}"
 
 
-_RESERVED = {"and", "or", "not", "for", "true", "false", "abs", "min", "max"}
+_RESERVED = {"and", "or", "not", "for", "true", "false", "abs", "min", "max", *RESERVED}
+"""Words that are no names of signals, in bindings or in sentences."""
 
 
 def _named(signal: Drafted, names: set[str]) -> Drafted:
@@ -317,7 +358,9 @@ def _max_age(topic: Topic) -> str:
 def _tick(overview: Overview, signals: Sequence[Drafted]) -> tuple[int, str]:
     """A tick in which each fast topic comes once, and what it was taken from."""
     topics = overview.recording.topics
-    drafted = dict.fromkeys(signal.topic for signal in signals)
+    drafted = dict.fromkeys(signal.topic for signal in signals) or dict.fromkeys(
+        name for name in topics if _fields(overview, name)
+    )
     periods = {name: period for name in drafted if (period := _period(topics[name])) is not None}
     if not periods:
         return _TICK, "no topic has a rate: a guess"

@@ -1,8 +1,8 @@
-"""Evidence in the units that the bindings declare, for every output."""
+"""Evidence and results in the units that the bindings declare, for every output."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import isinf
 
@@ -22,6 +22,20 @@ def in_declared_units(evidence: Evidence, declared: Declarations | None) -> Evid
     if declared is None:
         return evidence
     return evidence.with_results([_result(each, declared.signals) for each in evidence.results])
+
+
+def without_samples(results: Sequence[Result], declared: Declarations | None) -> tuple[Result, ...]:
+    """Results as above, without the samples around their violations: those are many.
+
+    Args:
+        results: in base units.
+        declared: the bindings.
+    """
+    bare = [
+        replace(each, violations=tuple(replace(v, surroundings=None) for v in each.violations))
+        for each in results
+    ]
+    return tuple(_result(each, declared.signals) if declared else each for each in bare)
 
 
 def _result(result: Result, declared: Mapping[str, Signal]) -> Result:

@@ -28,6 +28,8 @@ from compiler.formalization.record import wording
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import ANNOTATIONS
+from fretc.audit.outputs.violated_values import values
+from fretish.bindings.amounts import seconds
 from monitors import kernel
 
 VERDICTS = "/fretc/verdicts"
@@ -72,7 +74,7 @@ def sidecars(
     """A file for each run that could be read; the same results give the same bytes.
 
     Args:
-        results: each of a run and a requirement, as in the evidence.
+        results: each of a run and a requirement, in declared units.
         rules: all requirements of the results.
         folder: where the files go.
     """
@@ -88,7 +90,7 @@ def sidecar(results: Sequence[Result], rules: Sequence[Formalized]) -> bytes:
     """The log of one run: what happened, in order of time.
 
     Args:
-        results: of that run, one for each requirement.
+        results: of that run, one for each requirement, in declared units.
         rules: all requirements of the results.
     """
     by_id = {rule.id: rule for rule in rules}
@@ -135,12 +137,13 @@ def _events(result: Result, rules: Mapping[str, Formalized]) -> Iterator[_Event]
     for trigger in triggers.values():
         yield event(trigger.ns, _INFO, f"{id}: triggered")
     for answer in result.answers:
-        waited = _seconds(answer.ns - triggers[answer.trigger].ns)
+        waited = seconds((answer.ns - triggers[answer.trigger].ns) / _SECOND)
         yield event(answer.ns, _INFO, f"{id}: answered after {waited}")
     for violation in result.violations:
         cause = violation.trigger
-        since = f", triggered at {cause.seconds:.3f} s" if cause else ""
-        yield event(violation.start_ns, _ERROR, f"{id}: violated from here on{since}")
+        at_first = f": {values(result, violation)}" if violation.values else ""
+        since = f", triggered at {seconds(cause.seconds)}" if cause else ""
+        yield event(violation.start_ns, _ERROR, f"{id}: violated from here on{since}{at_first}")
         yield event(violation.end_ns, _ERROR, f"{id}: violated up to here")
     verdict = f"{id}: {result.verdict}: {result.reason}"
     assert result.end_ns is not None, "there is a sidecar of what could be read only"
@@ -194,10 +197,6 @@ def _stem(run: str) -> str:
 def _safe(text: str) -> str:
     """A name for a file or a folder, and never one that leads elsewhere."""
     return re.sub(r"[^\w.-]|^\.+", "_", text)
-
-
-def _seconds(ns: int) -> str:
-    return f"{ns / _SECOND:.3f} s"
 
 
 def _time(ns: int) -> dict[str, int]:

@@ -7,18 +7,16 @@ GitHub, Workflow commands for GitHub Actions.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
+from collections.abc import Iterator, Sequence
 from itertools import groupby
-from types import MappingProxyType
 from xml.etree import ElementTree
 
 from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.probabilities import AVERAGE, Estimated
 from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import Level
-from fretish.bindings.amounts import declared_unit, scaled, value
-from fretish.bindings.declarations import Signal
+from fretc.audit.outputs.violated_values import reason, values
+from fretish.bindings.amounts import seconds
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.source import Span
 from fretish.documents import Requirement
@@ -27,17 +25,12 @@ _NOT_XML = re.compile("[^\t\n\r\u0020-~\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U00
 _GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
 
 
-def junit(
-    results: Sequence[Result],
-    estimates: Sequence[Estimated] = (),
-    signals: Mapping[str, Signal] = MappingProxyType({}),
-) -> str:
+def junit(results: Sequence[Result], estimates: Sequence[Estimated] = ()) -> str:
     """One test suite for each run, one test case for each requirement.
 
     Args:
-        results: each of a run and a requirement, as in the evidence.
+        results: each of a run and a requirement, in declared units.
         estimates: those that are judged over all runs, which is a suite of its own.
-        signals: those of the bindings, whose units numbers have.
     """
     root = ElementTree.Element("testsuites", name="fretc audit")
     for run, of_run in groupby(results, key=lambda result: result.run):
@@ -45,7 +38,7 @@ def junit(
         counts = counted([verdicts.junit(case.verdict) for case in cases])
         suite = ElementTree.SubElement(root, "testsuite", {"name": valid(run), **counts})
         for case in cases:
-            _case(suite, run, case, signals)
+            _case(suite, run, case)
     if estimates:
         _suite_of_all(root, estimates)
     return as_text(root)
@@ -77,9 +70,7 @@ def _suite_of_all(root: ElementTree.Element, estimates: Sequence[Estimated]) -> 
             element.text = valid("\n".join(one.lines))
 
 
-def _case(
-    suite: ElementTree.Element, run: str, case: Result, signals: Mapping[str, Signal]
-) -> None:
+def _case(suite: ElementTree.Element, run: str, case: Result) -> None:
     length = (case.end_ns or 0) - (case.start_ns or 0)
     node = ElementTree.SubElement(
         suite,
@@ -92,28 +83,14 @@ def _case(
     if kind:
         message = valid(f"{case.verdict}: {case.reason}")
         element = ElementTree.SubElement(node, kind, message=message)
-        element.text = valid("\n".join(_lines(case, signals)))
+        element.text = valid("\n".join(_lines(case)))
 
 
-def _lines(case: Result, signals: Mapping[str, Signal]) -> Iterator[str]:
-    """Each stretch at which the requirement was violated, with the samples of its signals."""
-    units = {n: declared_unit(n, base, signals) for n, base in case.units.items()}
-    bounds = {name: _bounds(case, name, factor) for name, (_, factor) in units.items()}
+def _lines(case: Result) -> Iterator[str]:
+    """Each stretch at which the requirement was violated, with the values of its signals."""
     for broken in case.violations:
-        values = ", ".join(
-            f'{name} = "{known}"'
-            if isinstance(known, str)
-            else f"{name} = {value(scaled(known, units[name][1]), units[name][0], bounds[name])}"
-            for name, known in broken.values.items()
-        )
-        stretch = f"{broken.start_s:.3f} s to {broken.end_s:.3f} s"
-        yield f"{stretch}: {values}" if values else stretch
-
-
-def _bounds(case: Result, signal: str, factor: Fraction) -> list[float]:
-    """What a signal, or its absolute value, is compared with."""
-    thresholds = (t for t in case.thresholds if t.signal in (signal, f"abs({signal})"))
-    return [sign * scaled(each.bound, factor) for each in thresholds for sign in (1, -1)]
+        stretch = f"{seconds(broken.start_s)} to {seconds(broken.end_s)}"
+        yield f"{stretch}: {values(case, broken)}" if broken.values else stretch
 
 
 def valid(text: str) -> str:
@@ -129,13 +106,18 @@ def github(
     """A line for each result, at the sentence of its requirement.
 
     Of a run that only counts (`trials`) it is a notice: what all runs say follows.
+
+    Args:
+        results: each of a run and a requirement, in declared units.
+        requirements: of the results.
+        estimates: those that are judged over all runs.
     """
     places = {requirement.id: requirement.wording for requirement in requirements}
     lines = []
     for result in results:
         level = "notice" if result.trials is not None else _GITHUB[verdicts.level(result.verdict)]
         title = f"{result.requirement} {result.verdict}"
-        message = f"{result.run}: {result.reason}"
+        message = f"{result.run}: {reason(result)}"
         lines.append(_annotation(level, places[result.requirement], title, message))
     for one in estimates:
         level, title = _GITHUB[verdicts.level(one.answer)], f"{one.requirement} {one.answer}"

@@ -23,6 +23,7 @@ from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT, Level
+from fretc.audit.outputs.violated_values import reason
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span
 from fretish.documents import Requirement
@@ -84,7 +85,7 @@ def sarif(
     """One SARIF run; the same inputs give the same bytes.
 
     Args:
-        results: each of a run and a requirement, in the order of the evidence.
+        results: each of a run and a requirement, in declared units, in the order of the evidence.
         rules: all requirements of the results; others are left out.
         diagnostics: what there is to say of the logs.
         estimates: requirements that are judged over all runs: each gives one more result.
@@ -159,7 +160,7 @@ def _files(results: Sequence[OneRun], used: Sequence[Requirement]) -> dict[str, 
 def _result(one: OneRun, used: Sequence[Requirement], files: Sequence[str]) -> dict[str, Any]:
     result, suspicions = one.result, one.suspicions
     level = _LEVELS[verdicts.level(one.verdict, suspect=bool(suspicions))]
-    message = f"{result.run}: {one.verdict}: {result.reason}{_because(suspicions)}"
+    message = f"{result.run}: {one.verdict}: {reason(result)}{_because(suspicions)}"
     return _at_sentence(result.requirement, result.run, used, files) | {
         **(level if result.trials is None else _COUNTED),
         "message": {"text": message},

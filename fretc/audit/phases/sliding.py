@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fretc.logs.signals.past_values import PastValues, Places, past_values
 from fretc.logs.signals.propositions import UNKNOWN, States, Steps, evaluate, truth_values
 from fretc.logs.signals.samples import Recording, Times
 from fretc.logs.signals.traces import combined, complete_from, first_before, origin, packed
@@ -118,32 +119,92 @@ def _slide(
 ) -> Slide:
     period = declarations.clock.period
     assert period is not None
+    past = past_values(proposition, declarations, recording)
+    if past is not None:
+        return _slide_of_past(past, start, length, period)
     steps = evaluate(proposition, declarations, recording)
     begun = recording.start_ns, complete_from(proposition, recording)
-    first_times, first = _first(steps, proposition, begun, start, min(period - 1, length))
-    later_times, later = _later(steps, proposition, start, length, period)
-    grid = start + np.arange(1, length // period + 1, dtype=np.int64) * period
-    base = np.concatenate([first[:1], later[np.searchsorted(later_times, grid, "right") - 1]])
-    times, states = _changes(first_times, first, later_times, later)
+    first = _first(steps, proposition, begun, start, min(period - 1, length))
+    later = _later(steps, proposition, start, length, period)
+    cut = _cut(steps, proposition, start, length, period)
+    return _joined([first], later, cut, start, length, period)
+
+
+Seen = tuple[Times, States]
+"""What a tick sees where it is at each of these times, and until the next of them."""
+
+
+def _joined(
+    firsts: Sequence[Seen], later: Seen, cut: Seen, start: int, length: int, period: int
+) -> Slide:
+    """The slide of the first ticks, one after the other, and of all later ones."""
+    later_times, later_states = later
+    grid = start + np.arange(len(firsts), length // period + 1, dtype=np.int64) * period
+    base = [states[:1] for _, states in firsts]
+    base.append(later_states[np.searchsorted(later_times, grid, "right") - 1])
+    changes = [_changes(times, states) for times, states in (*firsts, later)]
+    times = np.concatenate([times for times, _ in changes])
+    states = np.concatenate([states for _, states in changes])
     ticks, phases = np.divmod(times - start, period)
     order = np.argsort(phases, kind="stable")
     order = order[phases[order] > 0]  # at phase 0 it is the base
-    cut_phases, cut_states = _cut(steps, proposition, start, length, period)
-    return Slide(base, phases[order], ticks[order], states[order], cut_phases, cut_states)
+    return Slide(np.concatenate(base), phases[order], ticks[order], states[order], *cut)
+
+
+def _slide_of_past(past: PastValues, start: int, length: int, period: int) -> Slide:
+    """Of a proposition that looks back by ticks: a tick sees what each of them has in force.
+
+    So its state changes where something comes, and a tick, two ticks, and so on, later.
+    """
+    back = min(past.back, length // period + 1)
+    shifts = np.arange(past.back + 1, dtype=np.int64) * period
+    moments = (past.times[:, None] + shifts).ravel()
+    firsts = []
+    for tick in range(back):
+        begin = start + tick * period
+        times = _within(moments, begin, min(begin + period - 1, start + length))
+        firsts.append((times, past.states(_places(past, times, tick, period))))
+    times = _within(moments, start + back * period, start + length)
+    later = times, past.states(_places(past, times, past.back, period))
+    return _joined(firsts, later, _cut_of_past(past, start, length, period), start, length, period)
+
+
+def _places(past: PastValues, times: Times, before: int, period: int) -> list[Places]:
+    """What is in force at a tick at each of these times, and at so many ticks before it."""
+    return [_in_force(past, times - back * period) for back in range(before + 1)]
+
+
+def _in_force(past: PastValues, times: Times) -> Places:
+    return np.searchsorted(past.times, times, "right") - 1
+
+
+def _cut_of_past(past: PastValues, start: int, length: int, period: int) -> Seen:
+    """As `_cut`: the tick before the cut one is the last whole one, if there is any."""
+    end = start + length
+    shifts = np.arange(past.back, dtype=np.int64) * period
+    lasts = _within((past.times[:, None] + shifts).ravel(), end - period + 1, end)
+    whole = np.array([0, (length + 1) % period], np.int64)
+    phases = np.sort(np.append((lasts - start) % period, whole))
+    counts = np.minimum((length - phases) // period + 1, past.back)
+    states = np.empty(len(phases), np.int8)
+    for count in np.unique(counts).tolist():
+        here = counts == count
+        last = end - (length - phases[here]) % period
+        before = _places(past, last, count - 1, period) if count else []
+        states[here] = past.states([_in_force(past, np.full(len(last), end)), *before])
+    return _once(phases, states)
 
 
 def _first(
     steps: Steps, proposition: Proposition, begun: tuple[int, int], start: int, more: int
-) -> tuple[Times, States]:
+) -> Seen:
     """What the first tick sees where it is at each of these times, and until the next of them."""
     times = _within(steps.times, start, start + more)
     upto = np.searchsorted(steps.times, times, "right")
     return times, combined(steps, first_before(steps, begun, upto), upto, proposition)
 
 
-def _later(
-    steps: Steps, proposition: Proposition, start: int, length: int, period: int
-) -> tuple[Times, States]:
+def _later(steps: Steps, proposition: Proposition, start: int, length: int, period: int) -> Seen:
     """What a later tick sees where it is at each of these times, and until the next of them.
 
     It sees as much as a tick is long: that changes where a step comes, and where one goes.
@@ -163,19 +224,13 @@ def _within(times: Times, first: int, last: int) -> Times:
     return np.sort(np.append(inside, first), kind="stable") if first <= last else inside
 
 
-def _changes(
-    first_times: Times, first: States, later_times: Times, later: States
-) -> tuple[Times, States]:
+def _changes(times: Times, states: States) -> Seen:
     """Where the state is another one than the nanosecond before, with that state."""
-    new_first = np.append(False, first[1:] != first[:-1])
-    new_later = np.append(False, later[1:] != later[:-1])[: len(later)]
-    times = np.concatenate([first_times[new_first], later_times[new_later]])
-    return times, np.concatenate([first[new_first], later[new_later]])
+    new = np.append(False, states[1:] != states[:-1])[: len(states)]
+    return times[new], states[new]
 
 
-def _cut(
-    steps: Steps, proposition: Proposition, start: int, length: int, period: int
-) -> tuple[Times, States]:
+def _cut(steps: Steps, proposition: Proposition, start: int, length: int, period: int) -> Seen:
     """The phases from which on the cut tick sees another state, with that state."""
     end = start + length
     lasts = _within(steps.times, end - period + 1, end)
@@ -183,6 +238,10 @@ def _cut(
     phases = np.sort(np.append((lasts - start) % period, ends))
     last = end - (length - phases) % period
     before, upto = (np.searchsorted(steps.times, at, "right") for at in (last, end))
-    states = combined(steps, before, np.full(len(last), upto), proposition)
+    return _once(phases, combined(steps, before, np.full(len(last), upto), proposition))
+
+
+def _once(phases: Times, states: States) -> Seen:
+    """Without those at which the state stays what it was."""
     changed = np.append(True, states[1:] != states[:-1])
     return phases[changed], states[changed]

@@ -15,7 +15,7 @@ from fretc.logs.mcap.payloads import Bytes, Payloads, Places
 _HEAD = np.dtype([("channel", "<u2"), ("sequence", "<u4"), ("log", "<u8"), ("publish", "<u8")])
 """What each message begins with."""
 
-Stamps = NDArray[np.uint64]
+FileTimes = NDArray[np.uint64]
 """Nanoseconds, as they stand in the file: any number."""
 
 
@@ -28,8 +28,8 @@ class Messages:
     starts: Places
     ends: Places
     channels: NDArray[np.uint16]
-    logs: Stamps
-    publishes: Stamps
+    logs: FileTimes
+    publishes: FileTimes
 
     HEAD: ClassVar[int] = _HEAD.itemsize
     """Bytes that each message begins with, before its payload."""

@@ -44,7 +44,8 @@ class Scope:
     `numbers` have shape (length,), or one element for all points; NaN is unknown. Times their
     `scales` (1 where none is given) they are in base units. Quantities are read in `unit` or its
     powers. `persistences` are the states of each `... for 200 ms`, from
-    `fretc.logs.signals.propositions`. `words` are the values of enumerated signals.
+    `fretc.logs.signals.propositions`. `words` are the values of enumerated signals. Where the
+    points are ticks, `earlier` has them one tick before; None: they are the first tick.
     """
 
     length: int
@@ -52,6 +53,7 @@ class Scope:
     unit: Unit = ONE
     scales: Mapping[str, Fraction] = field(default_factory=dict)
     persistences: Mapping[e.Persistence, NDArray[np.int8]] = field(default_factory=dict)
+    earlier: Scope | None = None
     words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
@@ -112,6 +114,8 @@ def term(expression: e.Expression, scope: Scope) -> Term:
             return -value if isinstance(value, Fraction) else Measure(-value.values, value.scale)
         case e.Arithmetic(op, left, right):
             return _arithmetic(op, term(left, scope), term(right, scope))
+        case e.Call("pre", (initial, arg), _):
+            return _before(initial, arg, scope)
         case e.Call(name, args, _):
             return _call(name, [term(arg, scope) for arg in args])
         case e.Word(text):
@@ -197,6 +201,31 @@ def _nearest(exact: Fraction, kind: np.dtype[Any]) -> Values:
 
 
 # Computation
+
+
+def _before(initial: e.Expression, arg: e.Expression, scope: Scope) -> Measure:
+    """What `arg` was one tick before; at the first tick, what `initial` is.
+
+    It is a measured number: a constant is the nearest 64-bit float of the other one's unit. Both
+    are in one unit: that of the signals where they share it, else the base unit.
+    """
+    at = scope if scope.earlier is None else scope.earlier
+    chosen, other = term(initial, at), term(arg, at)
+    if scope.earlier is not None:
+        chosen, other = other, chosen
+    if isinstance(chosen, Fraction):
+        scale = Fraction(1) if isinstance(other, Fraction) else other.scale
+        return Measure(_measured(chosen / scale), scale)
+    if isinstance(other, Fraction) or other.scale == chosen.scale:
+        return chosen
+    return Measure(chosen.base)
+
+
+def _measured(exact: Fraction) -> Values:
+    """A constant as if it had been recorded."""
+    if exact.denominator == 1 and abs(exact) >= WHOLE:
+        return np.array([exact.numerator], EXACT)
+    return _nearest(exact, np.dtype(np.float64))
 
 
 def _arithmetic(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:

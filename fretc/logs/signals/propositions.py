@@ -19,6 +19,7 @@ from fretc.logs.signals.measures import ExpressionError, Scope, Term, compared, 
 from fretc.logs.signals.samples import Recording, Samples, Times, Values
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Proposition, Signal
+from fretish.bindings.expressions import ticks_back
 
 States = NDArray[np.int8]
 """One of `FALSE`, `UNKNOWN`, `TRUE` each: `and` is the least of them, `or` the greatest."""
@@ -67,6 +68,7 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     Returns:
         Steps from `recording.start_ns` on; the later ones up to `recording.end_ns`.
     """
+    assert not ticks_back(proposition.expression), "it has a truth at ticks only"
     signals = {name: declarations.signals[name] for name in proposition.signals}
     history = history_of(signals, recording)
     steps = _steps(proposition.expression, history)
@@ -274,13 +276,20 @@ def _values_at(
 
 
 def _steps(expression: e.Expression, history: History) -> Steps:
+    history, states = with_persistences(expression, history)
+    return Steps(history.times, truth(expression, history.scope(states)))
+
+
+def with_persistences(
+    expression: e.Expression, history: History
+) -> tuple[History, Mapping[e.Persistence, States]]:
+    """The history with the events of each `... for 200 ms`, and its states at all events."""
     persistences = {
         part: _persistence(_steps(part.arg, history), part.duration)
         for part in _durations(expression)
     }
     history = history.with_times([steps.times for steps in persistences.values()])
-    states = {part: _at(steps, history.times) for part, steps in persistences.items()}
-    return Steps(history.times, truth(expression, history.scope(states)))
+    return history, {part: _at(steps, history.times) for part, steps in persistences.items()}
 
 
 def _durations(expression: e.Expression) -> Iterator[e.Persistence]:

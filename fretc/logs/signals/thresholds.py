@@ -12,7 +12,7 @@ from math import isfinite
 from fretc.logs.signals.measures import Scope, number
 from fretish import expressions as e
 from fretish.bindings.declarations import Proposition, Signal
-from fretish.bindings.expressions import dimension
+from fretish.bindings.expressions import dimension, ticks_back
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.expressions import MIRRORED, Order
@@ -48,8 +48,8 @@ class Threshold:
 def thresholds(proposition: Proposition, signals: Mapping[str, Signal]) -> tuple[Threshold, ...]:
     """The thresholds of a proposition, in the order of its expression.
 
-    Equalities are none: nothing is near to them. Nor are comparisons of two signals, nor those
-    with a bound that is no number (`1 / 0`).
+    Equalities are none: nothing is near to them. Nor are comparisons of two signals, those with
+    what was at the tick before, nor those with a bound that is no number (`1 / 0`).
 
     Args:
         proposition: with an expression over the signals.
@@ -72,7 +72,7 @@ def _comparisons(tree: e.Expression) -> Iterator[e.Comparison]:
 def _threshold(
     proposition: Proposition, part: e.Comparison, signals: Mapping[str, Signal]
 ) -> Threshold | None:
-    if part.op not in MIRRORED:
+    if part.op not in MIRRORED or ticks_back(part):
         return None
     mirrored = MIRRORED[part.op]
     for term, other, operator in (

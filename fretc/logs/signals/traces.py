@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fretc.logs.signals.past_values import past_values
 from fretc.logs.signals.propositions import (
     FALSE,
     TRUE,
@@ -58,7 +59,7 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
     ticks by message, what happened at its own time. `any` of them makes it true, or
     else unknown if one of them is unknown; `all` makes it false, or else unknown; `last` is the
     last one. Without a step it sees what was in force before. `on_unknown` replaces what is then
-    unknown.
+    unknown. A proposition that looks back by ticks sees what is in force at each of them.
 
     Args:
         declarations: clock, signals and propositions.
@@ -123,6 +124,10 @@ def proposition_states(
     its own time.
     """
     proposition = declarations.propositions[name]
+    past = past_values(proposition, declarations, recording)
+    if past is not None:
+        _, upto = _windows(past.times, ticks)
+        return past.at(upto - 1)
     steps = evaluate(proposition, declarations, recording)
     begun = None if first is None else (first, complete_from(proposition, recording))
     return states_at(steps, ticks, proposition, begun)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from datetime import UTC, datetime
 from pathlib import PurePosixPath, PureWindowsPath
 
 from fretc.report.traceability.chain import Node
+from fretish.bindings import amounts
+from fretish.bindings.amounts import instant as instant
 from fretish.bindings.amounts import value as value
 
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
@@ -34,11 +35,8 @@ def some(words: Sequence[str], most: int = 6) -> str:
 
 
 def decimal(number: float) -> str:
-    """At most three decimals, and no zeros at the end: `39.8`, `0.001`, `2`."""
-    if abs(number) >= 10**7:
-        return f"{number:.6g}"
-    text = f"{number:,.3f}".rstrip("0").rstrip(".").replace(",", _NARROW)
-    return "0" if text == "-0" else text
+    """At most three decimals, and digits in groups of three: `39.8`, `0.001`, `1 852`."""
+    return amounts.decimal(number, _NARROW)
 
 
 def seconds(number: float) -> str:
@@ -55,18 +53,6 @@ def size(count: int | None) -> str:
         if count >= factor:
             return f"{count / factor:.3g} {name} ({exact})"
     return exact
-
-
-def instant(ns: int | None) -> str:
-    """Nanoseconds since 1970 as `2023-11-14 22:13:20.041 UTC`."""
-    if ns is None:
-        return "not known"
-    whole_seconds, rest = divmod(ns, 10**9)
-    try:
-        moment = datetime.fromtimestamp(whole_seconds, UTC)
-    except (OverflowError, ValueError, OSError):
-        return f"{ns} ns"
-    return f"{moment:%Y-%m-%d %H:%M:%S}.{rest // 10**6:03d} UTC"
 
 
 def place(path: str) -> str:

@@ -96,7 +96,7 @@ def _latency(late: Sequence[float], runs: Sequence[Result], rule: Formalized | N
     )
     text = (
         f"{phrases.times(len(late), 'answer')} in {phrases.times(len(runs), 'run')}: "
-        f"median {phrases.seconds(median(late))}, longest {phrases.seconds(max(late))}; "
+        f"{_late(late)}; "
         f"{limit}. {_in_words(bins, 's', _UP_TO)}{_without(unanswered, waiting)}"
     )
     return Histogram(
@@ -131,6 +131,12 @@ def _seconds_allowed(rule: Formalized | None) -> float | None:
 
 
 # Margin ----------------------------------------------------------------------------------------
+
+
+def _late(late: Sequence[float]) -> str:
+    """The median and the longest; of one answer only how long it took."""
+    middle, longest = phrases.seconds(median(late)), phrases.seconds(max(late))
+    return longest if len(late) == 1 else f"median {middle}, longest {longest}"
 
 
 def _margins(results: Sequence[Result]) -> Iterator[Histogram]:

@@ -13,7 +13,7 @@ from compiler.formalization.record import wording
 from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
-from fretc.attestation.signatures import NO_SIGNATURES, Book
+from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import (
@@ -34,10 +34,10 @@ from fretc.report.sections.reviews import review, waiver
 from fretc.report.sections.runs import Run, RunKey
 from fretc.report.traceability.artefacts import Product
 from fretish.bindings.declarations import Declarations, Proposition, Signal
-from fretish.bindings.words import listed
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.meaning import meaning
+from fretish.printer import expression as printed
 from fretish.printer import sentence
 
 
@@ -49,7 +49,7 @@ def section(
     audited: bool,
     proofs: Sequence[Proof] = (),
     shared_products: Sequence[Product] = (),
-    book: Book = NO_SIGNATURES,
+    book: SignatureBook = NO_SIGNATURES,
 ) -> RequirementView:
     """The view of one requirement.
 
@@ -178,16 +178,18 @@ def _proposition(name: str, declared: Declarations | None) -> PropositionView:
         name=name,
         is_bound=True,
         text=bound.text,
-        expression=_expression(declared, name),
+        expression=_expression(declared, bound),
         properties=_properties(bound),
         signals=tuple(_signal(declared.signals[each]) for each in bound.signals),
     )
 
 
-def _expression(declared: Declarations, name: str) -> str:
-    """The expression, as the bindings write it."""
-    data: Mapping[str, Any] = tomllib.loads(declared.source.text)
-    return str(data["proposition"][name]["expr"])
+def _expression(declared: Declarations, bound: Proposition) -> str:
+    """The expression, as the bindings write it; what only a sentence states, in their language."""
+    written: Mapping[str, Any] = tomllib.loads(declared.source.text).get("proposition", {})
+    if bound.name not in written:
+        return printed(bound.expression)
+    return str(written[bound.name]["expr"])
 
 
 def _properties(bound: Proposition) -> str:
@@ -199,7 +201,7 @@ def _properties(bound: Proposition) -> str:
 def _signal(signal: Signal) -> SignalView:
     age = f"{phrases.decimal(signal.max_age / 1e6)} ms" if signal.max_age else ""
     reading = [
-        f"one of {listed(signal.values)}" if signal.values else "",
+        f"one of {', '.join(signal.values)}" if signal.values else "",
         str(signal.reduce) if signal.reduce else "",
         f"unknown when older than {age}" if age else "a sample never grows too old",
     ]

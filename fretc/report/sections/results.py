@@ -31,6 +31,7 @@ from fretc.report.pictures.timeline import answered, timelines
 from fretc.report.sections.runs import Run, RunKey, run_key
 from fretish import syntax
 from fretish.bindings.amounts import exact
+from fretish.bindings.amounts import margin as margin_text
 from fretish.bindings.declarations import Declarations
 from fretish.clock import Clock
 from fretish.meaning import span
@@ -209,7 +210,7 @@ def _threshold(threshold: Threshold) -> ThresholdView:
     margin = {None: "never known", "crossed": "crossed"}.get(kept) or (
         "always out of range"
         if threshold.margin is None
-        else phrases.value(threshold.margin, unit, [0.0])
+        else margin_text(threshold.margin, unit, bound)
     )
     return ThresholdView(
         proposition=threshold.proposition,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from fretc.attestation.signatures import Book
+from fretc.attestation.signatures import SignatureBook
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -22,7 +22,7 @@ _OPEN = sign_mark("not reviewed", signs.UNUSED)
 _SUSPECT = sign_mark(SUSPECT, signs.SUSPECT)
 
 
-def review(assessment: Assessment, book: Book) -> ReviewView:
+def review(assessment: Assessment, book: SignatureBook) -> ReviewView:
     """The review of a requirement."""
     accepted = assessment.standing.review
     if accepted is None:
@@ -36,7 +36,7 @@ def review(assessment: Assessment, book: Book) -> ReviewView:
     return ReviewView(_SUSPECT, by, accepted.comment, causes, signature)
 
 
-def waiver(assessment: Assessment, book: Book) -> WaiverView | None:
+def waiver(assessment: Assessment, book: SignatureBook) -> WaiverView | None:
     """The waiver that counts today."""
     granted = assessment.waiver
     if granted is None:
@@ -49,7 +49,7 @@ def waiver(assessment: Assessment, book: Book) -> WaiverView | None:
     )
 
 
-def summary(assessments: Sequence[Assessment], book: Book) -> str:
+def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
     """The number of reviews, of those that stand, and of those without a signature."""
     standings = [each.standing for each in assessments if each.standing.review is not None]
     if not standings:

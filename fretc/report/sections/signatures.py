@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from fretc.attestation import statement as attestation
-from fretc.attestation.signatures import Book, Signing, State
+from fretc.attestation.signatures import SignatureBook, Signing, State
 from fretc.attestation.statement import Subject
 from fretc.audit.evidence.schema import Evidence
 from fretc.report.model import phrases
@@ -22,21 +22,21 @@ _UNSIGNED = sign_mark("unauthenticated", signs.OPEN)
 BROKEN = sign_mark("does not verify", signs.BAD)
 
 
-def of_review(book: Book, review: Review) -> SignatureView:
+def of_review(book: SignatureBook, review: Review) -> SignatureView:
     """The signature of the reviewer."""
     return _view(_review(book, review))
 
 
-def of_waiver(book: Book, waiver: Waiver) -> SignatureView:
+def of_waiver(book: SignatureBook, waiver: Waiver) -> SignatureView:
     """The signature of the person who granted the waiver."""
     return _view(_waiver(book, waiver))
 
 
-def _review(book: Book, review: Review) -> Signing:
+def _review(book: SignatureBook, review: Review) -> Signing:
     return book.of(attestation.review(review), review.reviewer)
 
 
-def _waiver(book: Book, waiver: Waiver) -> Signing:
+def _waiver(book: SignatureBook, waiver: Waiver) -> Signing:
     return book.of(attestation.waiver(waiver), waiver.by)
 
 
@@ -45,7 +45,10 @@ def _view(signing: Signing) -> SignatureView:
 
 
 def signatures(
-    book: Book, assessments: Sequence[Assessment], evidence: Evidence | None, proofs: Proofs | None
+    book: SignatureBook,
+    assessments: Sequence[Assessment],
+    evidence: Evidence | None,
+    proofs: Proofs | None,
 ) -> Signatures:
     """The table of signatures; those that do not verify come first."""
     signers = book.signers.signers if book.signers else ()
@@ -56,7 +59,7 @@ def signatures(
     )
 
 
-def _broken(book: Book) -> Iterator[Signed]:
+def _broken(book: SignatureBook) -> Iterator[Signed]:
     for one in book.envelopes:
         for signer in one.broken:
             place = one.envelope.place
@@ -65,7 +68,9 @@ def _broken(book: Book) -> Iterator[Signed]:
             yield Signed("signature", where, "", SignatureView(BROKEN, text, False))
 
 
-def _files(book: Book, evidence: Evidence | None, proofs: Proofs | None) -> Iterator[Signed]:
+def _files(
+    book: SignatureBook, evidence: Evidence | None, proofs: Proofs | None
+) -> Iterator[Signed]:
     if evidence is not None:
         subject = Subject(attestation.EVIDENCE, phrases.place(evidence.file), evidence.sha256)
         yield _file(book, subject)
@@ -73,12 +78,12 @@ def _files(book: Book, evidence: Evidence | None, proofs: Proofs | None) -> Iter
         yield _file(book, Subject(attestation.PROOFS, phrases.place(proofs.file), proofs.sha256))
 
 
-def _file(book: Book, subject: Subject) -> Signed:
+def _file(book: SignatureBook, subject: Subject) -> Signed:
     """A file is signed under the last part of its name."""
     return Signed(subject.kind, subject.name, "", _view(book.of_file(subject.kind, subject.sha256)))
 
 
-def _people(book: Book, assessments: Sequence[Assessment]) -> Iterator[Signed]:
+def _people(book: SignatureBook, assessments: Sequence[Assessment]) -> Iterator[Signed]:
     for assessment in assessments:
         review, waiver = assessment.standing.review, assessment.waiver
         if review is not None:
@@ -89,7 +94,7 @@ def _people(book: Book, assessments: Sequence[Assessment]) -> Iterator[Signed]:
             yield Signed("waiver", name, assessment.anchor, of_waiver(book, waiver))
 
 
-def idle_signatures(book: Book, assessments: Sequence[Assessment]) -> Iterator[Diagnostic]:
+def idle_signatures(book: SignatureBook, assessments: Sequence[Assessment]) -> Iterator[Diagnostic]:
     """F559 for each review and waiver with a signature that does not count."""
     for assessment in assessments:
         review, waiver = assessment.standing.review, assessment.waiver

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from shlex import quote
 
 from compiler.emit import TARGETS
+from compiler.explanation.constant_parts import constant_parts
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import METHODS
 from compiler.project.ancestry import without_hazard
@@ -21,6 +22,7 @@ from fretish.bindings.declarations import Role
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.source import Source, Span
 from fretish.expressions import names
+from fretish.printer import expression as printed
 
 _COMMAND = "command"
 _METHODS = ("audit", *METHODS, *TARGETS)
@@ -35,7 +37,11 @@ def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic,
         standings: each requirement beside its review.
     """
     rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
-    diagnostics = [d for rule in rules for d in (*_own_triggers(rule, project), *_planned(rule))]
+    diagnostics = [
+        d
+        for rule in rules
+        for d in (*_own_triggers(rule, project), *_never_so(rule), *_planned(rule))
+    ]
     options = Options(declarations=project.declarations)
     interceptor = TARGETS["interceptor"].remarks(options)
     return (*diagnostics, *interceptor, *_links(project), *_changes(project, standings))
@@ -72,6 +78,19 @@ def _place(rule: Formalized, name: str) -> Span:
     assert rule.sentence.condition is not None
     places = (n.span for n in names(rule.sentence.condition.expression) if n.id == name)
     return next(places, None) or rule.requirement.wording
+
+
+def _never_so(rule: Formalized) -> Iterator[Diagnostic]:
+    """F210 for each part of the sentence that no numbers make true, or none false."""
+    for part, value in constant_parts(rule):
+        yield Diagnostic(
+            Code.NEVER_SO,
+            f"`{printed(part)}` of {rule.id} is {'always' if value else 'never'} true, whatever is "
+            "measured",
+            next((name.span for name in names(part)), None) or rule.requirement.wording,
+            help="look at the numbers, and at the direction of each comparison",
+            severity=Severity.WARNING,
+        )
 
 
 # Planned methods -------------------------------------------------------------------------------

@@ -23,7 +23,7 @@ from fretc.verification.interceptor.incoming import (
     after,
     first,
 )
-from fretc.verification.interceptor.machine import Core, NotAnInterceptorError
+from fretc.verification.interceptor.machine import CheckedCore, NotAnInterceptorError
 from fretc.verification.interceptor.opaque import InspectedError, Opaque, is_opaque
 from monitors.interceptor import Options
 
@@ -95,12 +95,12 @@ class _Walk:
     def __init__(
         self, text: str, options: Options, broken: Sequence[Callable[[Moment], bool]], most: int
     ) -> None:
-        self.core = Core(text, options)
+        self.core = CheckedCore(text, options)
         self.declared, self.broken, self.most = options, broken, most
         own = getattr(self.core.module, "OPTIONS", self.core.options)
         if own != self.core.options:
             raise NotAnInterceptorError("its options are not those that are declared")
-        self.tokens = tuple(Opaque() for _ in range(2 * len(self.core.fields) + 4))
+        self.tokens = tuple(Opaque() for _ in range(2 * len(self.core.state_fields) + 4))
 
     def search(self) -> Search:
         """Walk until no state is new."""
@@ -138,12 +138,12 @@ class _Walk:
                 yield target
 
     def _messages(self, command: object) -> Iterator[tuple[str, Any]]:
-        module, called = self.core.module, self.core.called
-        yield STOP, called(module.StopHeard, True)
-        yield RELEASE, called(module.StopHeard, False)
-        yield COMMAND, called(module.CommandHeard, command)
-        yield SCAN, called(module.ScanHeard)
-        yield RING, called(module.TimerRang)
+        module, call = self.core.module, self.core.call
+        yield STOP, call(module.StopHeard, True)
+        yield RELEASE, call(module.StopHeard, False)
+        yield COMMAND, call(module.CommandHeard, command)
+        yield SCAN, call(module.ScanHeard)
+        yield RING, call(module.TimerRang)
 
     def _breaches(self, moment: Moment) -> Iterator[int]:
         """The contracts that a step breaks, by number."""
@@ -171,7 +171,7 @@ class _Walk:
         numbers: dict[int, int] = {}
         key: list[object] = []
         values: dict[str, Any] = {}
-        for name in self.core.fields:
+        for name in self.core.state_fields:
             value = getattr(state, name)
             if is_opaque(value):
                 number = numbers.setdefault(id(value), len(numbers))

@@ -1,9 +1,13 @@
-"""An interceptor's text as a machine that can be put into any state and stepped.
+"""An interceptor's text as a state machine that can be put into any state and stepped.
 
-Only its core is executed, once it is known to be pure (`fretc.verification.interceptor.file`): no
-input, no output, no node. The step must not look into velocities, so that opaque commands stand for
-all. Source of that reduction: Wolper, Expressing interesting properties of programs in
-propositional temporal logic, POPL 1986 (data independence).
+Only the core of the text is executed, once it is known to be pure
+(`fretc.verification.interceptor.file`): no input, no output, no node. Its step must not look into
+velocities, so that one opaque velocity stands for all that move. Source of that reduction: Wolper,
+Expressing interesting properties of programs in propositional temporal logic, POPL 1986 (data
+independence).
+
+A state has two forms. A raw state is a `State` object of the text. An encoded one (`State` below)
+is a tuple that a search can hash and compare, with a Boolean in the place of the velocity.
 """
 
 from __future__ import annotations
@@ -33,31 +37,35 @@ class Event(Enum):
 
 
 State = tuple[int | bool, ...]
-"""The fields of an interceptor's state; of the command whether it moves."""
+"""An encoded state: the fields of a raw one in their order; of `command`, whether it moves."""
 
 Output = bool | None
 """Whether the published velocity moves the wheels; None: nothing is published."""
 
 
-_LAST, _NEXT = Opaque(), Opaque()
-"""Velocities that move: the one in a state, and the one of the next command."""
+_KEPT, _NEXT = Opaque(), Opaque()
+"""Velocities that move: the one that a state keeps, and the one of the next command."""
 
 
-class Core:
-    """The core of an interceptor's text, executed; a mistake of it is NotAnInterceptorError."""
+class CheckedCore:
+    """The executed core of an interceptor's text, with a check of whatever it returns.
+
+    Any method raises NotAnInterceptorError where the core fails, or returns something else than the
+    core of an interceptor may.
+    """
 
     def __init__(self, text: str, options: Options) -> None:
         """Execute the definitions of a text that is known to be pure.
 
         Args:
-            text: with the step.
-            options: its own, in ticks of its timer.
+            text: of an interceptor, or of its core alone.
+            options: for it, in ticks of its timer.
         """
         executed = core(text)
         if isinstance(executed, str):
             raise NotAnInterceptorError(executed)
         self.module = module = executed.module
-        self.fields = tuple(getattr(module.State, "__dataclass_fields__", ()))
+        self.state_fields = tuple(getattr(module.State, "__dataclass_fields__", ()))
         named = {field.name: getattr(options, field.name) for field in fields(options)}
         try:
             self.options = module.Options(**named)
@@ -65,28 +73,22 @@ class Core:
             raise NotAnInterceptorError(f"its options are others: {error}") from None
 
     def initial(self) -> Any:
-        """The state at first."""
-        return self.is_state(self.called(self.module.initial, self.options))
+        """The raw state before the first message."""
+        return self._checked_state(self.call(self.module.initial, self.options))
 
     def step(self, state: Any, message: Any) -> tuple[Any, Any]:
-        """The state after a message, and what is published; None: nothing."""
-        pair = self.called(self.module.step, state, message, self.options)
+        """The raw state after a message, and the velocity that is published; None: nothing is."""
+        pair = self.call(self.module.step, state, message, self.options)
         if type(pair) is not tuple or len(pair) != 2:
             raise NotAnInterceptorError("a step gives no state and command")
-        return self.is_state(pair[0]), pair[1]
-
-    def is_state(self, state: Any) -> Any:
-        """The same, once it is known to be a `State` of the text."""
-        if type(state) is not self.module.State:
-            raise NotAnInterceptorError("a step gives no `State`")
-        return state
+        return self._checked_state(pair[0]), pair[1]
 
     def is_zero(self, velocity: Any) -> bool:
-        """Whether it is a velocity of the text that stands."""
+        """Whether it is a `Velocity` of the text with zeros alone: the robot stands."""
         return is_zero(velocity, self.module.Velocity)
 
-    def called(self, function: Any, *arguments: Any) -> Any:
-        """What a function of the text gives."""
+    def call(self, function: Any, *arguments: Any) -> Any:
+        """The result of a function of the text."""
         try:
             return function(*arguments)
         except InspectedError:
@@ -97,79 +99,97 @@ class Core:
             why = f"a step fails: {type(error).__name__}: {error}"
             raise NotAnInterceptorError(why) from None
 
+    def _checked_state(self, state: Any) -> Any:
+        """The state itself, which is a `State` of the text."""
+        if type(state) is not self.module.State:
+            raise NotAnInterceptorError("a step gives no `State`")
+        return state
 
-class Gate:
-    """The step of an interceptor's text, over encoded states, each computed once."""
 
-    def __init__(self, text: str, options: Options, most: int = 10**6) -> None:
-        """Raises NotAnInterceptorError where the text is none that can be explored.
+class InterceptorMachine:
+    """The transitions of an interceptor's text between encoded states, each computed once."""
+
+    def __init__(self, text: str, options: Options, max_states: int = 10**6) -> None:
+        """Execute the core of the text.
 
         Args:
-            text: with the step.
-            options: its own, in ticks of its timer.
-            most: states; where there are more, NotAnInterceptorError is raised, too.
+            text: of an interceptor, or of its core alone.
+            options: for it, in ticks of its timer.
+            max_states: encoded states that may be met. A core that counts without a bound would
+                have no end of them.
+
+        Raises:
+            NotAnInterceptorError: the text cannot be explored. `step` raises it, too: whether there
+                are too many states shows only there.
         """
-        self._most = most
-        self._core = Core(text, options)
+        self._max_states = max_states
+        self._core = CheckedCore(text, options)
         self._module = module = self._core.module
         self._options = self._core.options
-        if "command" not in self._core.fields:
+        if "command" not in self._core.state_fields:
             raise NotAnInterceptorError("its `State` has no `command`")
         self._messages = {
-            Event.STOP: self._core.called(module.StopHeard, True),
-            Event.RELEASE: self._core.called(module.StopHeard, False),
-            Event.MOVE: self._core.called(module.CommandHeard, _NEXT),
-            Event.STAND: self._core.called(module.CommandHeard, module.ZERO),
-            Event.SCAN: self._core.called(module.ScanHeard),
-            Event.RING: self._core.called(module.TimerRang),
+            Event.STOP: self._core.call(module.StopHeard, True),
+            Event.RELEASE: self._core.call(module.StopHeard, False),
+            Event.MOVE: self._core.call(module.CommandHeard, _NEXT),
+            Event.STAND: self._core.call(module.CommandHeard, module.ZERO),
+            Event.SCAN: self._core.call(module.ScanHeard),
+            Event.RING: self._core.call(module.TimerRang),
         }
         self._steps: dict[tuple[State, Event], tuple[State, Output]] = {}
-        self._objects: dict[State, Any] = {}
+        self._raw: dict[State, Any] = {}
+        """A raw state for each encoded one that was met."""
         self.initial = self._encoded(self._core.initial())
 
     def step(self, state: State, event: Event) -> tuple[State, Output]:
-        """The state after an event, and the output."""
+        """The encoded state after an event, and the output."""
         pair = self._steps.get((state, event))
         if pair is None:
-            after, velocity = self._core.step(self._objects[state], self._messages[event])
+            after, velocity = self._core.step(self._raw[state], self._messages[event])
             pair = self._steps[state, event] = self._encoded(after), self._output(velocity)
         return pair
 
-    def stopping(self, state: State) -> bool:
-        """Whether it hands on no command, not even one that comes right after a scan."""
+    def blocks_commands(self, state: State) -> bool:
+        """Whether no command gets through, not even one right after a scan.
+
+        The scan comes first so that the watchdog of the sensor alone does not count as a stop.
+        """
         scanned, _ = self.step(state, Event.SCAN)
         _, output = self.step(scanned, Event.MOVE)
         return not output
 
-    def halts(self, state: Any) -> bool:
-        """`halted`, of a state as the text has it."""
-        return bool(self._module.halted(state, self._options))
-
-    def fresh(self) -> Any:
-        """The state at first as the text has it, for a replay."""
+    def raw_initial(self) -> Any:
+        """The raw state before the first message."""
         return self._module.initial(self._options)
 
-    def replayed(self, state: Any, event: Event) -> tuple[Any, Output]:
-        """One step of the text itself, nothing encoded and nothing remembered."""
+    def raw_step(self, state: Any, event: Event) -> tuple[Any, Output]:
+        """One step from a raw state: nothing is encoded, and nothing taken from an earlier step."""
         after, velocity = self._module.step(state, self._messages[event], self._options)
         return after, self._output(velocity)
 
+    def is_halted(self, state: Any) -> bool:
+        """What `halted` of the text says of a raw state."""
+        return bool(self._module.halted(state, self._options))
+
     def _encoded(self, state: Any) -> State:
-        values = {name: getattr(state, name) for name in self._core.fields}
+        """The encoded form of a raw state; `_raw` has a raw state for it from now on."""
+        values = {name: getattr(state, name) for name in self._core.state_fields}
         moves = self._output(values["command"])
         if moves is None or not all(
             type(value) in (bool, int) for name, value in values.items() if name != "command"
         ):
             raise NotAnInterceptorError("its State holds something else than it declares")
         encoded = tuple({**values, "command": moves}.values())
-        if encoded not in self._objects:
-            command = _LAST if moves else self._module.ZERO
-            self._objects[encoded] = self._module.State(**{**values, "command": command})
-        if len(self._objects) > self._most:
-            raise NotAnInterceptorError(f"its State takes more than {self._most} values")
+        if encoded not in self._raw:
+            # The velocities of all states that move are one, so that one raw state stands for all.
+            command = _KEPT if moves else self._module.ZERO
+            self._raw[encoded] = self._module.State(**{**values, "command": command})
+        if len(self._raw) > self._max_states:
+            raise NotAnInterceptorError(f"its State takes more than {self._max_states} values")
         return encoded
 
     def _output(self, velocity: Any) -> Output:
+        """What the wheels do with it: it must be nothing, a command that came, or zero."""
         if velocity is None:
             return None
         if is_opaque(velocity):

@@ -12,7 +12,7 @@ from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
-from fretc.verification.layers.request import Request, named, unknown
+from fretc.verification.layers.request import Request, named_text, unknown
 from fretish.diagnostics.diagnostic import Diagnostic
 
 CLAIM = "the agent has its properties"
@@ -28,7 +28,7 @@ def prove(
         return tuple(proof for rule in rules for proof in _bundle(rule, request.limits))
     proofs = processes.confined(request.limits, checked, agent, properties, request.percepts)
     if isinstance(proofs, Stopped):
-        return (unknown("agent", Layer.AGENT, CLAIM, proofs.reason, named(agent)),)
+        return (unknown("agent", Layer.AGENT, CLAIM, proofs.reason, named_text(agent)),)
     return proofs
 
 

@@ -8,11 +8,11 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.verification.layers.request import Request, setup_of
-from fretc.verification.loop.bounds import bounds
+from fretc.verification.loop.bounds import bounds_proofs
 
 
 def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
     """Two proofs for each rule: the law of the answers, and the declared bound."""
     for rule in rules:
         request.progress(f"{rule.id}: bounds")
-        yield from bounds(rule, setup_of(rule, project, request), request.limits)
+        yield from bounds_proofs(rule, setup_of(rule, project, request), request.limits)

@@ -15,7 +15,7 @@ from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import otherwise
 from fretc.verification.layers.request import Request, interceptor_of, unknown
-from fretc.verification.loop.layer import Named
+from fretc.verification.loop.closed_loop import NamedText
 from fretish.bindings.declarations import Interception
 
 CLAIM = "the interceptor keeps its contracts"
@@ -33,7 +33,7 @@ def prove(rules: Sequence[Formalized], project: Project, request: Request) -> It
     yield from _contracts(file, declared, request.limits)
 
 
-def _contracts(file: Named, declared: Interception, limits: Limits) -> Iterator[Proof]:
+def _contracts(file: NamedText, declared: Interception, limits: Limits) -> Iterator[Proof]:
     """Of the module that flies: its core may be any, the rest is what fretc writes."""
     deviation = otherwise(file.text, declared)
     proofs: Stopped | tuple[Proof, ...]

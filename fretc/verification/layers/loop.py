@@ -1,4 +1,7 @@
-"""Layer LOOP: monitor, interceptor and any environment together keep the requirement."""
+"""Layer LOOP of `fretc verify`: monitor, interceptor and any environment keep the requirement.
+
+`fretc.verification.loop` proves it; this module asks for one requirement after the other.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +11,12 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.verification.layers.request import Request, setup_of
-from fretc.verification.loop.layer import loop
+from fretc.verification.loop.closed_loop import loop_proofs
 
 
 def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
-    """Two proofs for each rule: it is kept, and the stop is released."""
+    """Two proofs for each rule: the requirement is kept, and a stop is released in the end."""
     for rule in rules:
         request.progress(f"{rule.id}: loop")
-        yield from loop(rule, setup_of(rule, project, request), request.limits)
+        setup = setup_of(rule, project, request)
+        yield from loop_proofs(rule, setup, request.limits)

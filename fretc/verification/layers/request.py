@@ -13,7 +13,7 @@ from compiler.project.folder import Project
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import stem
 from fretc.verification.engines.sandbox import Limits
-from fretc.verification.loop.layer import Named, Setup
+from fretc.verification.loop.closed_loop import NamedText, Setup
 from fretish.diagnostics.source import Source
 
 Progress = Callable[[str], None]
@@ -46,29 +46,29 @@ def setup_of(rule: Formalized, project: Project, request: Request) -> Setup:
     """The parts of the closed loop around a requirement."""
     declared = project.declarations
     return Setup(
-        named(request.monitor) or Named(f"{stem(rule)}_monitor.py", monitor.text(rule)),
+        named_text(request.monitor) or NamedText(f"{stem(rule)}_monitor.py", monitor.text(rule)),
         interceptor_of(project, request),
         declared.interceptor if declared else None,
         declared.assumed if declared else None,
     )
 
 
-def interceptor_of(project: Project, request: Request) -> Named | None:
+def interceptor_of(project: Project, request: Request) -> NamedText | None:
     """The interceptor that is given, or the one of the bindings; None: they declare none."""
     declared = project.declarations
     if request.interceptor is not None or declared is None or declared.interceptor is None:
-        return named(request.interceptor)
+        return named_text(request.interceptor)
     name = PurePath(declared.source.name).name
-    return Named(interceptor.NAME, interceptor.text(declared.interceptor, name))
+    return NamedText(interceptor.NAME, interceptor.text(declared.interceptor, name))
 
 
-def named(source: Source | None) -> Named | None:
+def named_text(source: Source | None) -> NamedText | None:
     """A given text, with the name of its file."""
-    return Named(PurePath(source.name).name, source.text) if source else None
+    return NamedText(PurePath(source.name).name, source.text) if source else None
 
 
 def unknown(
-    requirement: str, layer: Layer, claim: str, reason: str, text: Named | None = None
+    requirement: str, layer: Layer, claim: str, reason: str, text: NamedText | None = None
 ) -> Proof:
     """A claim that is not checked, about a text if there is one."""
     artefacts = {text.name: sha256(text.text)} if text else {}

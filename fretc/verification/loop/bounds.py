@@ -37,7 +37,7 @@ from fretc.verification.loop.abstraction import (
     relation,
     times_of,
 )
-from fretc.verification.loop.layer import Setup, artefacts, assumptions, case
+from fretc.verification.loop.closed_loop import Setup, artefacts, assumptions, case
 from fretc.verification.loop.model import Channel
 from fretc.verification.loop.search import Case, NotALoopError, Parts, as_table, reach
 from fretc.verification.monitor.statements import is_same
@@ -88,7 +88,7 @@ class Answer:
     z3: str = ""
 
 
-def bounds(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
+def bounds_proofs(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
     """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
     query = question(rule, setup)
     answer: Answer | Stopped

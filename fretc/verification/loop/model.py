@@ -26,7 +26,8 @@ from itertools import product
 from typing import NamedTuple
 
 from compiler.formalization.letters import Valuation
-from fretc.verification.interceptor.machine import Event, Gate, State
+from compiler.logic.orders import Exclusion, only_possible
+from fretc.verification.interceptor.machine import Event, InterceptorMachine, State
 from fretc.verification.monitor.machine import Stepped
 
 Queue = tuple[tuple[bool, int], ...]
@@ -66,7 +67,7 @@ class Channel:
 class Wheels(NamedTuple):
     """The loop from the channel to the wheels."""
 
-    gate: State
+    interceptor: State
     still: int
     """Ends of cells since the wheels have zero, counted up to `Channel.stands`; -1: they move."""
     queue: Queue
@@ -111,11 +112,13 @@ class Environment:
 
     atoms: tuple[str, ...]
     stands: str
+    excluded: tuple[Exclusion, ...] = ()
+    """What the propositions cannot be together."""
 
     def letters(self, stands: bool) -> tuple[Valuation, ...]:
-        """Every valuation with that value of the proposition."""
+        """Every valuation with that value of the proposition that can occur."""
         choices = [(stands,) if name == self.stands else (False, True) for name in self.atoms]
-        return tuple(product(*choices))
+        return only_possible(tuple(product(*choices)), self.atoms, self.excluded)
 
 
 class Loop:
@@ -125,7 +128,7 @@ class Loop:
         self,
         safety: Stepped,
         observer: Stepped | None,
-        gate: Gate,
+        interceptor: InterceptorMachine,
         environment: Environment,
         channel: Channel,
     ) -> None:
@@ -134,12 +137,12 @@ class Loop:
         Args:
             safety: the monitor that requests stops.
             observer: the monitor that detects violations; None: it has the text of `safety`.
-            gate: the interceptor.
+            interceptor: what the commands pass on their way to the wheels.
             environment: the propositions in the order of letters.
             channel: the assumptions.
         """
         self._safety, self._observer = safety, observer
-        self.gate, self.channel = gate, channel
+        self.interceptor, self.channel = interceptor, channel
         self.environment = environment
         self._place = environment.atoms.index(environment.stands)
         self._letters = {stands: environment.letters(stands) for stands in (False, True)}
@@ -147,7 +150,7 @@ class Loop:
         self._passages: dict[Wheels, dict[Wheels, Word]] = {}
         self._judgements: dict[tuple[Hashable, Hashable, Valuation], tuple[Hashable, ...]] = {}
         watching = observer.save() if observer else None
-        wheels = Wheels(gate.initial, channel.stands, ())
+        wheels = Wheels(interceptor.initial, channel.stands, ())
         self.initial = Node(safety.save(), watching, wheels, 0, False, 0)
 
     # One tick -------------------------------------------------------------------------------
@@ -188,7 +191,7 @@ class Loop:
 
     def _begun(self, wheels: Wheels, tick: Tick, still: int) -> Wheels:
         sent = ((tick.requested, 0),) if tick.sent else ()
-        return Wheels(wheels.gate, still, wheels.queue + sent)
+        return Wheels(wheels.interceptor, still, wheels.queue + sent)
 
     def word(self, before: Node, tick: Tick, after: Node) -> tuple[Event | None, ...]:
         """The events from one end of a tick to the next; None: a cell ends."""
@@ -288,21 +291,21 @@ class Loop:
         return closure
 
     def _take(self, wheels: Wheels, event: Event) -> Wheels:
-        gate, output = self.gate.step(wheels.gate, event)
+        interceptor, output = self.interceptor.step(wheels.interceptor, event)
         queue = wheels.queue[1:] if event in (Event.STOP, Event.RELEASE) else wheels.queue
         if output is None:
-            return Wheels(gate, wheels.still, queue)
-        return Wheels(gate, -1 if output else max(wheels.still, 0), queue)
+            return Wheels(interceptor, wheels.still, queue)
+        return Wheels(interceptor, -1 if output else max(wheels.still, 0), queue)
 
     def _older(self, layer: dict[tuple[Wheels, bool], Word]) -> dict[tuple[Wheels, bool], Word]:
         """A cell ends; states with a message in flight for too long drop out."""
         result: dict[tuple[Wheels, bool], Word] = {}
-        for ((gate, still, queue), enough), word in layer.items():
+        for ((interceptor, still, queue), enough), word in layer.items():
             if queue and queue[0][1] + 1 >= self.channel.latency:
                 continue
             older = tuple((requested, age + 1) for requested, age in queue)
             later = min(still + 1, self.channel.stands) if still >= 0 else still
-            result.setdefault((Wheels(gate, later, older), enough), (None, word))
+            result.setdefault((Wheels(interceptor, later, older), enough), (None, word))
         return result
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from compiler.logic.claims import Trace
-from fretc.verification.interceptor.machine import Event, Gate
+from fretc.verification.interceptor.machine import Event, InterceptorMachine
 from fretc.verification.loop.model import Loop, Node, Tick
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import VIOLATED, Truth
@@ -76,9 +76,9 @@ class _Again:
     def __init__(self, safety: Watched, observer: Watched, loop: Loop) -> None:
         self._safety, self._observer = safety.fresh(), observer.fresh()
         self._places = safety.place, observer.place
-        self._gate: Gate = loop.gate
+        self._interceptor: InterceptorMachine = loop.interceptor
         self._channel, self._environment = loop.channel, loop.environment
-        self._state: Any = loop.gate.fresh()
+        self._state: Any = loop.interceptor.raw_initial()
         self._still = loop.channel.stands
         self._flying: list[tuple[bool, int]] = []
         self._lost, self._silent, self._last_request = 0, 0, False
@@ -100,7 +100,7 @@ class _Again:
                 assert self._flying.pop(0)[0] == (event is Event.STOP)
                 delivered = event is Event.STOP
             self._take(event)
-        halted = self._gate.halts(self._state)
+        halted = self._interceptor.is_halted(self._state)
         return (*tick.letter, tick.requested, delivered, halted, self._still < 0)
 
     def _sample(self, tick: Tick) -> None:
@@ -131,7 +131,7 @@ class _Again:
             assert all(age < self._channel.latency for _, age in self._flying)
             return
         instant = event in (Event.STOP, Event.RELEASE) and self._channel.latency == 0
-        self._state, output = self._gate.replayed(self._state, event)
+        self._state, output = self._interceptor.raw_step(self._state, event)
         if output is not None:
             self._still = -1 if output else self._still if self._still >= 0 else int(instant)
 

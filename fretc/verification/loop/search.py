@@ -13,7 +13,8 @@ from typing import assert_never
 from compiler.logic import formula as f
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted, vacuous
 from compiler.logic.kripke import Explored, TooManyStatesError, check, explore
-from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError
+from compiler.logic.orders import Exclusion
+from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
 from fretc.verification.loop.model import Channel, Environment, Loop, Node, Tick
 from fretc.verification.loop.replay import Watched, moments, replayed
 from fretc.verification.monitor.machine import Stepped
@@ -49,6 +50,8 @@ class Case:
     stands: str
     limit: int = 10**6
     """The most states of the exploration."""
+    excluded: tuple[Exclusion, ...] = ()
+    """What the propositions cannot be together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,8 +108,8 @@ class Parts:
         loop = Loop(
             Stepped(requesting, safety.place, atoms),
             None if same else Stepped(watching, observer.place, atoms),
-            Gate(case.interceptor, case.settings, case.limit),
-            Environment(atoms, case.stands),
+            InterceptorMachine(case.interceptor, case.settings, case.limit),
+            Environment(atoms, case.stands, case.excluded),
             case.channel,
         )
         return cls(loop, safety, observer)
@@ -277,7 +280,9 @@ def _true(loop: Loop, tick: Tick) -> frozenset[str]:
 
 
 def _label(loop: Loop, true: frozenset[str], after: Node) -> frozenset[str]:
-    return true | {_HALT.name} if loop.gate.stopping(after.wheels.gate) else true
+    return (
+        true | {_HALT.name} if loop.interceptor.blocks_commands(after.wheels.interceptor) else true
+    )
 
 
 def is_safety(formula: f.Formula, positive: bool = True) -> bool:

@@ -26,6 +26,7 @@ from compiler.formalization.reference import (
     explore,
     template,
 )
+from compiler.logic.orders import Exclusion, only_possible
 from fretish import syntax as s
 
 Judgement = tuple[str, bool]
@@ -73,6 +74,7 @@ def compare(
     ticks: int,
     atoms: Sequence[str],
     limit: int = 10**6,
+    excluded: Sequence[Exclusion] = (),
 ) -> Equivalence | Difference | str:
     """Compare a monitor with the reference automaton of its sentence; or why they cannot be.
 
@@ -85,6 +87,8 @@ def compare(
         atoms: the order of the values in a letter, by the names that formulas have for them;
             at least every atom of the sentence.
         limit: the most states of the automaton, and the most pairs of states.
+        excluded: what the atoms cannot be together; the verdicts are those of free atoms, but no
+            trace comes by such a valuation.
 
     Raises:
         KeyError: an atom of the sentence is not among `atoms`.
@@ -99,7 +103,8 @@ def compare(
         automaton = explore(template(sentence, ticks), letters.values(), limit)
     except TooManyStatesError:
         return f"the automaton has more than {limit} states"
-    return _compared(machine, _Reference.of(automaton, letters), limit)
+    possible = {each: letters[each] for each in only_possible(tuple(letters), atoms, excluded)}
+    return _compared(machine, _Reference.of(automaton, possible), limit)
 
 
 # Lock step ------------------------------------------------------------------------------------
@@ -110,6 +115,7 @@ class _Reference:
     """The automaton, read by valuations of the atoms."""
 
     valuations: tuple[Valuation, ...]
+    """Those that can occur."""
     moves: tuple[tuple[int, ...], ...]
     """For each state and each letter of the automaton: the next state."""
     letters: tuple[int, ...]

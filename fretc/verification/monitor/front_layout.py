@@ -19,7 +19,7 @@ from fretc.verification.monitor.statements import (
     is_one_of,
     reads,
 )
-from fretish.bindings.constants import MOST_EXPONENT
+from fretish.expressions import MOST_EXPONENT
 from monitors.kernel.variables import Variable
 
 _CONSTANT = re.compile(r"-?[0-9]{1,4300}(?:\.[0-9]{1,60}|/[1-9][0-9]{0,4300})?", re.ASCII)

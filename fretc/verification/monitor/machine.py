@@ -6,7 +6,7 @@ That is sound only where a step depends on nothing but cells and propositions:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
 from typing import Any
 
 from compiler.formalization.letters import Valuation
@@ -17,12 +17,18 @@ from monitors.kernel import Monitor
 class Cells:
     """All cells of a rail: a step reads nothing else of its past."""
 
-    def __init__(self, rail: Any) -> None:
-        """Of a rail that is laid out as fretc writes it."""
+    def __init__(self, rail: Any, among: Collection[str] | None = None) -> None:
+        """Of a rail that is laid out as fretc writes it.
+
+        Args:
+            rail: it.
+            among: the cells that count, where the others are of no influence.
+        """
         self._rail = rail
+        cells = [name for name in rail.CELLS if among is None or name in among]
         # The text has a class of its own for windows.
-        self._windows = [n for n in rail.CELLS if hasattr(getattr(rail, n), "restore")]
-        self._plain = [name for name in rail.CELLS if name not in self._windows]
+        self._windows = [n for n in cells if hasattr(getattr(rail, n), "restore")]
+        self._plain = [name for name in cells if name not in self._windows]
 
     def save(self) -> Hashable:
         """Their values."""
@@ -42,20 +48,27 @@ class Cells:
 class Stepped:
     """A monitor whose propositions are all known."""
 
-    def __init__(self, monitor: Monitor, place: int, atoms: Sequence[str]) -> None:
+    def __init__(
+        self,
+        monitor: Monitor,
+        place: int,
+        atoms: Sequence[str],
+        cells: Collection[str] | None = None,
+    ) -> None:
         """Before its first tick.
 
         Args:
             monitor: laid out as fretc writes it; it is reset.
             place: of the requirement among those of the monitor.
             atoms: the order of the values in a letter; at least the monitor's propositions.
+            cells: those that the requirement depends on; None: all.
         """
         monitor.reset()
         rail: Any = monitor.must
         self._rail, self._place = rail, place
         self._alone = len(monitor.REQUIREMENTS) == 1
         self._step = _stepping(monitor, atoms)
-        self._cells = Cells(rail)
+        self._cells = Cells(rail, cells)
         self._fates = [n for n in rail.__slots__ if n.endswith(("_broken", "_doomed"))]
 
     def save(self) -> Hashable:

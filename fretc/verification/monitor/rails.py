@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Any
 
+from compiler.logic.orders import Exclusion, only_possible
 from compiler.targets.python.program import MARKS, SIGNALS
 from fretc.verification.monitor.machine import Cells
 from monitors.kernel import Monitor
@@ -43,7 +44,12 @@ class Apart:
 
 
 def compared(
-    machine: Monitor, place: int, reference: Monitor, atoms: Sequence[str], limit: int
+    machine: Monitor,
+    place: int,
+    reference: Monitor,
+    atoms: Sequence[str],
+    limit: int,
+    excluded: Sequence[Exclusion] = (),
 ) -> Same | Apart | None:
     """Compare a requirement of one monitor with the only one of the other.
 
@@ -51,14 +57,18 @@ def compared(
         machine: laid out as fretc writes it.
         place: of the requirement among those of the machine.
         reference: a monitor of one requirement.
-        atoms: the order of the values in a letter; at least the propositions of both.
+        atoms: the order of the values in a letter; the other propositions of the machine are false,
+            and the requirement must not depend on them.
         limit: the most pairs of states; with more the result is None.
+        excluded: what the atoms cannot be together.
     """
+    every = tuple(product((False, True, None), repeat=len(atoms)))
+    letters = only_possible(every, atoms, excluded)
     states = 0
     for doubt in (False, True):
         left = _Rail(machine, place, doubt, atoms)
         right = _Rail(reference, 0, doubt, atoms)
-        result = _in_lock_step(left, right, len(atoms), limit)
+        result = _in_lock_step(left, right, letters, limit)
         if not isinstance(result, Same):
             return result
         states += result.states
@@ -77,7 +87,9 @@ class _Rail:
         self._rail: Any = monitor.RAIL(doubt=doubt)
         self._place = place
         self._cells = Cells(self._rail)
-        self._order = tuple(atoms.index(name) for name in monitor.PROPOSITIONS)
+        self._order = tuple(
+            atoms.index(name) if name in atoms else None for name in monitor.PROPOSITIONS
+        )
         prefixes = tuple(n.removesuffix("_open") for n in self._rail.__slots__ if _is_open(n))
         self._marks = tuple((mark, f"{prefix}_{mark}") for prefix in prefixes for mark in MARKS)
 
@@ -87,7 +99,7 @@ class _Rail:
 
     def step(self, state: Hashable, letter: Letter) -> tuple[object, ...]:
         """The signals after one tick, and the marks from each of `_STARTS`."""
-        row = tuple([letter[i] for i in self._order])
+        row = tuple([False if i is None else letter[i] for i in self._order])
         marks: list[object] = []
         for start in _STARTS:
             self._cells.load(state)
@@ -106,9 +118,10 @@ def _is_open(name: str) -> bool:
 _NAMES = (*SIGNALS, *(f"mark `{mark}`" for _ in _STARTS for mark in MARKS))
 
 
-def _in_lock_step(left: _Rail, right: _Rail, atoms: int, limit: int) -> Same | Apart | None:
+def _in_lock_step(
+    left: _Rail, right: _Rail, letters: Sequence[Letter], limit: int
+) -> Same | Apart | None:
     """Breadth first through all pairs of states."""
-    letters = tuple(product((False, True, None), repeat=atoms))
     pairs = [(left.save(), right.save())]
     origins: list[tuple[int, Letter] | None] = [None]
     visited = {*pairs}

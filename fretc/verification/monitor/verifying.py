@@ -19,13 +19,22 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.letters import atoms_of
+from compiler.formalization.letters import atoms_of, excluded
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
+from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
+from compiler.targets.python.monitor import prefixes_of
 from fretc.verification.monitor import front_terms, rails
 from fretc.verification.monitor.column_terms import Terms
-from fretc.verification.monitor.equivalence import Difference, Equivalence, Judgement, compare
+from fretc.verification.monitor.equivalence import (
+    Difference,
+    Equivalence,
+    Judgement,
+    Machine,
+    compare,
+)
 from fretc.verification.monitor.machine import Stepped
+from fretc.verification.monitor.slices import Alone, slice_of
 from fretc.verification.monitor.statements import StrangeError
 from fretc.verification.monitor.text_check import own, strange
 from monitors.kernel import Column, Monitor
@@ -87,8 +96,9 @@ def _compared(
         return not_checked("the monitor is of other requirements")
     place = places[0]
     atoms = tuple(dict.fromkeys((*atoms_of(rule.sentence), *monitor.PROPOSITIONS)))
-    machine = Stepped(monitor, place, atoms)
-    result = compare(machine, rule.sentence, rule.ticks or 0, atoms, limit)
+    needed, cells = _needed(rule, text, monitor, atoms)
+    machine = Alone(Stepped(monitor, place, atoms, cells), len(atoms) - len(needed))
+    result = _lock_step(rule, machine, needed, limit)
     if isinstance(result, str):
         return not_checked(result)
     if isinstance(result, Difference):
@@ -101,13 +111,42 @@ def _compared(
         fault = _front_compared(rule, text, monitor, atoms, others)
         if fault is not None:
             return fault
-    ticks, word = _columns_compared(monitor, place, atoms, rule.ticks or 0)
+    ticks, word = _columns_compared(rule, monitor, place, atoms)
     if word is not None:
         return _disagreement(atoms, word)
     if text == generated or _is_generated(text, monitor, (*others, rule)):
         return _proved(result, ticks)
-    states = _compared_with_generated(generated, text, monitor, place, atoms, limit)
+    states = _compared_with_generated(
+        rule, generated, text, monitor, place, (atoms, len(needed)), limit
+    )
     return _proved(result, ticks, states) if isinstance(states, int) else states
+
+
+def _needed(
+    rule: Formalized, text: str, monitor: Monitor, atoms: tuple[str, ...]
+) -> tuple[tuple[str, ...], frozenset[str] | None]:
+    """The atoms and the cells that a requirement depends on; all, where it may depend on more."""
+    own = atoms_of(rule.sentence)
+    prefix = prefixes_of(each.id for each in monitor.REQUIREMENTS)[rule.id]
+    part = slice_of(text, prefix, monitor.PROPOSITIONS)
+    return (own, part.cells) if part.propositions <= {*own} else (atoms, None)
+
+
+def _lock_step(
+    rule: Formalized, machine: Machine, atoms: Sequence[str], limit: int
+) -> Equivalence | Difference | str:
+    """The comparison with the automaton of the sentence, over all valuations of the atoms.
+
+    Where they differ, over those that can occur: a trace that no numbers make shows nothing.
+    """
+    sentence, ticks = rule.sentence, rule.ticks or 0
+    start = machine.save()
+    result = compare(machine, sentence, ticks, atoms, limit)
+    impossible = excluded(rule) if isinstance(result, Difference) else ()
+    if not impossible:
+        return result
+    machine.load(start)
+    return compare(machine, sentence, ticks, atoms, limit, impossible)
 
 
 def _proved(same: Equivalence, ticks: int, states: int = 0) -> Outcome:
@@ -138,7 +177,7 @@ def _refuted(difference: Difference, atoms: tuple[str, ...]) -> Outcome:
     return refuted(
         f"{kind} that shows it has {length}; after it, {_in_words(difference.actual)}, and should "
         f"be {_in_words(difference.expected)}",
-        Trace(atoms, difference.word),
+        _whole(atoms, difference.word),
     )
 
 
@@ -162,7 +201,12 @@ def _disagreement(
         values: of the variables at the last tick, where they matter.
     """
     last = f"; at its last tick {values}" if values else ""
-    return refuted(f"{fault} on a trace{last}", Trace(tuple(atoms), word))
+    return refuted(f"{fault} on a trace{last}", _whole(atoms, word))
+
+
+def _whole(atoms: Sequence[str], word: Word) -> Trace:
+    """The trace with the propositions of other requirements, which are false in it."""
+    return Trace(tuple(atoms), tuple((*row, *(False,) * (len(atoms) - len(row))) for row in word))
 
 
 def _is_generated(text: str, monitor: Monitor, rules: Sequence[Formalized]) -> bool:
@@ -226,22 +270,40 @@ def _kinds(variables: Mapping[str, Variable]) -> Mapping[str, object]:
 
 
 def _compared_with_generated(
-    generated: str, text: str, monitor: Monitor, place: int, atoms: Sequence[str], limit: int
+    rule: Formalized,
+    generated: str,
+    text: str,
+    monitor: Monitor,
+    place: int,
+    atoms: tuple[Sequence[str], int],
+    limit: int,
 ) -> int | Outcome:
-    """In how many states it agrees with the text that fretc writes for the rule."""
-    if len(atoms) > rails.MOST_PROPOSITIONS:
+    """In how many states it agrees with the text that fretc writes for the rule.
+
+    Args:
+        rule: it.
+        generated: that text.
+        text: the monitor's.
+        monitor: loaded from it.
+        place: of the requirement among those of the monitor.
+        atoms: all propositions, and how many of them the requirement depends on: the first ones.
+        limit: the most states.
+    """
+    names, count = atoms
+    if count > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
         return not_checked(
-            f"it is not the text that fretc writes, and {len(atoms)} propositions, more than "
+            f"it is not the text that fretc writes, and {count} propositions, more than "
             f"{most}, are too many to compare both with unknown values"
         )
-    comparison = rails.compared(monitor, place, load("generated", generated), atoms, limit)
+    reference = load("generated", generated)
+    comparison = rails.compared(monitor, place, reference, names[:count], limit, excluded(rule))
     match comparison:
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")
         case rails.Apart(word, signal):
             fault = f"the text that fretc writes tells another {signal}"
-            return _disagreement(atoms, word, fault)
+            return _disagreement(names, word, fault)
         case rails.Same(states):
             terms = Terms()
             if terms.of(text, place) == terms.of(generated, 0):
@@ -268,19 +330,37 @@ def _demand_monitor(text: str) -> None:
 
 
 def _columns_compared(
-    monitor: Monitor, place: int, atoms: Sequence[str], bound: int
+    rule: Formalized, monitor: Monitor, place: int, atoms: Sequence[str]
 ) -> tuple[int, Word | None]:
     """The ticks on which both programs agree; and a trace on which they do not."""
+    bound, never = rule.ticks or 0, excluded(rule)
     choose = random.Random(bound)
     length = 4 * bound + 50
     count = min(DRAWN, max(_FEWEST, _TICKS // length))
     for number in range(count):
         odds = 0.02 if number % 2 else 0.0
         drawn = {name: _drawn(choose, length, bound, odds) for name in atoms}
+        drawn = _possible(drawn, never, length)
         tick = _first_difference(monitor, place, drawn, length)
         if tick is not None:
             return 0, tuple(_rows(drawn, tick + 1))
     return count * length, None
+
+
+def _possible(
+    columns: Mapping[str, Column], excluded: Sequence[Exclusion], length: int
+) -> dict[str, Column]:
+    """The columns with unknown values where they cannot be what they are."""
+    every, found = (1 << length) - 1, dict(columns)
+    for exclusion in excluded:
+        at = every
+        for name, value in exclusion:
+            true, unknown = found[name]
+            at &= true if value else every ^ (true | unknown)
+        for name, _ in exclusion:
+            true, unknown = found[name]
+            found[name] = Column(true & ~at, unknown | at)
+    return found
 
 
 def _first_difference(

@@ -173,6 +173,7 @@ def test_gwendolen_that_the_model_does_not_have_is_told_apart(
     assert diagnostic.message == f"{what} is Gwendolen, but not in the model of fretc"
 
 
+@pytest.mark.slow
 def test_a_very_deep_term_is_no_crash() -> None:
     deep = f"a{'(a' * 20_000}{')' * 20_000}"
     assert refused("release_base(1, fast)", deep).code is Code.BEYOND_MODEL

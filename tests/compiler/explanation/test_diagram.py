@@ -53,6 +53,7 @@ def drawn_for(picture: Diagram, window: Window) -> set[int]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("condition", meaning.CONDITIONS)
 @pytest.mark.parametrize("scope", ["null", "in", "after", "before", "onlyAfter"])
 def test_the_windows_are_the_ticks_at_which_the_response_matters(
@@ -91,6 +92,7 @@ def pictures(counts: tuple[int, ...]) -> Iterator[tuple[Template, Diagram]]:
         yield drawn, diagram(rule(drawn.sentence))
 
 
+@pytest.mark.slow
 def test_every_template_has_a_picture_that_is_xml_and_fits() -> None:
     for _, picture in pictures((2,)):
         root = ElementTree.fromstring(svg(picture))

@@ -32,6 +32,7 @@ def columns(atoms: tuple[str, ...], example: Example, rounds: int) -> dict[str, 
     return {name: [values[i] for values in word] for i, name in enumerate(atoms)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_a_trace_is_judged_as_fretish_means_it_however_often_it_repeats(scope: str) -> None:
     for drawn in every(scope, (0, 1, 2, 5)):

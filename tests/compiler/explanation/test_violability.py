@@ -32,6 +32,7 @@ def test_of_each_template_spot_says_the_same(scope: str) -> None:
             assert is_violable(made) is not is_live(made.ft_infinite), template.sentence
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_of_parts_that_share_atoms_spot_says_the_same(scope: str) -> None:
     for condition, (timing, n) in product(WHEN, counted()):

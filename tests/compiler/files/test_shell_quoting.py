@@ -96,6 +96,7 @@ def test_what_is_no_hash_is_not_shown_in_a_command(sha256: str) -> None:
     assert check_of([(sha256, "a.mcap")]) == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*HOSTILE, "a\nEND\ntouch PWNED\n.mcap"])
 def test_the_commands_of_a_report_execute_nothing_that_evidence_names(
     fretc: Fretc, tmp_path: Path, name: str

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from compiler.formalization.binding_agreement import unbound
 from compiler.formalization.formalize import formalize
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -166,3 +167,30 @@ def test_what_is_taken_is_true_of_the_same_numbers(
 def test_a_word_is_never_compared_with_a_number() -> None:
     remarks = said("state = vx", "(state = vx)", "state = 'drive'")
     assert [remark.code for remark in remarks] == [Code.BAD_EXPRESSION]
+
+
+def test_a_word_in_the_place_of_a_mode_is_told_where_it_belongs() -> None:
+    declared, _ = read_bindings(Source("bindings.toml", HEAD))
+    assert declared is not None
+    sentence = Source("r.fret", "in docking mode the robot shall always satisfy vx < 1")
+    ((requirement,), _) = requirements(sentence)
+    rule, _ = formalize(requirement, declared)
+    assert rule is not None
+    assert rule.declarations is not None
+    (missing,) = unbound(rule, rule.declarations)
+    assert missing.message == "`docking` of r has no binding in bindings.toml"
+    assert missing.help == (
+        "`docking` is a word of `state`: write `state = docking` (as a scope `while state = "
+        "docking`), or add `[proposition.docking]` there"
+    )
+
+
+def test_a_comparison_of_a_signal_with_a_mistake_has_that_mistake_alone() -> None:
+    text = HEAD.replace('path = "/state.data"', 'path = "TODO"')
+    declared, wrong = read_bindings(Source("bindings.toml", text))
+    assert declared is not None
+    ((requirement,), _) = requirements(Source("r.fret", "the robot shall satisfy state = docking"))
+    rule, _ = formalize(requirement, declared)
+    assert rule is not None
+    assert rule.declarations is not None
+    assert tuple(unbound(rule, rule.declarations)) == wrong

@@ -115,6 +115,7 @@ def at_end(text: str) -> Callable[[Packed], int]:
 # Against FRET's own formulas ------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @each("row", formulas_of_fret())
 def test_the_infinite_formula_has_the_language_of_frets(row: dict[str, Any]) -> None:
     ours = printing.future(endless(future(read(row["fretish"]))))
@@ -196,6 +197,7 @@ def test_future_past_and_watch_mean_what_fretish_means(scope: str) -> None:
                 assert fret.differing(traces, expected, judged) is None, (template, name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_the_formulas_hold_as_their_definition_says(scope: str) -> None:
     for template in every(scope):
@@ -404,6 +406,7 @@ def implied(strict: Template, lax: Template) -> bool:
     return same_language(f"({one}) & ({two})", one)
 
 
+@pytest.mark.slow
 @each("template", [t for t in templates((2,)) if t.n])
 def test_the_chosen_rounding_implies_the_other_one(template: Template) -> None:
     down, up = template, replace(template, n=3)

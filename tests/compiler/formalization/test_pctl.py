@@ -151,6 +151,7 @@ def test_the_model_checkers_know_every_operator(sentence: str) -> None:
     assert set(words) <= {"m", "p", "q", "s", "G", "F", "X", "U", "true", "false"} | numbers
 
 
+@pytest.mark.slow
 @each("sentence", ALL)
 def test_every_path_is_within_a_probability(sentence: str) -> None:
     """`P>=1` stands around the whole, and no bound stands without what is demanded."""

@@ -83,6 +83,7 @@ def test_all_traces_of_two_ticks_are_four() -> None:
     assert every_trace(("p",), 2) == ({"p": [0b0101, 0b0011]}, 0b1111)
 
 
+@pytest.mark.slow
 @each("row", with_a("ft_inf"))
 def test_the_formula_of_infinite_traces_says_what_that_of_fret_says(row: dict[str, Any]) -> None:
     assert same_language(printing.future(rule(row["fretish"]).ft_infinite), row["ft_inf"])
@@ -97,6 +98,7 @@ def test_the_formula_of_finite_traces_says_what_that_of_fret_says(row: dict[str,
         assert at_start == fret.values(theirs, word, length, full)[0], length
 
 
+@pytest.mark.slow
 @each("row", with_a("pt"))
 def test_the_past_time_formula_says_what_that_of_fret_says(row: dict[str, Any]) -> None:
     ours, theirs = fret.parse(printing.past(rule(row["fretish"]).pt)), fret.parse(row["pt"])

@@ -104,6 +104,7 @@ def test_every_short_trace_is_judged_as_fretish_means_it(scope: str) -> None:
                 assert_judged_as_meant(drawn, rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_drawn_traces_are_judged_as_fretish_means_them(scope: str) -> None:
     for drawn in every(scope, (*SMALL, 5)):
@@ -295,6 +296,7 @@ SHARING = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", SHARING)
 def test_verdicts_come_at_the_earliest_instant_where_expressions_share_variables(
     sentence: str,
@@ -409,6 +411,7 @@ def test_satisfied_is_said_where_no_trigger_can_come_any_more(n: int) -> None:
 # Size -----------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("timing", [s.Within, s.For, s.After])
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("condition", CONDITIONS)

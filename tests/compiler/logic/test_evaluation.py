@@ -266,6 +266,7 @@ def long_traces(draw: st.DrawFn) -> dict[str, list[bool]]:
 slow = settings(max_examples=40, suppress_health_check=list(HealthCheck))
 
 
+@pytest.mark.slow
 @slow
 @given(long_mixed, long_traces())
 def test_nested_formulas_with_long_bounds_on_long_traces(

@@ -45,6 +45,7 @@ def graphs(draw: st.DrawFn) -> Kripke:
     return Kripke(tuple(labels), tuple(edges), draw(st.integers(0, size - 1)))
 
 
+@pytest.mark.slow
 @given(graphs(), formulas())
 @example(Kripke((P, Q), ((0, 1), ())), RESPONSE)
 @example(Kripke((P,), ((),)), f.next_(f.next_(p)))

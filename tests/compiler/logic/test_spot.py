@@ -77,6 +77,7 @@ def test_a_simplified_formula_says_the_same_in_fewer_characters(sentence: str) -
             assert len(text) < len(printing.text(formula, printing.SPOT))
 
 
+@pytest.mark.slow
 def test_many_templates_do_have_a_shorter_formula() -> None:
     found = [simplified(formulas(sentence)[0]) for sentence in sentences(SCOPES)]
     assert sum(text is not None for text in found) > 30

@@ -140,6 +140,7 @@ def test_an_object_has_variables_too(fretc: Fretc) -> None:
         "\n"
         "[variable.stopped.fret]\n"
         'assignment = "speed = 0.0"\n'
+        "completed = true\n"
         'project = "Rover"\n'
         "\n"
         "[variable.speed]\n"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from compiler.formalization.formalize import formalize
-from compiler.project.stated_numbers import disagreements
+from compiler.project.stated_numbers import disagreements, first_unit
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source
@@ -72,3 +72,15 @@ def test_a_parameter_belongs_to_a_proposition_or_to_a_signal() -> None:
     assert [code for code, _ in codes(params='near = "6 cm"')] == [drift]
     assert [code for code, _ in codes(params='battery = "0.3"')] == [drift]
     assert [code for code, _ in codes(params='speed = "1 m/s"')] == [Code.UNKNOWN_NAME.name]
+
+
+def test_the_first_unit_of_a_project_is_noted_and_bare_numbers_are_not() -> None:
+    def note(sentence: str) -> str | None:
+        ((requirement,), _) = requirements(Source("r.fret", sentence))
+        rule, _ = formalize(requirement, read_bindings(Source("bindings.toml", BINDINGS))[0])
+        assert rule is not None
+        found = first_unit([rule])
+        return found.span.text if found is not None and found.span is not None else None
+
+    assert note(SENTENCE) is None
+    assert note(SENTENCE.replace("< 20", "< 20 %").replace("> 1", "> 1 m")) == "20 %"

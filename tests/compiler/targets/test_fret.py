@@ -1,11 +1,14 @@
 """`--emit fret-json`: what FRET imports, and what comes back from it."""
 
 import json
+import shutil
 import uuid
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from compiler.project.folder import load
 from tests.command import Fretc, write
@@ -404,7 +407,8 @@ def test_each_variable_comes_back_with_its_requirements(fretc: Fretc) -> None:
         ("smvAssignment", "a & b"),
         ("tool", "Simulink"),
         ("moduleName", "Arm"),
-        ("dataType", "int32"),
+        ("dataType", "fixdt(1,16,4)"),
+        ("completed", True),
         ("dataType", ""),
         ("idType", "Function"),
         ("idType", ""),
@@ -441,3 +445,125 @@ def test_title_and_text_survive_an_export_and_an_import(fretc: Fretc) -> None:
     (known,) = load([str(back)]).requirements
     assert known.title == 'Stop: "near" things'
     assert known.text == "It stops.\nAt once."
+
+
+# FRET's variables, there and back -------------------------------------------------------------
+
+ASSIGNMENTS = (
+    "",
+    "1",
+    "0.5",
+    "a2 and not a3",
+    "a2  and  a3",
+    "a3 + 1.0",
+    "0.0 -> pre x",
+    "if a then b else c",
+    "a1",
+    "not a == b",
+    "preReal(0.0, x) < 3",
+)
+TEXTS = st.sampled_from(["", "plain", 'say "no"', "two\nlines"])
+VARIABLE = st.fixed_dictionaries(
+    {
+        "project": st.just("Rover"),
+        "component_name": st.sampled_from(["rover", "arm"]),
+        "dataType": st.sampled_from(
+            ["", "boolean", "integer", "unsigned integer", "single", "double", "enum"]
+        ),
+        "idType": st.sampled_from(["", "Input", "Output", "Internal", "Mode", "Function"]),
+        "description": TEXTS,
+        "assignment": st.sampled_from(ASSIGNMENTS),
+        "modeRequirement": st.sampled_from(ASSIGNMENTS),
+        "copilotAssignment": TEXTS,
+        "smvAssignment": TEXTS,
+        "assignmentVariables": st.sampled_from([[], ["a", "b"]]),
+        "moduleName": TEXTS,
+        "modeldoc": st.just(False),
+        "modeldoc_id": st.just(""),
+        "modeldoc_vectorIndex": st.sampled_from(["", 3]),
+        "completed": st.booleans(),
+        "smvCompleted": st.booleans(),
+    }
+)
+
+
+def variables_of(records: list[dict[str, Any]]) -> Any:
+    """All that they say, in no order; what is empty says nothing."""
+    said = [
+        {key: v for key, v in record.items() if key != "reqs" and v not in ("", [], None, False)}
+        for record in records
+    ]
+    return sorted(said, key=lambda record: record["variable_name"])
+
+
+@pytest.mark.slow
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=40)
+@given(st.lists(VARIABLE, max_size=4))
+def test_what_fret_says_of_its_variables_comes_back(
+    fretc: Fretc, variables: list[dict[str, Any]]
+) -> None:
+    for number, variable in enumerate(variables):
+        name = variable["variable_name"] = f"a{number}"
+        variable["_id"] = f"Rover{variable['component_name']}{name}"
+    sentence = "the sw shall always satisfy other"
+    requirement = {**EXPORT["requirements"][0], "fulltext": sentence}
+    content = {"requirements": [requirement], "variables": variables}
+    for folder in (Path("first"), Path("second"), Path("requirements")):
+        shutil.rmtree(folder, ignore_errors=True)
+    first, again, second = there_and_back(fretc, content)
+    found = [v for v in again["variables"] if v["variable_name"] != "other"]
+    assert variables_of(found) == variables_of(variables)
+    assert first["rover.fret"] == second["rover.fret"]
+
+
+def test_a_constant_stays_a_name_in_what_fret_reads(fretc: Fretc) -> None:
+    bindings = '[variable.limit]\ntype = "double"\nvalue = "1.5"\n'
+    found = variables(fretc, "the rover shall always satisfy speed < limit", bindings=bindings)
+    assert (found["limit"]["assignment"], found["limit"]["idType"]) == ("1.5", "Internal")
+    assert found["limit"]["reqs"] == ["R0"]
+    (path,) = Path().glob("r.fret")
+    (requirement,) = emitted(fretc, str(path))["requirements"]
+    assert requirement["fulltext"] == "the rover shall always satisfy speed < limit"
+    assert requirement["semantics"]["pt"] == "H(speed < limit)"
+
+
+def test_a_constant_with_a_unit_is_a_number_in_what_fret_reads(fretc: Fretc) -> None:
+    write(
+        "bindings.toml",
+        '[clock]\ntick = "1 s"\n[signal.speed]\npath = "/v.data"\nunit = "km/h"\nrole = "input"\n'
+        '[variable.limit]\nvalue = "1.5 m/s"\n',
+    )
+    content = emitted(fretc, write("r.fret", "the rover shall always satisfy speed < limit"))
+    (requirement,) = content["requirements"]
+    assert requirement["fulltext"] == "the rover shall always satisfy speed < 5.4"
+    speed, limit = content["variables"]
+    assert (speed["variable_name"], speed["idType"]) == ("speed", "Input")
+    assert (limit["assignment"], limit["fretc"]) == ("", {"value": "1.5 m/s"})
+    assert fretc("import", write("back.json", json.dumps(content)), "-o", "back").status == 0
+    assert 'value = "1.5 m/s"' in Path("back/bindings.toml").read_text("utf-8")
+
+
+def test_a_changed_value_is_what_fret_gets(fretc: Fretc) -> None:
+    """The text of FRET's own assignment stays only while it says the same."""
+    table = (
+        '[variable.m]\nrole = "internal"\nvalue = "{}"\n'
+        '[variable.m.fret]\nassignment = "a  and  b"\n'
+    )
+    same = variables(fretc, "the sw shall always satisfy m", bindings=table.format("a & b"))
+    assert same["m"]["assignment"] == "a  and  b"
+    other = variables(fretc, "the sw shall always satisfy m", bindings=table.format("a | b"))
+    assert other["m"]["assignment"] == "a or b"
+
+
+def test_assignments_that_lead_in_a_circle_are_kept_and_not_read(fretc: Fretc) -> None:
+    both = [
+        {**EXPORT["variables"][2], "variable_name": name, "assignment": text, "_id": name}
+        for name, text in (("p", "q or p2"), ("q", "p and p2"))
+    ]
+    content = {"requirements": EXPORT["requirements"][2:], "variables": both}
+    run = fretc("import", write("e.json", json.dumps(content)), "-o", "in")
+    assert run.status == 0
+    assert "F342 warning: assignments lead in a circle: p -> q -> p" in run.err
+    again = emitted(fretc, *map(str, Path("in").glob("*.fret")))
+    kept = {v["variable_name"]: v["assignment"] for v in again["variables"]}
+    assert (kept["p"], kept["q"]) == ("q or p2", "p and p2")

@@ -122,7 +122,7 @@ def test_the_frame_of_a_model() -> None:
     assert text.split("dtmc\n")[1] == (
         "\n"
         "const double p_p;  // how likely p is true at a tick\n"
-        "const double p_x_gt_3;  // how likely (x > 3) is true at a tick\n"
+        "const double p_x_gt_3;  // how likely x > 3 is true at a tick\n"
         "\n"
         "module draw_p\n"
         "  p : bool;\n"
@@ -140,7 +140,7 @@ def test_the_frame_of_a_model() -> None:
         "endinit\n"
         "\n"
         'label "p" = p;\n'
-        'label "x_gt_3" = x_gt_3;  // (x > 3)\n'
+        'label "x_gt_3" = x_gt_3;  // x > 3\n'
     )
 
 

@@ -21,6 +21,8 @@ SENTENCES = (
     "whenever p r shall eventually satisfy q",
     "r shall always satisfy q",
     "upon p r shall for 2 ticks satisfy q",
+    "whenever p r shall immediately satisfy x - preReal(2, x) <= limit | falling",
+    "r shall always satisfy (x + 1) mod 3 < 2 & x ^ 2 <= 16",
 )
 BINDINGS = """
 [clock]
@@ -29,6 +31,10 @@ end = "{end}"
 [signal.x]
 path = "/x.data"
 max_age = "25 ns"
+[variable.limit]
+value = "2"
+[variable.falling]
+value = "x < preInt(1, preInt(4, x))"
 [proposition.p]
 expr = "x < 3"
 agg = "any"
@@ -58,6 +64,7 @@ def verdicts(plan: Plan, samples: list[tuple[int, float]]) -> dict[str, str]:
     return {each.requirement: str(each.verdict) for each in evidence}
 
 
+@pytest.mark.slow
 @settings(max_examples=20)  # each makes monitors and looks at all phases of the ticks
 @given(
     st.lists(
@@ -80,6 +87,7 @@ def test_the_verdicts_at_the_end_are_those_of_an_audit(
     assert dict(stream.end().verdicts) == verdicts(plan, samples)
 
 
+@pytest.mark.slow
 def test_a_recorded_run_gives_the_ticks_and_the_verdict_of_its_audit() -> None:
     (log,) = ROOT.joinpath("traces").glob("*.mcap")
     project = fretc.read_project(ROOT / "requirements")

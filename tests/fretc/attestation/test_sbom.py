@@ -12,6 +12,7 @@ from fretc.attestation.sbom import closure
 from tests.command import Fretc
 
 
+@pytest.mark.slow
 def test_the_bill_fits_the_schema_of_cyclonedx(fretc: Fretc) -> None:
     run = fretc("sbom")
     assert (run.status, run.err) == (0, "")
@@ -23,6 +24,7 @@ def test_the_bill_fits_the_schema_of_cyclonedx(fretc: Fretc) -> None:
     assert bom["metadata"]["component"]["licenses"] == [{"license": {"id": "GPL-3.0-or-later"}}]
 
 
+@pytest.mark.slow
 def test_it_names_each_library_that_is_needed_with_its_version_and_no_tool_of_developers(
     fretc: Fretc,
 ) -> None:
@@ -36,6 +38,7 @@ def test_it_names_each_library_that_is_needed_with_its_version_and_no_tool_of_de
     assert by_name["markupsafe"] in listed[by_name["jinja2"]]
 
 
+@pytest.mark.slow
 def test_the_closure_is_closed_and_reached_from_the_root() -> None:
     needs = closure()
     assert all(set(needed) <= needs.keys() for needed in needs.values())
@@ -48,6 +51,7 @@ def test_the_closure_is_closed_and_reached_from_the_root() -> None:
     assert reached == needs.keys()
 
 
+@pytest.mark.slow
 def test_the_same_installation_gives_the_same_bytes(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:

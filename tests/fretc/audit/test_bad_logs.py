@@ -56,6 +56,7 @@ def test_a_whole_log_shows_what_it_shows_in_whatever_form(fretc: Fretc, case: Br
     assert (status, verdicts) == (1, ["satisfied", "satisfied", "violated"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [*CUT, *DAMAGED], ids=lambda case: case.name)
 def test_a_broken_log_satisfies_nothing_and_violates_what_is_whole_in_it(
     fretc: Fretc, case: Broken

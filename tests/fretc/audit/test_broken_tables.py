@@ -196,6 +196,7 @@ def test_what_reads_a_broken_table_is_refused_and_nothing_else(table: tuple[str,
         check([(*table, kind)])
 
 
+@pytest.mark.slow
 @given(st.lists(st.sampled_from(CASES), min_size=1, max_size=3, unique_by=lambda c: c[:2]))
 @settings(max_examples=20)
 def test_so_it_is_of_several_tables(cases: list[Case]) -> None:
@@ -271,6 +272,7 @@ def test_every_command_names_all_mistakes_and_makes_nothing_of_what_reads_them(
     assert {path.name for path in new} <= {"report.html"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", [("signal", "ay", "F306"), ("proposition", "near", "F302")])
 def test_a_report_takes_no_earlier_verdict_on_what_reads_a_broken_table(
     fretc: Fretc, case: Case
@@ -316,6 +318,7 @@ def test_a_signal_with_a_mistake_is_still_that_signal(fretc: Fretc) -> None:
         assert "F524" in codes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new"),
     [

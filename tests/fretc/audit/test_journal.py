@@ -22,7 +22,7 @@ from fretc.audit.journal import Journal
 from fretc.audit.many_logs import Audit, LogAudit, audit_logs, audited
 from fretc.audit.plan import Plan, planned
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from tests.command import Fretc
+from tests.command import Fretc, untimed
 
 ROOT = Path(__file__).parents[3]
 EVIDENCE = Path("build/evidence.json")
@@ -80,6 +80,7 @@ def damage(log: str) -> None:
     os.utime(log, ns=(before.st_atime_ns, before.st_mtime_ns))
 
 
+@pytest.mark.slow
 def test_what_is_finished_is_what_was_shown(fretc: Fretc) -> None:
     damage("b.mcap")
     stopped()
@@ -87,6 +88,7 @@ def test_what_is_finished_is_what_was_shown(fretc: Fretc) -> None:
     assert journal.finished(LOGS) == {log: audited(plan(), log) for log in LOGS[:2]}
 
 
+@pytest.mark.slow
 def test_an_audit_that_goes_on_gives_the_evidence_of_one_that_was_not_stopped(
     fretc: Fretc,
 ) -> None:
@@ -98,7 +100,7 @@ def test_an_audit_that_goes_on_gives_the_evidence_of_one_that_was_not_stopped(
         stopped()
         run = fretc("audit", *LOGS, "--resume", "--jobs", jobs)
         assert EVIDENCE.read_bytes() == evidence
-        assert (run.status, run.out) == (whole.status, whole.out)
+        assert (run.status, untimed(run.out)) == (whole.status, untimed(whole.out))
         assert run.err == f"2 of 3 logs are audited already\n{whole.err}"
         assert not JOURNAL.exists()
 
@@ -238,6 +240,7 @@ def test_without_resume_an_audit_begins_anew(fretc: Fretc) -> None:
     assert finished() == ["c.mcap"]
 
 
+@pytest.mark.slow
 def test_two_audits_do_not_share_a_journal(fretc: Fretc) -> None:
     stopped()
     other = journal_of(plan())
@@ -302,6 +305,7 @@ def test_an_audit_is_stopped_and_goes_on(fretc: Fretc, stop: signal.Signals) -> 
     assert [result["run"] for result in json.loads(EVIDENCE.read_text())["results"]] == logs
 
 
+@pytest.mark.slow
 def test_a_line_with_another_byte_is_not_believed(fretc: Fretc) -> None:
     stopped()
     data = JOURNAL.read_bytes()
@@ -321,6 +325,7 @@ def test_a_line_with_another_byte_is_not_believed(fretc: Fretc) -> None:
 FOREIGN = f"`{JOURNAL}` was not kept by you in this place: that is not used\n"
 
 
+@pytest.mark.slow
 def test_a_journal_that_another_user_has_kept_is_not_used_and_that_is_said(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -380,6 +385,7 @@ def test_lines_of_another_plan_do_not_count_below_this_ones_head(fretc: Fretc) -
     assert finished() == ["a.mcap"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("link", [os.symlink, os.link])
 def test_a_journal_that_is_a_link_leaves_its_target_as_it_is(
     fretc: Fretc, link: Callable[[str, Path], None]
@@ -394,6 +400,7 @@ def test_a_journal_that_is_a_link_leaves_its_target_as_it_is(
         assert Path("precious").read_text() == "precious"
 
 
+@pytest.mark.slow
 def test_a_key_that_others_can_read_is_not_used_and_the_audit_goes_on(fretc: Fretc) -> None:
     stopped()
     path = Path(os.environ["XDG_STATE_HOME"]) / "fretc/journal.key"

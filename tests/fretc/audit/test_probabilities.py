@@ -8,16 +8,15 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-import jsonschema  # type: ignore[import-untyped]
 import pytest
 from mcap.writer import CompressionType
 
-from tests.command import Fretc, write
+from tests.command import Fretc, untimed, write
 from tests.fretc.audit.measurements.test_count_trials import fillings
 from tests.fretc.logs.logs import MS, S, number
 from tests.fretc.logs.logs import write as write_log
+from tests.json_schemas import validate
 
-ROOT = Path(__file__).parents[3]
 BINDINGS = """
 [clock]
 time = "log_time"
@@ -72,8 +71,7 @@ def logs(count: int, c: str, r: str, folder: str = "runs") -> None:
 
 def evidence() -> Any:
     content = json.loads(Path("build/evidence.json").read_text("utf-8"))
-    schema = json.loads((ROOT / "templates/json/evidence.schema.json").read_text("utf-8"))
-    jsonschema.validate(content, schema)
+    validate("evidence.schema.json", content)
     return content
 
 
@@ -87,29 +85,37 @@ def counts() -> tuple[int, int, int]:
     return triggers["answered"], triggers["failed"], triggers["open"]
 
 
+@pytest.mark.slow
 def test_many_answers_support_it(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     run = fretc("audit", "runs")
     assert (run.status, run.err) == (0, "wrote build/evidence.json\n")
-    assert run.out.startswith(
+    listed = fretc("audit", "runs", "-v").out
+    assert listed.startswith(
         "runs/000.mcap\n"
         "  ◔ R7  inconclusive  1 of 1 trigger answered: judged over all runs\n"
         "runs/001.mcap\n"
     )
-    assert run.out.partition("R7 over")[2] == (
+    assert untimed(run.out) == (
+        "    run 1          11         21         31\n"
+        "  ✔ R7  ◔◔◔◔◔◔◔◔◔◔ ◔◔◔◔◔◔◔◔◔◔ ◔◔◔◔◔◔◔◔◔◔ ◔◔◔\n"
+        "R7 over"
         " all runs, with probability >= 0.9\n"
         "  ✔ supported     it lies between 0.9022 and 1.0000, so >= 0.9\n"
         "    33 of 33 triggers answered, 0 failed, 0 open, in 33 logs\n"
         "    estimate 1.0000; bounds, by whole logs, at 95 % each: 0.9022 to 1.0000\n"
         f"    {AVERAGE}\n"
+        "33 runs \N{MULTIPLICATION SIGN} 1 requirement: 1 supported over all runs, "
+        "33 counted over all runs\n"
     )
     assert counts() == (33, 0, 0)
 
 
+@pytest.mark.slow
 def test_a_violated_trigger_alone_is_no_violation_and_its_place_is_kept(fretc: Fretc) -> None:
     logs(40, "1000", "0100")
     log("runs/bad.mcap", "0010000", "0000000")
-    run = fretc("audit", "runs")
+    run = fretc("audit", "runs", "-v")
     assert run.status == 3
     assert "◔ R7  inconclusive  0 of 1 trigger answered, 1 failed: judged over all runs" in run.out
     assert "at least 29 more logs, all triggers answered, would be needed" in run.out
@@ -121,6 +127,7 @@ def test_a_violated_trigger_alone_is_no_violation_and_its_place_is_kept(fretc: F
     assert [v["first_tick"] for v in bad["violations"]] == [4]
 
 
+@pytest.mark.slow
 def test_many_failures_refute_it(fretc: Fretc) -> None:
     logs(20, "10001000", "01000001")
     run = fretc("audit", "runs")
@@ -130,6 +137,7 @@ def test_many_failures_refute_it(fretc: Fretc) -> None:
     assert counts() == (20, 20, 0)
 
 
+@pytest.mark.slow
 def test_so_few_logs_cannot_support_it_however_many_triggers_they_have(fretc: Fretc) -> None:
     logs(32, "1000" * 20, "0100" * 20)
     run = fretc("audit", "runs")
@@ -197,7 +205,7 @@ def test_no_sentence_with_a_probability_ends_an_audit_and_each_is_counted(fretc:
 def test_what_no_run_can_meet_is_failed_at_each_trigger(fretc: Fretc) -> None:
     require("whenever c the robot shall with probability >= 0.9 finally satisfy false")
     logs(3, "1010", "0000")
-    run = fretc("audit", "runs")
+    run = fretc("audit", "runs", "-v")
     assert run.status == 1
     assert "◔ R7  inconclusive  0 of 2 triggers answered, 2 failed: judged over all runs" in run.out
     assert counts() == (0, 6, 0)
@@ -217,6 +225,7 @@ def test_what_is_unknown_in_the_middle_is_open_and_damage_withholds_support(fret
     assert estimate()["logs"]["damaged"] == 1
 
 
+@pytest.mark.slow
 def test_damage_hides_no_failure_that_was_seen(fretc: Fretc) -> None:
     logs(40, "1000", "0001")
     path = Path(log("runs/cut.mcap", "1000" * 50, "0001" * 50, per_chunk=40))
@@ -236,6 +245,7 @@ def test_a_topic_that_falls_silent_leaves_triggers_open(fretc: Fretc) -> None:
     assert counts() == (0, 0, 1)
 
 
+@pytest.mark.slow
 def test_a_copy_of_a_log_counts_once(fretc: Fretc) -> None:
     logs(28, "1000", "0100")
     shutil.copy("runs/000.mcap", "runs/copy.mcap")
@@ -278,6 +288,7 @@ def test_runs_that_differ_in_a_value_or_a_time_are_no_copies(fretc: Fretc) -> No
     assert estimate()["logs"]["counted"] == 3
 
 
+@pytest.mark.slow
 def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:
     chance = random.Random(3)
     paths = [
@@ -304,13 +315,14 @@ def test_what_was_kept_of_a_stopped_audit_counts(fretc: Fretc) -> None:
 
 def test_without_a_trigger_nothing_is_known(fretc: Fretc) -> None:
     logs(2, "0000", "0100")
-    run = fretc("audit", "runs")
+    run = fretc("audit", "runs", "-v")
     assert run.status == 3
     assert "∅ R7  vacuous" in run.out
     assert "◔ inconclusive  there was no trigger\n" in run.out
     assert (estimate()["estimate"], estimate()["needed"]) == (None, 33)
 
 
+@pytest.mark.slow
 def test_an_unreadable_log_is_bad_input_and_supports_nothing(fretc: Fretc) -> None:
     logs(40, "1000", "0100")
     write("runs/bad.mcap", "no log")
@@ -327,7 +339,7 @@ def test_the_stated_confidence_is_used(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     assert fretc("audit", "runs", "--confidence", "0.99").status == 3
     assert estimate()["confidence"] == 0.99
-    assert " --confidence 0.99 --evidence " in json.dumps(reported(fretc)["commands"])
+    assert " --confidence 0.99 -o " in json.dumps(reported(fretc)["commands"])
     assert fretc("audit", "runs", "--confidence", "0.9").status == 0
     for value in ("0.5", "1", "95", "x"):
         assert fretc("audit", "runs", "--confidence", value).status == 2
@@ -375,6 +387,7 @@ def test_json_has_runs_and_probabilities_by_name(fretc: Fretc) -> None:
     assert content == {name: evidence()[name] for name in ("results", "probabilities")}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("r", "kinds"), [("0100", []), ("0001", ["failure"])])
 def test_junit_has_a_suite_of_all_runs(fretc: Fretc, r: str, kinds: Sequence[str]) -> None:
     logs(33, "1000", r)
@@ -384,6 +397,7 @@ def test_junit_has_a_suite_of_all_runs(fretc: Fretc, r: str, kinds: Sequence[str
     assert [child.tag for child in case] == kinds
 
 
+@pytest.mark.slow
 def test_github_and_sarif_say_it_at_the_sentence_once_and_runs_are_no_alerts(fretc: Fretc) -> None:
     logs(30, "1000", "0001")
     lines = fretc("audit", "runs", "--format", "github").out.splitlines()
@@ -405,11 +419,11 @@ def reported(fretc: Fretc) -> Any:
     run = fretc("report", "--json", "build/report.json")
     assert run.status == 0
     content = json.loads(Path("build/report.json").read_text("utf-8"))
-    schema = json.loads((ROOT / "templates/json/report.schema.json").read_text("utf-8"))
-    jsonschema.validate(content, schema)
+    validate("report.schema.json", content)
     return content
 
 
+@pytest.mark.slow
 def test_the_report_shows_the_interval_and_the_bound(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     fretc("audit", "runs")
@@ -427,6 +441,7 @@ def test_the_report_shows_the_interval_and_the_bound(fretc: Fretc) -> None:
     ElementTree.fromstring(page[page.index("<svg") : page.index("</svg>") + 6])
 
 
+@pytest.mark.slow
 def test_the_report_of_a_refuted_one_is_broken(fretc: Fretc) -> None:
     logs(30, "1000", "0001")
     fretc("audit", "runs")
@@ -437,6 +452,7 @@ def test_the_report_of_a_refuted_one_is_broken(fretc: Fretc) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_evidence_that_does_not_add_up_is_suspect(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     fretc("audit", "runs")
@@ -448,6 +464,7 @@ def test_evidence_that_does_not_add_up_is_suspect(fretc: Fretc) -> None:
     assert "do not add up" in section["probability"]["suspicions"][0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bound", ["x", "2", "1/0", 0.9])
 def test_evidence_with_a_bound_that_is_none_cannot_be_read(fretc: Fretc, bound: object) -> None:
     fretc("audit", log("a.mcap", "1000", "0100"))
@@ -459,6 +476,7 @@ def test_evidence_with_a_bound_that_is_none_cannot_be_read(fretc: Fretc, bound: 
     assert run.err.startswith("F503")
 
 
+@pytest.mark.slow
 def test_what_all_runs_say_is_made_again_with_the_evidence(fretc: Fretc) -> None:
     logs(2, "1000", "0000")
     assert fretc("audit", "runs", "--confidence", "0.9").status == 1
@@ -492,6 +510,7 @@ def test_what_all_runs_say_is_made_again_with_the_evidence(fretc: Fretc) -> None
     assert fretc("verify-evidence").status == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("answers", "status", "kinds"), [("00", 1, ["failure"]), ("01", 0, []), ("0", 3, ["skipped"])]
 )

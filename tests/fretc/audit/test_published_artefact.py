@@ -191,6 +191,7 @@ def test_verify_finds_that_the_published_environment_triggers_nothing(robot: Fre
     assert [line[0] for line in run.out.splitlines() if line[1:8] == " PAPER "] == ["∅"]
 
 
+@pytest.mark.slow
 @pytest.mark.confined
 def test_verify_finds_that_the_loop_does_not_stop_and_never_starts_again(robot: Fretc) -> None:
     run = robot("verify", "requirements/r1.fret", "--layer", "loop")

@@ -4,14 +4,12 @@ import json
 from pathlib import Path
 from xml.etree import ElementTree
 
-import jsonschema  # type: ignore[import-untyped]
 import pytest
 from mcap.writer import Writer
 
 from tests.command import Fretc, write
+from tests.json_schemas import validate
 
-ROOT = Path(__file__).parents[3]
-SCHEMA = json.loads((ROOT / "templates/json/evidence.schema.json").read_text("utf-8"))
 MS = 10**6
 BINDINGS = """\
 [clock]
@@ -93,7 +91,7 @@ def test_what_cannot_be_judged_is_no_data_beside_what_can(
     assert (run.status, rows(run.out)) == (2, {"R1": verdict, "R2": "no data"})
     assert f"{code} " in run.err
     evidence = json.loads(Path("build/evidence.json").read_text())
-    jsonschema.validate(evidence, SCHEMA)
+    validate("evidence.schema.json", evidence)
     assert [each["id"] for each in evidence["requirements"]] == ["R1", "R2"]
     (row,) = (row for row in evidence["results"] if row["requirement"] == "R2")
     assert row["reason"].startswith(f"not judged: {code} ")

@@ -32,6 +32,7 @@ def test_two_runs_with_one_seed_are_the_same_to_the_last_byte(tmp_path: Path) ->
     assert other != first
 
 
+@pytest.mark.slow
 def test_a_verdict_that_is_not_the_stated_one_is_told(tmp_path: Path) -> None:
     scenario = replace(load("nominal"), duration=10.0)
     run = simulated(scenario, 1, tmp_path / "a.mcap")

@@ -66,6 +66,9 @@ CAUSES: Mapping[str, Mapping[str, str]] = {
     "F207": sentence("after near the robot shall within 1 second satisfy stopped"),
     "F208": sentence("before near the robot shall always satisfy stopped"),
     "F209": {'role = "input"\nkind = "belief"': 'role = "output"\nkind = "command"'},
+    "F210": sentence(
+        "whenever near & vx < 1 & vx > 2 the robot shall within 1 second satisfy stopped"
+    ),
     "F501": {PARENTS: 'parents = ["HAZ-1", "HAZ-9"]\n'},
     "F522": {"[HAZ-1]\n": '[HAZ-2]\ntitle = "It falls"\n[HAZ-1]\n'},
     "F523": {PARENTS: ""},

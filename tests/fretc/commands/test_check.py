@@ -65,6 +65,15 @@ def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> No
     )
 
 
+def test_comparisons_that_contradict_each_other_are_told(good: Fretc) -> None:
+    edited("r1.fret", "whenever near", "whenever near & vx < 1 & vx > 2")
+    run = good("check")
+    assert run.status == 3
+    assert (
+        "F210 warning: `near & vx < 1 & vx > 2` of R1 is never true, whatever is measu" in run.err
+    )
+
+
 def test_a_plan_that_can_give_no_result_is_told(good: Fretc) -> None:
     edited("r1.fret", '["audit"]', '["audit", "ajpf"]')
     run = good("check")
@@ -299,10 +308,12 @@ def test_check_refuses_what_an_audit_refuses(good: Fretc, old: str, new: str, co
     assert f"{code} " in run.err
 
 
-def test_a_comparison_without_a_binding_is_shown_itself_and_can_be_bound(good: Fretc) -> None:
+def test_a_comparison_of_what_is_no_signal_is_shown_itself_with_the_signal(good: Fretc) -> None:
     edited("r1.fret", "satisfy stopped", "satisfy stopped & range < 3")
     run = good("check")
     assert run.status == 2
     assert "F304 `(range < 3)` of R1 has no binding in requirements/bindings.toml\n" in run.err
     assert run.err.splitlines()[3].count("^") == len("range < 3")
-    assert 'help: add `[proposition."(range < 3)"]` there\n' in run.err
+    assert "help: add `[signal.range]` there; `fretc bind --from LOG` drafts" in run.err
+    edited("r1.fret", "range < 3", "range mod 2 < 3")
+    assert 'add `[proposition."((range mod 2) < 3)"]` there\n' in good("check").err

@@ -39,7 +39,7 @@ def strange() -> list[Sent]:
         Sent(
             "/pump",
             "acme/Pump",
-            b'{"flow rate": 1, "flow": %d.5}' % i,
+            b'{"flow rate": 1, "flow": %d.5, "valve": "%s"}' % (i, b"open" if i < 9 else b"shut"),
             1000 * S + i * 100 * MS,
             None,
             "json",
@@ -85,9 +85,13 @@ def test_a_project_from_a_log_has_no_mistake_and_judges_that_log(fretc: Fretc, k
     assert audit.status == 0
     (result,) = json.loads(Path("build/evidence.json").read_text())["results"]
     assert (result["requirement"], result["verdict"]) == ("R1", "satisfied")
+    sentence = Path("new project/requirements/r1.fret").read_text()
+    assert ("satisfy cmd_vel_vx <= 0.28\n" in sentence) == (kind in ("typed", "both"))
+    assert ("satisfy pump_flow <= 12\n" in sentence) == (kind == "strange")
     bindings = Path("new project/requirements/bindings.toml").read_text()
-    assert ("cmd_vel_vx <= 0.28 m/s" in bindings) == (kind in ("typed", "both"))
-    assert ("pump_flow <= 12" in bindings) == (kind == "strange")
+    assert "[proposition" not in bindings
+    assert ('values = ["open", "shut"]' in bindings) == (kind == "strange")
+    assert "a guess" not in bindings
 
 
 @pytest.mark.slow
@@ -148,5 +152,5 @@ def test_a_limit_is_no_less_than_the_value_and_close_to_it(value: float) -> None
 
 def test_one_function_writes_the_first_requirement() -> None:
     found = first_requirement(Bound("vx", "0.4", "m/s"), "is an example.")
-    assert found.sentence == "the robot shall always satisfy vx_within_limit"
-    assert 'expr = "vx <= 0.4 m/s"' in found.bindings
+    assert found.sentence == "the robot shall always satisfy vx <= 0.4"
+    assert found.text == "vx is at most 0.4 m/s, always."

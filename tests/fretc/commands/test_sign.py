@@ -183,13 +183,13 @@ def test_a_statement_that_says_something_else_than_its_evidence_does_not_count(
     project: Fretc, lie: Any
 ) -> None:
     """Whoever signs may sign anything; only what fretc makes of this evidence is taken."""
-    from fretc.attestation.keys import private_key, sealed
+    from fretc.attestation.keys import private_key, signed_envelope
 
     assert project("sign", EVIDENCE, "--key", "ada").status == 0
     told = payload(envelopes(EVIDENCE)[0])
     lie(told)
     mine = private_key(Path("ada").read_bytes(), str)
-    write(f"{EVIDENCE}.intoto.jsonl", sealed(json.dumps(told).encode(), mine) + "\n")
+    write(f"{EVIDENCE}.intoto.jsonl", signed_envelope(json.dumps(told).encode(), mine) + "\n")
     run = project("verify-evidence", "--signed-by", "ada.pub")
     assert run.status == 1
     assert "the statement that was signed says something else" in run.err
@@ -197,7 +197,7 @@ def test_a_statement_that_says_something_else_than_its_evidence_does_not_count(
 
 def test_the_hash_of_a_log_is_no_hash_of_evidence(project: Fretc) -> None:
     """Evidence that names another evidence as its log vouches for no verdict of that."""
-    from fretc.attestation.keys import private_key, sealed
+    from fretc.attestation.keys import private_key, signed_envelope
 
     assert project("sign", EVIDENCE, "--key", "ada").status == 0
     told = payload(envelopes(EVIDENCE)[0])
@@ -206,12 +206,13 @@ def test_the_hash_of_a_log_is_no_hash_of_evidence(project: Fretc) -> None:
         {"name": "log:x", "digest": told["subject"][0]["digest"]},
     ]
     mine = private_key(Path("ada").read_bytes(), str)
-    write(f"{EVIDENCE}.intoto.jsonl", sealed(json.dumps(told).encode(), mine) + "\n")
+    write(f"{EVIDENCE}.intoto.jsonl", signed_envelope(json.dumps(told).encode(), mine) + "\n")
     assert project("verify-evidence", "--signed-by", "ada.pub").status == 1
     trust("ada")
     assert signed(report(project)[1])["evidence build/evidence.json"][0] == "unauthenticated"
 
 
+@pytest.mark.slow
 def test_a_report_and_proofs_that_are_named_must_be_signed_too(project: Fretc) -> None:
     project("verify", "requirements/r1.fret", "--layer", "monitor")
     assert project("sign", EVIDENCE, "--key", "ada").status == 0
@@ -416,6 +417,7 @@ def test_signatures_that_cannot_be_read_stop_the_report_and_are_never_overwritte
 # Keys and bad use ------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_passphrase_comes_from_the_environment(
     project: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:

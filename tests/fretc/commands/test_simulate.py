@@ -180,6 +180,7 @@ def test_a_campaign_that_is_stopped_leaves_nothing_half_written(tmp_path: Path) 
         assert [*(tmp_path / "temporary").iterdir()] == []
 
 
+@pytest.mark.slow
 def test_without_the_extra_the_scenarios_are_named_and_a_mission_tells_what_to_install(
     tmp_path: Path,
 ) -> None:

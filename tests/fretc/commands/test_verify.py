@@ -10,7 +10,6 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from compiler.files.templating import template_root
@@ -22,6 +21,7 @@ from fretc.verification.engines.programs import Completion
 from fretc.verification.layers import crosshair as layer_crosshair
 from fretc.verification.layers import dafny as layer_dafny
 from tests.command import Fretc, Run, write
+from tests.json_schemas import validate
 
 R1 = "whenever p the sw shall within 2 ticks satisfy q"
 LOOKS_BACK = "whenever occurred(2, p) the sw shall always satisfy q"
@@ -186,8 +186,7 @@ def test_the_worst_of_several_is_the_exit_status(fretc: Fretc, r1: str, made: st
 def told(run: Run) -> list[dict[str, Any]]:
     """The evidence on standard output, which fits the schema."""
     content = json.loads(run.out)
-    schema = json.loads((template_root() / "json/verification.schema.json").read_text())
-    jsonschema.validate(content, schema)
+    validate("verification.schema.json", content)
     assert list(content) == ["schema", "fretc", "evidence"]
     evidence: list[dict[str, Any]] = content["evidence"]
     return evidence
@@ -314,6 +313,7 @@ def loop(fretc: Fretc) -> Callable[..., str]:
     return make
 
 
+@pytest.mark.slow
 @pytest.mark.confined
 def test_a_loop_that_keeps_its_requirement(fretc: Fretc, loop: Callable[..., str]) -> None:
     run = fretc("verify", "--layer", "loop", loop(400))
@@ -342,6 +342,7 @@ def test_the_stop_of_r1_is_released(fretc: Fretc) -> None:
     assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (3, ["✔", "✘"])
 
 
+@pytest.mark.slow
 def test_a_heartbeat_is_an_assumption(fretc: Fretc, loop: Callable[..., str]) -> None:
     beating = ("lost = 1\n", 'requests = "edge"\nheartbeat = "250 ms"\n')
     run = fretc("verify", "--layer", "loop", loop(300, beating))
@@ -474,6 +475,7 @@ def test_an_interceptor_of_other_bindings_is_not_checked(
     assert "its options are not those that the bindings declare" in run.out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "reason"),
     [
@@ -530,6 +532,7 @@ def node(fretc: Fretc, loop: Callable[..., str]) -> tuple[str, str]:
     return path, "interceptor.py"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(find_spec("crosshair") is None, reason="CrossHair is not installed")
 def test_crosshair_is_given_the_core_and_the_limit(
     fretc: Fretc, node: tuple[str, str], monkeypatch: pytest.MonkeyPatch

@@ -47,6 +47,7 @@ def test_evidence_that_nobody_touched_stands(audited: Fretc) -> None:
     )
 
 
+@pytest.mark.slow
 def test_evidence_is_made_again_as_closely_as_it_claims(audited: Fretc) -> None:
     assert audited("audit", "logs", "--integrity", "full").status == 1
     assert audited("verify-evidence").status == 0
@@ -57,6 +58,7 @@ def test_evidence_is_made_again_as_closely_as_it_claims(audited: Fretc) -> None:
     assert audited("verify-evidence").status == 1
 
 
+@pytest.mark.slow
 def test_what_was_never_hashed_does_not_stand(audited: Fretc) -> None:
     assert audited("audit", "logs", "--integrity", "index").status == 1
     run = audited("verify-evidence")
@@ -176,6 +178,7 @@ def test_what_the_file_says_before_its_results_is_compared(
     assert told in run.out
 
 
+@pytest.mark.slow
 def test_a_result_that_was_taken_out_is_found(audited: Fretc) -> None:
     write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
     assert audited("audit", "logs").status == 1
@@ -229,6 +232,7 @@ def test_a_requirement_that_is_gone_is_found(audited: Fretc) -> None:
     assert "differs: it is not claimed any more" in run.out
 
 
+@pytest.mark.slow
 def test_a_report_is_made_again_and_compared(audited: Fretc) -> None:
     assert audited("report").status == 0
     run = audited("verify-evidence", "--report", "build/report.html")
@@ -241,6 +245,7 @@ def test_a_report_is_made_again_and_compared(audited: Fretc) -> None:
     assert json.loads(run.out)["report_is_the_same"] is False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
@@ -269,6 +274,7 @@ def renamed(old: str, new: str) -> None:
     write("build/evidence.json", text.replace(f'"{old}"', f'"{new}"'))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("protocol", ["file://{}", "local://{}", "simplecache::file://{}", "{}"])
 def test_a_place_that_evidence_names_is_opened_below_the_present_folder_only(
     audited: Fretc, tmp_path_factory: pytest.TempPathFactory, protocol: str
@@ -284,6 +290,7 @@ def test_a_place_that_evidence_names_is_opened_below_the_present_folder_only(
     assert f"{place}\n  ? r1  not checked: its log is not found\n" in run.out
 
 
+@pytest.mark.slow
 def test_what_the_user_names_is_opened(
     audited: Fretc, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
@@ -319,6 +326,7 @@ def without(run: str) -> None:
     changed(results=[one for one in results if one["run"] != run])
 
 
+@pytest.mark.slow
 def test_a_requirement_that_is_nowhere_in_the_evidence_is_missed(audited: Fretc) -> None:
     write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
     run = audited("verify-evidence", "--format", "json")
@@ -341,6 +349,7 @@ def test_a_run_that_was_reviewed_is_missed(audited: Fretc) -> None:
     assert f"logs/bad.mcap\n  {told}" in run.out
 
 
+@pytest.mark.slow
 def test_a_log_in_place_of_the_one_that_was_reviewed_is_found(audited: Fretc) -> None:
     assert audited("lock", *BY).status == 0
     log("logs/bad.mcap", 0, 1.5, 3, 0, 0, 0.5)
@@ -350,6 +359,7 @@ def test_a_log_in_place_of_the_one_that_was_reviewed_is_found(audited: Fretc) ->
     assert "logs/bad.mcap\n  ✘ r1  differs: its log is not the one that was reviewed\n" in run.out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("then", "now"), [("index", "hash"), ("full", "index")])
 def test_a_log_is_the_reviewed_one_however_closely_it_was_looked_at(
     audited: Fretc, then: str, now: str
@@ -364,6 +374,7 @@ def test_a_log_is_the_reviewed_one_however_closely_it_was_looked_at(
     assert "is not the one that was reviewed" in audited("verify-evidence").out
 
 
+@pytest.mark.slow
 def test_a_requirement_that_was_reviewed_and_is_gone_is_missed(audited: Fretc) -> None:
     write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
     assert audited("audit", "logs").status == 1
@@ -388,6 +399,7 @@ def test_a_manifest_names_all_logs(audited: Fretc) -> None:
     assert "differs: the manifest names it and the evidence has no result of it\n" in run.out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("line", "status", "told"),
     [
@@ -415,6 +427,7 @@ def test_a_manifest_is_read_as_sha256sum_reads_it(
     assert told in run.out + run.err
 
 
+@pytest.mark.slow
 def test_names_that_sha256sum_escapes_are_read(audited: Fretc) -> None:
     Path("logs/bad.mcap").rename("logs/a\\b\n.mcap")
     assert audited("audit", "logs").status == 1
@@ -432,6 +445,7 @@ def test_names_that_sha256sum_escapes_are_read(audited: Fretc) -> None:
 # Proofs ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_proofs_are_made_again(audited: Fretc) -> None:
     assert audited("verify", "requirements/r1.fret", "--monitor").status == 0
     run = audited("verify-evidence")
@@ -447,6 +461,7 @@ def test_proofs_are_made_again(audited: Fretc) -> None:
     assert "not checked: no proof was made again: `--no-proofs`\n" in run.out
 
 
+@pytest.mark.slow
 def test_a_proof_that_is_planned_and_is_not_there_is_missed(audited: Fretc) -> None:
     write("requirements/r1.fret", f'+++\nid = "r1"\nverify = ["audit", "loop", "desk"]\n+++\n{R1}')
     assert audited("audit", "logs").status == 1

@@ -31,6 +31,13 @@ EXPRESSIONS = (
     "(y < 5 for 30 ns) and not (x < 5 for 4 ns)",
     "x = 7",
 )
+PAST = (
+    "x - pre(9, x) <= 0",
+    "pre(1, pre(9, x)) < 5 and y < 5",
+    "x < pre(y, pre(y, x)) or (y < 5 for 12 ns)",
+    "x < pre(4, pre(4, pre(4, z)))",
+)
+"""Those that look back by ticks."""
 
 
 @dataclass(frozen=True)
@@ -108,9 +115,10 @@ CUTS = st.lists(st.integers(0, 170), max_size=12)
 def declared(
     draw: st.DrawFn, clock: str = 'tick = "10 ns"', expressions: Sequence[str] = EXPRESSIONS
 ) -> Declarations:
+    expression = draw(st.sampled_from(expressions))
     return bindings(
-        draw(st.sampled_from(expressions)),
-        draw(st.sampled_from(["any", "all", "last"])),
+        expression,
+        draw(st.sampled_from(["last"] if "pre" in expression else ["any", "all", "last"])),
         draw(st.sampled_from([None, 1, 7, 25])),
         draw(st.sampled_from(['"unknown"', "true", "false"])),
         draw(st.sampled_from([0, 0, 3, 9])) if "ns" in clock else 0,
@@ -139,7 +147,8 @@ def streamed(
     return found + ticks(end.ticks), end
 
 
-@given(declared(), SAMPLES, CUTS)
+@pytest.mark.slow
+@given(declared(expressions=(*EXPRESSIONS, *PAST)), SAMPLES, CUTS)
 @example(bindings("x < 5 for 15 ns", "any"), [Sample("x", 1, 1.0), Sample("x", 25, 9.0)], [22, 60])
 @example(bindings("x < 5"), [Sample("x", 1, 1.0), Sample("x", 11, 9.0)], [11])
 @example(bindings("x < 5", "any", phase=9), [Sample("x", 1, 1.0), Sample("x", 5, 9.0)], [20])
@@ -155,8 +164,9 @@ def test_ticks_are_those_of_the_whole_log_however_time_passes(
     assert (found, end.cut) == (rows(whole), whole.cut)
 
 
+@pytest.mark.slow
 @given(
-    declared('tick = "/clock"', [e for e in EXPRESSIONS if "z" not in e]),
+    declared('tick = "/clock"', [e for e in (*EXPRESSIONS, *PAST) if "z" not in e]),
     SAMPLES,
     CUTS,
     st.lists(st.integers(1, 160), min_size=1),

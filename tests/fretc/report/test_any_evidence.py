@@ -23,7 +23,7 @@ from fretc.report.forms.markdown import markdown
 from fretc.report.forms.sarif import sarif
 from fretc.report.make import ReportBuild
 from tests.fretc.report.cases import R1, moment, project, report_of, requirement, result
-from tests.fretc.report.test_make import validate
+from tests.json_schemas import validate
 
 pytestmark = pytest.mark.filterwarnings("ignore:Generating overly large repr")
 

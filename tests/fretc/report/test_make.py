@@ -6,7 +6,6 @@ from typing import Any
 import jsonschema  # type: ignore[import-untyped]
 import pytest
 
-from compiler.files.templating import template_root
 from compiler.project.folder import load
 from fretc.audit.many_logs import Audit, audit_logs
 from fretc.audit.plan import Plan, planned
@@ -26,14 +25,9 @@ from tests.fretc.report.cases import (
     word,
     words,
 )
+from tests.json_schemas import validate
 
 TRACE = "traces/mission-seed15.mcap"
-
-
-def validate(name: str, content: Any) -> None:
-    schema = json.loads((template_root() / "json" / name).read_text(encoding="utf-8"))
-    jsonschema.Draft202012Validator.check_schema(schema)
-    jsonschema.validate(content, schema)
 
 
 # Each verdict ----------------------------------------------------------------------------------
@@ -533,6 +527,7 @@ def test_what_is_uncertain_among_answers_and_open_demands_is_named(tmp_path: Pat
     )
 
 
+@pytest.mark.slow
 def test_thousands_of_violations_keep_the_report_small(tmp_path: Path) -> None:
     known = project(tmp_path)
     many = [violation(tick, tick) for tick in range(5000)]
@@ -647,6 +642,7 @@ def everything(folder: Path) -> tuple[Any, Sequence[dict[str, Any]]]:
     ]
 
 
+@pytest.mark.slow
 def test_two_reports_are_the_same_byte_for_byte(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -672,6 +668,7 @@ def test_a_report_names_no_place_of_this_machine(tmp_path: Path) -> None:
     assert str(tmp_path) not in json.dumps(as_json(report))
 
 
+@pytest.mark.slow
 def test_every_verdict_fits_the_schema(tmp_path: Path) -> None:
     content = as_json(report_of(*_args(everything(tmp_path), tmp_path)))
     assert sorted(words(content["requirements"])) == [
@@ -685,6 +682,7 @@ def test_every_verdict_fits_the_schema(tmp_path: Path) -> None:
     validate("report.schema.json", content)
 
 
+@pytest.mark.slow
 def test_a_report_that_says_less_does_not_fit_the_schema(tmp_path: Path) -> None:
     content = as_json(report_of(*_args(everything(tmp_path), tmp_path)))
     del content["requirements"][0]["reasons"]
@@ -697,6 +695,7 @@ def test_evidence_made_by_hand_fits_its_schema(tmp_path: Path) -> None:
     validate("evidence.schema.json", evidence(known, *results))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path(TRACE).is_file(), reason="needs the recorded run of the checkout")
 def test_the_evidence_of_the_recorded_run_fits_its_schema_and_is_reported(tmp_path: Path) -> None:
     known = load(["requirements/r1.fret"], hazards="requirements/hazards.toml")

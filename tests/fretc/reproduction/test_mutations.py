@@ -223,6 +223,7 @@ def case(folder: Path) -> Case:
     return Case(project, plan, Lock(reviews), manifest)
 
 
+@pytest.mark.slow
 def test_no_change_to_evidence_is_certified(case: Case) -> None:
     content = json.loads(Path("build/evidence.json").read_text())
     assert stands(case.judged(json.dumps(content)))

@@ -13,7 +13,7 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Layer, Outcome, Proof, Result, not_checked, vacuous
 from compiler.targets.ajpf.bundle import emit
 from compiler.targets.target import Options
-from fretc.verification.ajpf_results import evidence, merged, read
+from fretc.verification.ajpf_results import ajpf_proofs, merged, read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
 from tests.compiler.targets.ajpf.test_bundle import R1, rule
@@ -41,7 +41,7 @@ def ran(tmp_path: Path) -> Mcapl:
 
 
 def only(mcapl: Mcapl, other: Formalized | None = None) -> Proof:
-    (proof,), diagnostics = evidence([other or rule(R1)], [str(mcapl.bundle / "result.json")])
+    (proof,), diagnostics = ajpf_proofs([other or rule(R1)], [str(mcapl.bundle / "result.json")])
     assert not diagnostics
     return proof
 
@@ -77,6 +77,7 @@ def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
     assert result.trace.cycle == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("outputs", "expected"),
     [
@@ -125,6 +126,7 @@ def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
     assert result.detail.startswith("it was refuted; SIF.gwen is not made like that")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -149,6 +151,7 @@ def test_the_conclusion_of_the_file_is_not_believed(ran: Mcapl) -> None:
     assert only(ran).result is Result.COUNTEREXAMPLE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["R1", "R1_reach", "R1_resp", "R1_mutant"])
 def test_a_result_is_held_against_the_logs_that_lie_beside_it(ran: Mcapl, name: str) -> None:
     log = ran.bundle / f"logs/{name}.jpf.txt"
@@ -203,6 +206,7 @@ def test_a_file_that_is_no_result_is_refused(tmp_path: Path, text: str, what: st
     assert what in result.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -220,7 +224,7 @@ def test_a_wrong_shape_within_is_refused(ran: Mcapl, change: Change) -> None:
 
 
 def test_a_result_about_another_requirement_is_told_and_does_not_count(ran: Mcapl) -> None:
-    lines, (diagnostic,) = evidence([rule(R1, id="R2")], [str(ran.bundle / "result.json")])
+    lines, (diagnostic,) = ajpf_proofs([rule(R1, id="R2")], [str(ran.bundle / "result.json")])
     assert lines == ()
     assert diagnostic.code is Code.FOREIGN_AJPF_RESULT
     assert not diagnostic.is_error
@@ -241,6 +245,7 @@ def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: 
     assert merged([red], []) == (red,)
 
 
+@pytest.mark.slow
 def test_a_weaker_property_does_not_show_the_requirement(ran: Mcapl) -> None:
     formalized = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
     for artifact in emit([formalized], Options(weaken=True)):

@@ -5,7 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretish.bindings.amounts import declared_unit, exact, scaled, shared_unit, value
+from fretish.bindings.amounts import (
+    declared_unit,
+    exact,
+    instant,
+    margin,
+    scaled,
+    seconds,
+    shared_unit,
+    value,
+)
 from tests.fretc.logs.logs import declare
 
 SIGNALS = declare("""\
@@ -109,3 +118,42 @@ def test_a_term_is_shown_in_the_unit_that_its_signals_share(
     term: str, base: str, unit: str
 ) -> None:
     assert shared_unit(term, base, SIGNALS)[0] == unit
+
+
+@pytest.mark.parametrize(
+    ("distance", "bound", "text"),
+    [
+        (13.2, 15.0, "13.2 m"),
+        (0.00288001, 0.15, "0.0029 m"),
+        (1.1920929e-7, 1.5, "1e-07 m"),
+        (0.31234, 0.0, "0.3123 m"),
+        (0.0, 1.0, "0 m"),
+    ],
+)
+def test_a_margin_has_no_more_decimals_than_the_numbers_that_it_lies_between(
+    distance: float, bound: float, text: str
+) -> None:
+    assert margin(distance, "m", bound) == text
+
+
+@given(st.floats(0, allow_infinity=False, exclude_min=True), finite)
+def test_a_margin_never_looks_like_none(distance: float, bound: float) -> None:
+    shown = float(margin(distance, "", bound))
+    assert shown > 0
+    assert distance / 2 <= shown <= distance * 2
+
+
+def test_a_time_ends_at_the_millisecond() -> None:
+    assert [seconds(number) for number in (25.0, 0.9, 39.8004, 1852.25, -0.0001)] == [
+        "25 s",
+        "0.9 s",
+        "39.8 s",
+        "1852.25 s",
+        "0 s",
+    ]
+
+
+def test_an_instant_is_a_date_where_there_is_one() -> None:
+    assert instant(1_700_000_000_041_000_000) == "2023-11-14 22:13:20.041 UTC"
+    assert instant(10**30) == f"{10**30} ns"
+    assert instant(None) == "not known"

@@ -82,7 +82,7 @@ OUTLINE: dict[str, Any] = {
     "sensor": (1.0, 0.0, 0.0),
 }
 APART = {
-    "signal": {"name", "unit_name", "span", "numbers", *OUTLINE},
+    "signal": {"name", "unit_name", "role", "span", "numbers", *OUTLINE},
     "proposition": {"name", "text", "role", "kind", "modality", "action", "span"},
     "clock": {"rounding"},
 }

@@ -83,6 +83,21 @@ def rewritten(text: str) -> tuple[str, str] | Code:
         ("speed < wind + 1 m/s", "speed < wind + 1 m/s", "speed < wind + 1 m/s"),
         ("tally < 5", "tally < 5", "tally < 5"),
         ("way < 2 m * 3", "way < 2 * 3 * 100", "way < 2 * 3 * 100 * 1 cm"),
+        ("way ^ 2 < 4", "way ^ 2 < 4", "way ^ 2 < 4 cm*cm"),
+        ("way ^ 2.0 < 4 m^2", "way ^ 2.0 < 40000", "way ^ 2 < 40000 cm*cm"),
+        ("way * 1 cm < (2 m) ^ 2", "way * 1 < 2 ^ 2 * 10000", "way * 1 < 2 ^ 2 * 10000 * 1 cm"),
+        ("tally < 10 ^ 3", "tally < 10 ^ 3", "tally < 10 ^ 3"),
+        ("battery mod 5 < 1", "battery mod 5 < 1", "battery mod 5 % < 1 %"),
+        ("way mod 2 m < 5 cm", "way mod 200 < 5", "way mod 200 cm < 5 cm"),
+        (
+            "speed - preReal(0, speed) < 1 m/s",
+            "speed - preReal(0, speed) < 3.6",
+            "speed - pre(0 km/h, speed) < 3.6 km/h",
+        ),
+        ("preInt(1, tally) = 2", "preInt(1, tally) = 2", "pre(1, tally) = 2"),
+        ("tally > preInt(1, 2)", "tally > preInt(1, 2)", "tally > pre(1, 2)"),
+        ("speed < maxReal(1, 2)", "speed < maxReal(1, 2)", "speed < max(1, 2) * 1 km/h"),
+        ("tally < 10 ^ 2.0", "tally < 10 ^ 2.0", "tally < 10 ^ 2"),
     ],
 )
 def test_a_number_is_in_the_unit_of_the_signal_beside_it(
@@ -103,6 +118,23 @@ def test_a_number_is_in_the_unit_of_the_signal_beside_it(
 )
 def test_what_has_no_certain_unit_is_refused(text: str, code: Code) -> None:
     assert rewritten(text) == code
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "speed ^ 0.5 < 1",
+        "speed ^ 17 < 1",
+        "tally ^ tally < 1",
+        "(speed ^ 2) ^ 2 < 1",
+        "(2 + 3) ^ 2 < tally",
+        "preReal(speed) < 1",
+        "preReal(0, height) < 1",
+        f"{'preReal(0, ' * 17}speed{')' * 17} < 1",
+    ],
+)
+def test_what_bindings_cannot_compute_stays_a_proposition(text: str) -> None:
+    assert not is_measured(comparison(text), SIGNALS)
 
 
 # The law: raw arithmetic, as FRET has it, is the physical one
@@ -149,6 +181,10 @@ def computed(tree: e.Expression, parts: list[Fraction | None]) -> Fraction | Non
             return numbers[0] * numbers[1]
         case e.Arithmetic("/"):
             return numbers[0] / numbers[1] if numbers[1] else None
+        case e.Arithmetic("mod"):
+            return numbers[0] % numbers[1] if numbers[1] else None
+        case e.Arithmetic("^"):
+            return numbers[0] ** int(numbers[1])
         case e.Call(name):
             if name.startswith("abs"):
                 return abs(numbers[0])
@@ -171,6 +207,7 @@ def speeds() -> st.SearchStrategy[str]:
             "speed * 2",
             "3 * pace",
             "speed / 4",
+            "speed ^ 3 / pace ^ 2",
         ]
     )
 
@@ -182,6 +219,7 @@ def speeds() -> st.SearchStrategy[str]:
             st.tuples(inner, inner).map(lambda t: f"maxReal({t[0]}, {t[1]})"),
             inner.map(lambda t: f"({t}) * 3"),
             inner.map(lambda t: f"({t}) / 7"),
+            st.tuples(inner, inner).map(lambda t: f"(({t[0]}) mod ({t[1]}))"),
         )
 
     return st.recursive(leaf, larger, max_leaves=6)

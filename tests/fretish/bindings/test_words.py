@@ -112,8 +112,8 @@ def test_words_and_truths_of_an_expression(text: str, tree: e.Expression) -> Non
         ("battery", "F308", "`battery` is in %, and a truth value is needed"),
         ("not battery", "F308", "`battery` is in %, and a truth value is needed"),
         ("drive < true", "F308", "a number is needed, and this is a truth value"),
-        ("mod = docking", "F309", "`mod` is not declared"),
-        ("mod = 'docking'", "F309", "`mod` is not declared"),
+        ("mood = docking", "F309", "`mood` is not declared"),
+        ("mood = 'docking'", "F309", "`mood` is not declared"),
     ],
 )
 def test_what_cannot_be_compared_is_one_mistake(text: str, code: str, message: str) -> None:

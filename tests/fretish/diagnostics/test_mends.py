@@ -5,6 +5,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -33,6 +34,7 @@ def texts(module: Path) -> Iterator[str]:
             yield str(node.value)
 
 
+@pytest.mark.slow
 def test_toml_in_a_message_parses() -> None:
     found = {found for module in MODULES for text in texts(module) for found in toml_in(text)}
     for fragment in sorted(found):

@@ -60,6 +60,7 @@ def test_a_library_that_takes_every_exception_for_its_own_is_ended_all_the_same(
     assert isinstance(within(10, PLACE, careless), Diagnostic)
 
 
+@pytest.mark.slow
 def test_what_is_larger_may_take_longer(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "SECONDS", 0.1)
 
@@ -84,6 +85,7 @@ def test_a_budget_within_another_is_a_part_of_it(monkeypatch: pytest.MonkeyPatch
     assert time.process_time() - start < 2
 
 
+@pytest.mark.slow
 def test_nothing_is_ended_behind_a_budget(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "SECONDS", 0.1)
     with budget(0):

@@ -50,6 +50,7 @@ def test_since(both: tuple[Bits, Bits]) -> None:
     assert c.since(number(left), number(right)) == number(since(left, right, 0, None))
 
 
+@pytest.mark.slow
 @given(pairs)
 def test_released_is_the_dual_of_since(both: tuple[Bits, Bits]) -> None:
     left, right = both

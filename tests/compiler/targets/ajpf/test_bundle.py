@@ -124,6 +124,7 @@ def test_the_layer_shows_what_the_manifest_expects() -> None:
 # Other requirements -----------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sentence", "agent", "mutant"),
     [
@@ -162,6 +163,7 @@ def test_a_plan_for_each_event_that_can_make_the_condition_true(
     assert plans(files, "SIF_mutant.gwen") == mutant
 
 
+@pytest.mark.slow
 def test_an_agent_that_responds_too_often_says_so() -> None:
     made = rule("whenever a & !b the ag shall eventually satisfy r")
     assert TARGET.remark is not None

@@ -9,7 +9,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from compiler.targets.ajpf.bundle import emit
@@ -22,9 +21,9 @@ from compiler.targets.ajpf.runner import (
     trace,
     verdict,
 )
-from tests.compiler.targets.ajpf.test_bundle import R1, ROOT, rule
+from tests.compiler.targets.ajpf.test_bundle import R1, rule
+from tests.json_schemas import validate
 
-SCHEMA = json.loads((ROOT / "templates/json/ajpf-result.schema.json").read_text("utf-8"))
 SAYS_HOLDS = "====== results\nno errors detected\n====== statistics\n"
 SAYS_VIOLATED = (
     "====== error 1\najpf.MCAPLListener\nAn Accepting Path has been found: \n(MS: 0)\n"
@@ -150,6 +149,7 @@ def test_all_as_expected_is_shown(mcapl: Mcapl) -> None:
     assert (mcapl.bundle / "logs/R1.jpf.txt").read_text() == SAYS_HOLDS
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("answers", "status", "line"),
     [
@@ -212,6 +212,7 @@ def test_a_file_that_was_changed_is_not_verified(mcapl: Mcapl) -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"files": {}, "checks": []}'])
 def test_a_manifest_that_says_nothing_is_no_success(mcapl: Mcapl, text: str) -> None:
     (mcapl.bundle / "manifest.json").write_text(text)
@@ -225,6 +226,7 @@ def test_a_manifest_without_its_controls_is_no_success(mcapl: Mcapl) -> None:
     assert mcapl.run().returncode == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     ["my folder", "a,b", "a;b", "a:b", "a$b", "${HOME}", "a\nb", "a\\b", "a'b", "Büro", "#1"],
@@ -236,6 +238,7 @@ def test_a_folder_that_ajpf_cannot_name_is_refused(tmp_path: Path, name: str) ->
     assert "AJPF reads paths of letters, digits and `_ . / + @ ~ -` alone" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["SIF.gwen", "SIF.psl", "Env.java", "R1.jpf"])
 def test_a_file_that_changes_while_ajpf_is_at_work_leaves_no_result(
     mcapl: Mcapl, name: str
@@ -471,7 +474,7 @@ def test_a_result_is_what_its_schema_says_and_names_what_was_run(mcapl: Mcapl) -
     mcapl.says({"R1.jpf": (ENDING, 0), "R1_mutant.jpf": (RECORDED, 0)})
     assert mcapl.run().returncode == 0
     found = mcapl.result()
-    jsonschema.validate(found, SCHEMA)
+    validate("ajpf-result.schema.json", found)
     assert (found["requirement"], found["verdict"], found["java"]) == ("R1", "shown", "11.0.22")
     assert found["mcapl"] == {"commit": "ab" * 20}
     assert found["agent"] is None
@@ -488,6 +491,7 @@ def test_a_result_is_what_its_schema_says_and_names_what_was_run(mcapl: Mcapl) -
     assert found["checks"][3]["trace"]["cycle"] == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("answers", "verdict_"),
     [
@@ -502,7 +506,7 @@ def test_a_result_that_shows_nothing_is_written_too(
     mcapl.says(answers)
     mcapl.run()
     found = mcapl.result()
-    jsonschema.validate(found, SCHEMA)
+    validate("ajpf-result.schema.json", found)
     assert found["verdict"] == verdict_
 
 

@@ -26,7 +26,7 @@ from fretish.parser import parse
 from fretish.syntax import ConditionKind, ScopeKind, Sentence, duration
 from tests.strategies import Template, templates
 
-TABLE = Path(__file__).parents[2] / "data/fret_templates.json"
+TABLE = Path(__file__).parents[3] / "data/fret_templates.json"
 SCOPES = (None, *ScopeKind)
 CONDITIONS = (None, *ConditionKind)
 M, P, Q = map(f.Atom, "mpq")

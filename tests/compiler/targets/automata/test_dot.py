@@ -164,6 +164,7 @@ def test_a_thousand_ticks_are_one_node() -> None:
     )
 
 
+@pytest.mark.slow
 @each("template", list(templates((40,))))
 def test_no_template_has_more_nodes_than_fit_on_a_page(template: Template) -> None:
     sentence = template.sentence

@@ -438,6 +438,7 @@ def test_of_two_safety_functions_none_moves_the_robot(capsys: pytest.CaptureFixt
     )
 
 
+@pytest.mark.slow
 @given(options, st.lists(st.tuples(events, st.booleans()), max_size=20))
 def test_while_there_are_two_safety_functions_nothing_but_zero_is_said(
     made: interceptor.Options, messages: list[tuple[Any, bool]]

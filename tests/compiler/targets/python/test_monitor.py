@@ -172,6 +172,7 @@ def is_open(timing: str, n: int, begun: int, last: int, q: list[bool]) -> bool:
             return False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_a_demand_is_open_until_its_answer_or_its_deadline(scope: str) -> None:
     for template in templates():
@@ -263,6 +264,7 @@ def test_what_is_definite_stays_whatever_the_unknown_values_are(scope: str) -> N
                     assert known.verdict in ("no data", full.verdict), (template, columns)
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(list(templates())),
     three_valued("m", "p", "q", "s"),
@@ -281,6 +283,7 @@ def test_no_unknown_value_contradicts_a_definite_verdict(
         assert known.finite in (None, template.satisfied(cut(filled, length)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_with_all_values_known_everything_is_definite(scope: str) -> None:
     for template in templates((2,)):
@@ -722,6 +725,7 @@ def test_the_worst_of_several_traces_decides(programs: Path, tmp_path: Path) -> 
     assert call(programs, "within", str(bad), str(tmp_path / "missing.csv")).returncode == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("trace", "message"),
     [

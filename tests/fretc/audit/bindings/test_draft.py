@@ -6,7 +6,13 @@ from pathlib import Path
 import pytest
 
 from compiler.project.folder import load
-from fretc.audit.bindings.draft import MissingProposition, draft, missing_propositions
+from fretc.audit.bindings.draft import (
+    MissingProposition,
+    MissingSignal,
+    draft,
+    missing_propositions,
+    missing_signals,
+)
 from fretc.logs.reader import look, read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
@@ -239,3 +245,30 @@ def test_what_is_bound_is_not_wanted(tmp_path: Path) -> None:
         tmp_path, "whenever near the rover shall immediately satisfy still", bindings=bindings
     )
     assert [each.name for each in missing] == ["still"]
+
+
+def test_of_a_comparison_the_signals_are_wanted(tmp_path: Path) -> None:
+    bindings = '[clock]\ntick = "1 s"\n[signal.x]\npath = "/x.data"\n'
+    file = put(
+        str(tmp_path / "r.fret"),
+        "whenever x < 1 & battery < 20 & far(y) < 3 the rover shall immediately satisfy "
+        "mode = home & minReal(battery, z) > x\n",
+    )
+    project = load([file], put(str(tmp_path / "bindings.toml"), bindings))
+    assert [(each.name, each.requirements) for each in missing_signals(project)] == [
+        ("battery", ("r",)),
+        ("mode", ("r",)),
+        ("z", ("r",)),
+    ]
+    assert [each.name for each in missing_propositions(project)] == ["(far(y) < 3)"]
+
+
+def test_a_signal_that_is_to_be_found_is_an_error_until_it_is(tmp_path: Path) -> None:
+    path = write(tmp_path / "run.mcap", every(100 * MS, 12))
+    overview = look(str(path))
+    assert not isinstance(overview, Diagnostic)
+    text = draft(overview, (), (), [MissingSignal("battery", ("R1",)), MissingSignal("x", ("R1",))])
+    assert "# To do: which field is it? Named by R1.\n[signal.battery]\n" in text
+    assert text.count("[signal.x]") == 1
+    _, wrong = read_bindings(Source("bindings.toml", text))
+    assert [each.code for each in wrong] == [Code.BAD_BINDING_FIELD]

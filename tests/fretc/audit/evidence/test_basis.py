@@ -481,6 +481,7 @@ def test_there_are_more_changes_than_were_once_tried_by_hand() -> None:
     assert len(CHANGES) >= 82
 
 
+@pytest.mark.slow
 def test_evidence_of_what_has_come_back_is_still_of_something_else(reviewed: Fretc) -> None:
     before = Path(BINDINGS).read_text()
     put(BINDINGS, "x > 1 m", "x > 2 m")()
@@ -599,6 +600,7 @@ def _xml(path: str) -> str:
     return Path(path).read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WITHDRAWN)
 def test_who_accepts_that_something_is_claimed_no_more_hears_of_it_no_more(
     reviewed: Fretc, name: str

@@ -28,6 +28,7 @@ def bisected(k: int, n: int, alpha: Fraction) -> Fraction:
     return low
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("confidence", [Fraction(9, 10), Fraction(95, 100), Fraction(99, 100)])
 def test_the_bounds_are_those_of_exact_binomial_sums(confidence: Fraction) -> None:
     for n in (1, 2, 5, 12):

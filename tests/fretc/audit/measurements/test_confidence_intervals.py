@@ -82,6 +82,7 @@ def test_where_whole_runs_are_good_or_bad_no_answer_is_wrong_more_often_than_sta
         assert weight <= Fraction(5, 100), p
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("confidence", [0.9, 0.95, 0.99])
 def test_runs_of_different_lengths_and_chances_keep_the_level(confidence: float) -> None:
     """Short runs are better than long ones; what is bounded is their mean, weighed by triggers."""
@@ -164,6 +165,7 @@ def most(repetitions: int, rate: float) -> int:
     return k
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("p", [0.9, 0.99])
 @pytest.mark.parametrize("n", [30, 100, 200])
 @pytest.mark.parametrize("kind", DRAWS)
@@ -309,6 +311,7 @@ def test_open_triggers_count_against_either_bound() -> None:
     assert bounds(runs, 0.95).high == 1
 
 
+@pytest.mark.slow
 @given(some_trials, st.randoms(use_true_random=False))
 def test_the_order_of_the_logs_does_not_matter(runs: list[Trials], chance: object) -> None:
     shuffled = sorted(runs, key=lambda _: chance.random())  # type: ignore[attr-defined]

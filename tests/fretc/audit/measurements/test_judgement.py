@@ -35,6 +35,7 @@ def monitor(sentence: str) -> Monitor:
     return load("monitor", text(rule))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", [kernel.evaluate, kernel.stepped])
 @pytest.mark.parametrize(
     ("last", "cut", "expected"),

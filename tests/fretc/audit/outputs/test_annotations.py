@@ -46,7 +46,10 @@ def result(run: str = "a.mcap", id: str = "R1", **more: Any) -> Result:
         ],
         "triggers": [moment(1), moment(2)],
         "answers": [moment(1, trigger=1)],
-        "violations": [{"start_ns": 105 * S, "end_ns": 105 * S, "trigger": moment(2)}],
+        "violations": [
+            {"start_ns": 105 * S, "end_ns": 105 * S, "trigger": moment(2), "values": {"x": 5.0}}
+        ],
+        "units": {"x": "km/h"},
         "hashes": {"log": "aa", "bindings": "bb", "sentence": "cc", "monitor": "dd"},
         **more,
     }
@@ -80,9 +83,9 @@ def test_what_happened_is_told_in_order_of_time() -> None:
     events = [(ns // S, one["level"], one["message"]) for ns, one in messages[VERDICTS]]
     assert events == [
         (101, 2, "R1: triggered"),
-        (101, 2, "R1: answered after 0.000 s"),
+        (101, 2, "R1: answered after 0 s"),
         (102, 2, "R1: triggered"),
-        (105, 4, "R1: violated from here on, triggered at 2.000 s"),
+        (105, 4, "R1: violated from here on, triggered at 2 s: x = 5 km/h"),
         (105, 4, "R1: violated up to here"),
         (120, 4, "R1: violated: broken"),
     ]

@@ -228,6 +228,7 @@ def test_what_json_has_no_word_for_is_null_or_text(
     assert json.loads(run.out) == [{"a": None, "b": [None], "c": "2026-01-02"}]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "query",
     [

@@ -154,6 +154,21 @@ declarations_ = st.builds(
 )
 
 
+PAST = (
+    "x - pre(0, x) < 3",
+    "pre(9, pre(1, x)) < 5 or x > 5",
+    "x <= pre(y, x + pre(1, y)) and (x < 5 for 9 ns)",
+    "not (pre(1, y) < 5)",
+)
+past_declarations = st.builds(
+    declared,
+    p=st.sampled_from(PAST),
+    q=st.sampled_from(["y < 5", "x > 5", *PAST]),
+    p_unknown=st.sampled_from(["", "on_unknown = true"]),
+    end=st.sampled_from(["inconclusive", "violated"]),
+)
+
+
 @st.composite
 def logs(draw: st.DrawFn) -> Recording:
     length = draw(st.sampled_from([10, 30, 100]))  # short ones: what is near the end decides
@@ -179,7 +194,7 @@ CUT_TICK_DEPENDS = recorded(
 @pytest.mark.slow
 @example(declared(), LAST_TICK_CHANGES, SENTENCES[-2], 0)
 @example(declared(), CUT_TICK_DEPENDS, SENTENCES[-1], 0)
-@given(declarations_, logs(), st.sampled_from(SENTENCES), st.integers(0, 11))
+@given(declarations_ | past_declarations, logs(), st.sampled_from(SENTENCES), st.integers(0, 11))
 def test_each_phase_has_the_verdict_of_an_audit_that_declares_it(
     declarations: Declarations, log: Recording, sentence: str, phase: int
 ) -> None:

@@ -246,6 +246,7 @@ def test_a_message_that_is_longer_than_any_before_is_read_whole(
     assert found.samples["nearest"].values.tolist() == [2.0, 3.0, 0.5, 4.0, 0.25, 5.0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("compression", sorted(PACK))
 def test_more_than_fits_into_memory_at_once_is_read_in_order(
     tmp_path: Path, compression: str

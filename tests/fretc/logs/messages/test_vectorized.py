@@ -111,6 +111,7 @@ def messages(draw: st.DrawFn) -> tuple[list[list[float]], list[dict[str, float]]
 NAMES = {"range_min": 0.1, "range_max": 9.0, "angle_min": 0.0, "angle_increment": 0.1}
 
 
+@pytest.mark.slow
 @given(signals(), messages())
 @example(signal('reduce = "min"\n'), ([[0.0, -0.0], [-0.0, 0.0]], [NAMES, NAMES]))
 @example(signal('reduce = "max"\n'), ([[0.0, -0.0] * 9, [-0.0, 0.0] * 9], [NAMES, NAMES]))

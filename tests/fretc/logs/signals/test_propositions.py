@@ -419,6 +419,7 @@ crowded = st.lists(
 ).map(lambda found: sorted(((4 * time, value) for time, value in found), key=lambda p: p[0]))
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(
     crowded,

@@ -257,6 +257,7 @@ def slow_distance(x: float, y: float, corners: tuple[tuple[float, float], ...]) 
     return 0.0 if abs(turned) > math.pi else best
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.floats(-4, 4), st.floats(-4, 4), st.sampled_from([SQUARE, SQUARE[::-1], HORSESHOE]))
 @example(0.0, 0.0, HORSESHOE)

@@ -70,6 +70,7 @@ def piped(data: bytes) -> Iterator[int]:
         thread.join()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["pipe", "file"])
 def test_a_log_from_standard_input_is_the_log(tmp_path: Path, kind: str) -> None:
     path = write(tmp_path / "log.mcap", TWELVE)
@@ -106,6 +107,7 @@ def test_empty_and_foreign_standard_input_have_their_codes() -> None:
     assert (found.returncode, found.stderr[:4]) == (2, b"F402")
 
 
+@pytest.mark.slow
 def test_closed_standard_input_has_its_code() -> None:
     found = subprocess.run(
         ["/bin/sh", "-c", f"exec {sys.executable} -c "

@@ -160,6 +160,7 @@ os._exit(9)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("rosbag") is None, reason="ROS 1's own `rosbag` is not installed")
 def test_what_ros_itself_reindexes_is_known_as_that(tmp_path: Path) -> None:
     environment = {"PATH": os.defpath, "HOME": str(tmp_path)}

@@ -210,6 +210,7 @@ def endless(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     fsspec.filesystem("http").clear_instance_cache()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("whole", [True, False], ids=["whole", "by its index"])
 @pytest.mark.parametrize("path", ANSWERS)
 def test_reading_ends_whatever_a_server_sends_for_ever(

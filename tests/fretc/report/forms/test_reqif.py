@@ -135,6 +135,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Report:
     return report
 
 
+@pytest.mark.slow
 def test_it_fits_the_schema(exported: Callable[[], str], schema: xmlschema.XMLSchema) -> None:
     schema.validate(exported())
 

@@ -215,6 +215,7 @@ HOSTILE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", HOSTILE, ids=lambda text: ascii(text)[:20])
 def test_no_text_leaves_its_place(tmp_path: Path, text: str) -> None:
     """Wherever a text comes in, the page has the same elements as with a harmless one."""

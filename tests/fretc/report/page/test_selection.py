@@ -52,6 +52,7 @@ def test_a_few_satisfied_runs_can_be_opened_in_the_page(tmp_path: Path) -> None:
     assert html.count("<summary>Details of runs that satisfy") == 2
 
 
+@pytest.mark.slow
 def test_a_compact_page_lists_what_is_not_satisfied_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -25,7 +25,7 @@ from tests.fretc.report.cases import (
     result,
     words,
 )
-from tests.fretc.report.test_make import validate
+from tests.json_schemas import validate
 
 SENTENCE = "whenever near the robot shall within 30 ticks satisfy stopped"
 
@@ -62,6 +62,7 @@ def plan(report: ReportBuild) -> tuple[str, bool, bool]:
     return method["result"], method["has_result"], method["refuted"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["verify", "proof", "monitor"])
 def test_a_proof_is_the_result_of_its_method(tmp_path: Path, method: str) -> None:
     report = reported(tmp_path, {}, verify=[method])
@@ -207,6 +208,7 @@ braking = "200 ms"
 """
 
 
+@pytest.mark.slow
 @pytest.mark.confined
 def test_another_assumption_makes_what_was_proved_of_the_loop_suspect(fretc: Fretc) -> None:
     write("requirements/r1.fret", requirement("R1", SENTENCE, verify=["loop"]))

@@ -156,6 +156,7 @@ def test_a_waiver_of_what_is_shown_covers_nothing(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("verdict", ["no data", "inconclusive", "vacuous", "violated"])
 @pytest.mark.parametrize("waived", ["no data", "inconclusive", "vacuous", "violated"])
 def test_a_waiver_covers_the_verdict_that_it_names_and_no_other(

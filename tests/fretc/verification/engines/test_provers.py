@@ -312,6 +312,7 @@ def test_what_crosshair_does_not_confirm_is_not_checked() -> None:
     assert proof.result is Result.NOT_CHECKED
 
 
+@pytest.mark.slow
 def test_a_core_that_is_no_module_is_not_checked() -> None:
     failing = CORE.replace("def bounded", "raise ImportError\n\n\ndef bounded")
     proofs = with_crosshair(failing, seconds=1)
@@ -382,6 +383,7 @@ def test_velocities_that_somebody_looks_into_stay_floats(body: str) -> None:
     assert crosshair._with_whole_velocities(KEEPING) == KEEPING.replace("float = 0.0", "int = 0")
 
 
+@pytest.mark.slow
 @needs_crosshair
 def test_crosshair_confirms_a_step_of_the_interceptor() -> None:
     """The others take their time; all of them are looked at by the command."""

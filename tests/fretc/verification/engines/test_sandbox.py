@@ -60,6 +60,7 @@ def test_an_error_that_cannot_be_sent_is_raised_in_words() -> None:
         confined(DEFAULT, fail_with_what_cannot_be_sent)
 
 
+@pytest.mark.slow
 def test_time_on_a_processor_is_limited() -> None:
     assert confined(Limits(seconds=1), spin) == Stopped("out of time: more than 1 s of a processor")
     assert multiprocessing.active_children() == []

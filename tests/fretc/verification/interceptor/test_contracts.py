@@ -12,7 +12,7 @@ from compiler.targets.python.interceptor import text
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Core, Head, core, head
 from fretc.verification.interceptor.incoming import COMMAND, RELEASE, RING, SCAN, STOP
-from fretc.verification.interceptor.machine import Gate, NotAnInterceptorError
+from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
 from tests.loops import interceptor_options
@@ -101,6 +101,7 @@ def test_the_papers_interceptor_keeps_its_own() -> None:
     assert proofs[0].assumptions[1:] == ("no silence is noticed: form = event in [interceptor]",)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("latching", [False, True])
 def test_the_core_keeps_them_with_all_small_options(latching: bool) -> None:
     alone, _, _ = EMITTED.partition("\n\n# The options ")
@@ -199,6 +200,7 @@ MUTANTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MUTANTS)
 def test_a_mutant_breaks_the_contracts_that_it_should(name: str) -> None:
     changes, broken = MUTANTS[name]
@@ -210,6 +212,7 @@ AT_FIRST = "command_age=options.command_timeout,\n"
 OBEYS = "stop=requested or (options.latching and state.stop)"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("first", "then", "sum_"),
     [
@@ -369,7 +372,7 @@ def test_a_core_that_may_not_be_pure_is_not_executed(old: str, new: str, why: st
     assert message.startswith("its core is not as fretc can read it: ")
     assert why in message or not new
     with pytest.raises(NotAnInterceptorError) as refused:
-        Gate(changed, interceptor_options())
+        InterceptorMachine(changed, interceptor_options())
     assert str(refused.value) == message
 
 
@@ -390,9 +393,10 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
     changed = mutant(("\n\nclass Gate:", f"\n\n{line}\n\nclass Gate:"))
     assert "the node below it" in reason(changed)
     with pytest.raises(NotAnInterceptorError, match="the node below it"):
-        Gate(changed, interceptor_options())
+        InterceptorMachine(changed, interceptor_options())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "why"),
     [

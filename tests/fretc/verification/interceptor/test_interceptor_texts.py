@@ -21,7 +21,7 @@ from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Head, core, head, otherwise
 from fretc.verification.interceptor.machine import (
     Event,
-    Gate,
+    InterceptorMachine,
     NotAnInterceptorError,
 )
 from fretish.bindings.declarations import Form, Interception
@@ -174,14 +174,15 @@ def _there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     builtins.min, builtins.max = kept
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TEXTS)
 def test_the_loop_does_not_take_it(name: str) -> None:
     taken = True
     try:
-        gate = Gate(TEXTS[name], SETTINGS)
-        states = [gate.initial]
+        machine = InterceptorMachine(TEXTS[name], SETTINGS)
+        states = [machine.initial]
         for state in states:  # grows while it is read
-            reached = (gate.step(state, event)[0] for event in Event)
+            reached = (machine.step(state, event)[0] for event in Event)
             states += [after for after in dict.fromkeys(reached) if after not in states]
     except NotAnInterceptorError:
         taken = False
@@ -189,6 +190,7 @@ def test_the_loop_does_not_take_it(name: str) -> None:
     assert not taken, "the text is explored as if it were all"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TEXTS)
 def test_the_contracts_are_not_proved_of_it(name: str) -> None:
     proofs = contracts(TEXTS[name], OPTIONS)
@@ -245,6 +247,7 @@ def test_a_helper_with_a_name_of_its_own_changes_nothing() -> None:
     assert all_proved(with_helper("asks"))
 
 
+@pytest.mark.slow
 @each("name", sorted({*set().union(*map(bound_by_node, NODES)), *dir(builtins)} - {"OPTIONS"}))
 def test_a_core_binds_no_name_that_its_node_binds_or_calls(name: str) -> None:
     """The node below would have it mean something else while it flies, or would call the core's."""
@@ -261,7 +264,7 @@ def test_neither_engine_takes_a_core_that_shadows_its_node(name: str) -> None:
     text = with_helper(name)
     assert not any(one.result is Result.PROVED for one in contracts(text, OPTIONS))
     with pytest.raises(NotAnInterceptorError):
-        Gate(text, SETTINGS)
+        InterceptorMachine(text, SETTINGS)
 
 
 @pytest.mark.parametrize(
@@ -443,6 +446,7 @@ def test_what_is_not_of_the_language_is_refused_and_not_executed(
         assert isinstance(core(text), str), inner
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("outside", OUTSIDE)
 def test_each_expression_is_outside_by_itself(outside: str) -> None:
     assert isinstance(head(sub(SCAN, f"    return ({outside}), None\n")), str)
@@ -460,6 +464,7 @@ def _never(*_: object) -> None:
     raise AssertionError("it was executed")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", PLACES[1:])
 def test_the_places_themselves_are_of_the_language(place: str) -> None:
     assert isinstance(head(sub(SCAN, f"    return ({place.format('0')}), None\n")), Head)

@@ -132,6 +132,7 @@ def test_a_twin_whose_heart_beats_too_fast_is_found() -> None:
     assert (uncovered[0].silent, uncovered[1].silent) == (2, 3)
 
 
+@pytest.mark.slow
 def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
     def too_strong(at: Numbers, times: Times, bound: object, logic: Plain) -> object:
         return logic.both(real(at, times, bound, logic), at.open <= 0)

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from fretc.verification.interceptor.machine import Event
-from fretc.verification.loop.model import Channel, Node, Wheels
+from fretc.verification.loop.model import Channel, Environment, Node, Wheels
 from fretc.verification.loop.search import Case, Parts
 from monitors.interceptor import Options
 from monitors.loading import load
@@ -139,7 +139,7 @@ def follows(known: Case, rows: list[Row]) -> None:
 
 def _same(wheels: Wheels, row: Row) -> bool:
     fields = tuple(any(v) if isinstance(v, tuple) else v for v in row.fields)
-    return wheels.gate == fields and (wheels.still < 0) == row.moving
+    return wheels.interceptor == fields and (wheels.still < 0) == row.moving
 
 
 @pytest.mark.slow
@@ -192,3 +192,13 @@ def test_a_run_says_what_is_heard_in_its_order() -> None:
         Event.RING,
         None,
     )
+
+
+def test_an_environment_chooses_no_comparisons_that_contradict_each_other() -> None:
+    never = ((("(x < 2)", True), ("(x > 3)", True)),)
+    free = Environment(("stopped", "(x < 2)", "(x > 3)"), "stopped")
+    bound = Environment(free.atoms, free.stands, never)
+    for stands in (False, True):
+        assert {*free.letters(stands)} - {*bound.letters(stands)} == {(stands, True, True)}
+    always = ((("stopped", True),),)  # were it never to stand, the loop would end there
+    assert Environment(free.atoms, "stopped", always).letters(True) == free.letters(True)

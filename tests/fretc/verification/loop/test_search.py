@@ -132,6 +132,7 @@ def test_a_loop_that_loses_two_messages_keeps_a_bound_of_three() -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("channel", "least"),
     [

@@ -279,6 +279,7 @@ def test_another_run_time_is_not_checked(old: str, new: str) -> None:
     assert reason(check(WITHIN, text)).startswith((RUNTIME, LAYOUT))
 
 
+@pytest.mark.slow
 def test_a_run_time_in_a_string_is_none() -> None:
     """What is executed is another one, where every verdict is pending."""
     text = emitted(WITHIN)

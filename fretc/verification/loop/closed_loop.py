@@ -1,7 +1,7 @@
-"""Layer LOOP: monitor, interceptor and any environment, under the assumptions of the bindings.
+"""The closed loop of monitor, interceptor and any environment, and its two claims.
 
-It explores the texts themselves: the monitor as the safety function that requests stops, the
-monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
+The search explores the texts themselves: the monitor as the safety function that requests stops,
+the monitor that fretc makes of the sentence as the observer, and the steps of the interceptor. The
 model between them is `fretc.verification.loop.model`, and its durations are whole cells, rounded
 up.
 """
@@ -14,6 +14,7 @@ from math import gcd
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import excluded, exclusion_in_words
 from compiler.logic import spot as automata
 from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof
 from compiler.project.interceptor_options import ASSUMED, options, ticks
@@ -35,8 +36,8 @@ _FINEST = 20
 
 
 @dataclass(frozen=True, slots=True)
-class Named:
-    """A text under verification, and its name in evidence."""
+class NamedText:
+    """A text under verification, and the name that proofs give it."""
 
     name: str
     text: str
@@ -46,14 +47,14 @@ class Named:
 class Setup:
     """The parts of a loop beside the requirement; None: not declared."""
 
-    monitor: Named
-    interceptor: Named | None
+    monitor: NamedText
+    interceptor: NamedText | None
     interception: Interception | None
     assumed: Assumed | None
 
 
-def loop(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
-    """Both claims: the requirement is kept, and the stop is released."""
+def loop_proofs(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
+    """The proofs of both claims: the requirement is kept, and the stop is released."""
     problem = case(rule, setup)
     if isinstance(problem, str):
         results: Results | Stopped = Stopped(problem)
@@ -117,6 +118,7 @@ def case(rule: Formalized, setup: Setup) -> Case | str:
         options(interception),
         declared,
         assumed.stands,
+        excluded=excluded(rule),
     )
 
 
@@ -178,6 +180,8 @@ def assumptions(
         f"`{assumed.stands}` is false while the wheels are told to move, and true once they have "
         f"had zero for {braking}, or earlier"
     )
+    for exclusion in problem.excluded:
+        yield f"never at one tick: {exclusion_in_words(exclusion)}, for no numbers compare so"
     yield "the wheels have at once what was published last, and keep it while nothing is published"
     yield "at the first tick the robot stands, and nothing has been heard yet"
     yield (

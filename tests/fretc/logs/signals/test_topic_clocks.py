@@ -14,7 +14,7 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Recording
-from fretc.logs.signals.stamps import Stamps, stamps, still
+from fretc.logs.signals.topic_clocks import ClockOffset, clock_offset, count_still
 from fretc.logs.topic_columns import Columns
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Severity
@@ -56,13 +56,13 @@ def scans(path: Path, stamped: Sequence[int | None]) -> Recording:
 
 def test_a_jump_is_a_step_of_more_than_a_second_between_two_messages() -> None:
     logs = np.arange(6, dtype=np.int64) * S
-    assert stamps(logs, logs + 5) == Stamps(0, 0, 5)
+    assert clock_offset(logs, logs + 5) == ClockOffset(0, 0, 5)
     late = np.array([0, 0, -S, -S, 0, 0])
-    assert stamps(logs, logs + late) == Stamps(0, 0, 0)
+    assert clock_offset(logs, logs + late) == ClockOffset(0, 0, 0)
     jumped = np.array([0, 0, -S - 1, -S - 1, 2 * S, 2 * S])
-    assert stamps(logs, logs + jumped) == Stamps(2, 3 * S + 1, 0)
-    assert stamps(logs[:1], logs[:1]) == Stamps(0, 0, 0)
-    assert stamps(logs[:0], logs[:0]) is None
+    assert clock_offset(logs, logs + jumped) == ClockOffset(2, 3 * S + 1, 0)
+    assert clock_offset(logs[:1], logs[:1]) == ClockOffset(0, 0, 0)
+    assert clock_offset(logs[:0], logs[:0]) is None
 
 
 def test_a_clock_that_is_set_back_is_counted_and_told(tmp_path: Path) -> None:
@@ -320,7 +320,7 @@ def test_each_zero_is_read_as_the_definition_says(
 def test_messages_that_stand_still_are_those_of_long_runs(runs: list[tuple[int, int]]) -> None:
     times = [time for time, count in runs for _ in range(count)]
     lengths = [len(list(group)) for _, group in groupby(times)]
-    assert still(np.array(times, np.int64)) == sum(n for n in lengths if n >= 10)
+    assert count_still(np.array(times, np.int64)) == sum(n for n in lengths if n >= 10)
 
 
 @pytest.mark.parametrize(("count", "expected"), [(9, []), (10, ["F420"]), (60, ["F420"])])

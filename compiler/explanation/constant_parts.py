@@ -1,0 +1,73 @@
+"""The parts of a sentence that are true of all numbers, or false: they demand nothing, or too much.
+
+Only what comparisons make constant counts: `battery < 20 & battery > 30`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import MOST_ATOMS, excluded, temporal_predicate
+from compiler.formalization.obligation import Uninterpreted, boolean
+from compiler.logic import formula as f
+from compiler.logic.evaluation import evaluate
+from compiler.logic.orders import Exclusion, only_possible
+from fretish import expressions as e
+from fretish.checking import conditions
+from fretish.reading.recursion import deep
+from fretish.syntax import ScopeKind
+
+
+@deep
+@deep
+def constant_parts(rule: Formalized) -> tuple[tuple[e.Expression, bool], ...]:
+    """Each part that has one truth value whatever is measured, and which; none within another.
+
+    The condition of a scope is looked at together with its mode.
+    """
+    impossible = excluded(rule)
+    if not impossible or temporal_predicate(rule.sentence):
+        return ()
+    parts = tuple(_constant(tuple(conditions(rule.sentence)), impossible))
+    scope, condition = rule.sentence.scope, rule.sentence.condition
+    if parts or not scope or not condition or scope.kind is not ScopeKind.IN:
+        return parts
+    return tuple(_constant([e.both(scope.mode, condition.expression)], impossible))
+
+
+def _constant(
+    parts: Sequence[e.Expression], impossible: Sequence[Exclusion]
+) -> Iterator[tuple[e.Expression, bool]]:
+    waiting = [*reversed(parts)]
+    while waiting:
+        part = waiting.pop()
+        value = _value(part, impossible)
+        if value is not None:
+            yield part, value
+        elif not isinstance(part, e.Comparison | e.Call):
+            waiting.extend(reversed(e.children(part)))
+
+
+def _value(part: e.Expression, impossible: Sequence[Exclusion]) -> bool | None:
+    """Its value, where that is the same in all valuations that can occur, and only in these."""
+    formula = boolean(part, Uninterpreted().alone())
+    atoms = tuple(dict.fromkeys(f.atoms(formula)))
+    if not atoms or len(atoms) > MOST_ATOMS:
+        return None
+    every = tuple(product((False, True), repeat=len(atoms)))
+    possible = only_possible(every, atoms, impossible)
+    found, all_ = ({*_values(formula, atoms, some)} for some in (possible, every))
+    return found.pop() if len(found) == 1 and len(all_) == 2 else None
+
+
+def _values(
+    formula: f.Formula, atoms: Sequence[str], valuations: Sequence[tuple[bool, ...]]
+) -> Iterator[bool]:
+    columns = {
+        name: sum(values[i] << k for k, values in enumerate(valuations))
+        for i, name in enumerate(atoms)
+    }
+    column = evaluate(formula, columns, len(valuations))
+    return (bool(column >> k & 1) for k in range(len(valuations)))

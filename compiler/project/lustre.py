@@ -1,0 +1,154 @@
+"""FRET's assignments: Lustre ↔ the expressions of FRETish.
+
+Only what certainly means the same is translated; the rest of Lustre (`pre`, `->`, `if`, `div`)
+stays the text that it is. Source: Lustre V6 reference manual, expressions and their precedences.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import assert_never
+
+from fretish import expressions as e
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.parser import parse_value
+from fretish.reading.recursion import deep
+
+_LEXEME = re.compile(
+    r"\s*(?:(?P<word>[A-Za-z_]\w*)|(?P<number>\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)"
+    r"|(?P<sign><>|<=|>=|=>|[-+*/<>=(),]))"
+)
+_WORDS = {"and": "&", "or": "|", "not": "!", "xor": "xor", "mod": "mod", "true": "true",
+          "false": "false"}  # fmt: skip
+_FOREIGN = frozenset(
+    "pre current when merge fby if then else with div nor int real bool let tel node const "
+    "returns var at of the is".split()
+)
+"""Words that Lustre has for itself, or FRETish."""
+_SIGNS = {"<>": "!=", "=>": "->"}
+_ENDS_NEGATION = frozenset({")", ",", "and", "or", "=>", "xor", ""})
+"""What follows a name that `not` stands before: whether it binds closer than `=` is disputed."""
+_MOST = 20_000
+"""Characters of an assignment that is read."""
+
+
+def fretish(text: str) -> e.Expression | None:
+    """What an assignment means in FRETish; None where that is not certain."""
+    if len(text) > _MOST:
+        return None
+    lexemes = _lexemes(text)
+    if not lexemes or not _is_clear(lexemes):
+        return None
+    words = " ".join(_WORDS.get(word, _SIGNS.get(word, word)) for word in lexemes)
+    tree = parse_value(Source("assignment", words).span())
+    if isinstance(tree, Diagnostic) or any(isinstance(p, e.Quantity) for p in e.parts(tree)):
+        return None
+    return tree
+
+
+def _lexemes(text: str) -> list[str] | None:
+    found, place = [], 0
+    while text[place:].strip():
+        match = _LEXEME.match(text, place)
+        if match is None or match["word"] in _FOREIGN:
+            return None
+        found.append(match[0].strip())
+        place = match.end()
+    return found
+
+
+def _is_clear(lexemes: list[str]) -> bool:
+    """Whether `or` and `xor`, whose ranks differ, do not meet, nor `not` and a comparison."""
+    if any({"or", "xor"} <= signs for signs in _levels(lexemes)):
+        return False
+    for i, word in enumerate(lexemes):
+        after = [*lexemes[i + 1 : i + 3], "", ""]
+        if word == "not" and after[0] not in ("(", "not") and after[1] not in _ENDS_NEGATION:
+            return False
+        if word == "not" and after[0] == "(" and not _is_followed(lexemes, i + 1):
+            return False
+    return True
+
+
+def _levels(lexemes: list[str]) -> list[set[str]]:
+    """What stands between each pair of parentheses, and in none, without what is inside of it."""
+    found: list[set[str]] = [set()]
+    open_ = [0]
+    for word in lexemes:
+        if word == "(":
+            open_.append(len(found))
+            found.append(set())
+        elif word == ")" and len(open_) > 1:
+            open_.pop()
+        else:
+            found[open_[-1]].add(word)
+    return found
+
+
+def _is_followed(lexemes: list[str], opening: int) -> bool:
+    """Whether what follows the closing parenthesis ends a negation."""
+    level = 0
+    for i in range(opening, len(lexemes)):
+        level += {"(": 1, ")": -1}.get(lexemes[i], 0)
+        if level == 0:
+            return [*lexemes, ""][i + 1] in _ENDS_NEGATION
+    return False
+
+
+@deep
+def lustre(tree: e.Expression) -> str | None:
+    """The expression as FRET's assignment; None where Lustre does not have what it says."""
+    if any(not _has(part) for part in e.parts(tree)):
+        return None
+    return _text(tree)
+
+
+def _has(part: e.Expression) -> bool:
+    match part:
+        case e.Quantity() | e.Word() | e.Persistence() | e.Arithmetic("^"):
+            return False
+        case e.Name(id) | e.Call(id):
+            return re.fullmatch(r"[A-Za-z_]\w*", id) is not None
+        case _:
+            return True
+
+
+def _text(tree: e.Expression) -> str:
+    """Every operator within another one in parentheses."""
+    match tree:
+        case e.Truth(value):
+            return str(value).lower()
+        case e.Name(id):
+            return id
+        case e.Number(digits):
+            return digits
+        case e.Call(name, args):
+            return f"{name}({', '.join(map(_text, args))})"
+        case e.Negation(arg):
+            return f"-{_inner(arg)}"
+        case e.Not(arg):
+            return f"not ({_text(arg)})"
+        case e.And(args):
+            return " and ".join(map(_inner, args))
+        case e.Or(args):
+            return " or ".join(map(_inner, args))
+        case e.Xor(left, right):
+            return f"{_inner(left)} xor {_inner(right)}"
+        case e.Implies(left, right):
+            return f"{_inner(left)} => {_inner(right)}"
+        case e.Iff(left, right):
+            return f"{_inner(left)} = {_inner(right)}"
+        case e.Comparison(op, left, right):
+            return f"{_inner(left)} {'<>' if op == '!=' else op} {_inner(right)}"
+        case e.Arithmetic(op, left, right):
+            return f"{_inner(left)} {op} {_inner(right)}"
+        case e.Quantity() | e.Word() | e.Persistence():
+            raise AssertionError("Lustre has none")
+        case _:
+            assert_never(tree)
+
+
+def _inner(tree: e.Expression) -> str:
+    simple = isinstance(tree, e.Truth | e.Name | e.Number | e.Call)
+    return _text(tree) if simple else f"({_text(tree)})"

@@ -1,0 +1,65 @@
+"""The names of comparisons in languages without numbers: `battery_lt_20` for `battery < 20`.
+
+They are the same in every language, and none is the name of anything else in the project. Beside
+them stands what they mean, and which of them are never true together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import atoms_of, excluded
+from compiler.formalization.resolution import candidates
+from compiler.logic import formula as f
+from compiler.logic.identifiers import legal_names
+from compiler.logic.printing import identifier, is_compound
+from fretish.printer import expression
+
+
+def comparison_names(rule: Formalized) -> Mapping[str, str]:
+    """The name of each atom of a rule that is a comparison or a call."""
+    atoms = dict.fromkeys((*rule.propositions, *atoms_of(rule.sentence)))
+    others = {identifier(name) for name in (*rule.variables, *rule.glossary, *atoms)}
+    return legal_names(filter(is_compound, atoms), others)
+
+
+def in_words(rule: Formalized) -> Mapping[str, str]:
+    """What each of these atoms means: `battery < 20 %`."""
+    declared = rule.declarations.propositions if rule.declarations else {}
+    written = dict(candidates(rule.sentence))
+    found = {}
+    for atom in comparison_names(rule):
+        tree = declared[atom].expression if atom in declared else written.get(atom)
+        found[atom] = atom if tree is None else " ".join(expression(tree).split())
+    return found
+
+
+def definitions(rule: Formalized) -> Mapping[str, str]:
+    """The same by the names: `battery_lt_20` is `battery < 20 %`."""
+    meanings = in_words(rule)
+    return {name: meanings[atom] for atom, name in comparison_names(rule).items()}
+
+
+def impossible(rule: Formalized, names: Mapping[str, str]) -> list[str]:
+    """Which comparisons never have these values together, by the names of a language."""
+    return [
+        ", ".join(f"{names[atom]} {str(value).lower()}" for atom, value in exclusion)
+        for exclusion in excluded(rule)
+    ]
+
+
+def notes(rule: Formalized) -> list[str]:
+    """Definitions, and what no numbers make true, a sentence each."""
+    names = comparison_names(rule)
+    return [
+        *(f"{name}: {meaning}" for name, meaning in definitions(rule).items()),
+        *(f"never at one tick: {together}" for together in impossible(rule, names)),
+    ]
+
+
+def renamed(formula: f.Formula, names: Mapping[str, str]) -> f.Formula:
+    """The formula with other names for some atoms."""
+    if isinstance(formula, f.Atom):
+        return f.Atom(names.get(formula.name, formula.name))
+    return f.rebuild(formula, lambda part: renamed(part, names))

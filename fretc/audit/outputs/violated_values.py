@@ -1,0 +1,39 @@
+"""The values of signals at a violation, for a person."""
+
+from __future__ import annotations
+
+from fretc.audit.evidence.schema import Result, Violation
+from fretish.bindings.amounts import seconds, value
+
+
+def values(result: Result, violation: Violation) -> str:
+    """`speed = 1.8 m/s, battery = unknown`: each signal at the first tick of the violation.
+
+    Args:
+        result: in declared units (`fretc.audit.evidence.declared_units`).
+        violation: one of its violations.
+    """
+    return ", ".join(
+        f'{name} = "{known}"'
+        if isinstance(known, str)
+        else f"{name} = {value(known, result.units.get(name, ''), _bounds(result, name))}"
+        for name, known in violation.values.items()
+    )
+
+
+def reason(result: Result) -> str:
+    """The reason of the verdict, with the values at the first violation where it is violated.
+
+    Args:
+        result: in declared units.
+    """
+    first = next(iter(result.violations), None)
+    if first is None or not first.values or result.trials is not None:
+        return result.reason
+    return f"{result.reason}; at {seconds(first.start_s)} {values(result, first)}"
+
+
+def _bounds(result: Result, signal: str) -> list[float]:
+    """What a signal, or its absolute value, is compared with."""
+    thresholds = (t for t in result.thresholds if t.signal in (signal, f"abs({signal})"))
+    return [sign * each.bound for each in thresholds for sign in (1, -1)]

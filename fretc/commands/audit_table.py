@@ -1,0 +1,176 @@
+"""The verdicts of many runs as a table: a row for each requirement, a column of marks for each run.
+
+Nothing of it is wider than the screen. What does not fit is counted, and it is never the worst.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.schema import Result
+from fretc.audit.evidence.verdicts import SHOWN
+from fretc.audit.outputs.totals import COUNTED, runs, severity, sign_of, word_of
+from fretc.terminal.output import Piece
+from fretc.terminal.screen import Screen, fitted, padded, width
+
+MOST_RUNS = 200
+"""Columns of a table: of more runs the worst ones."""
+MOST_REQUIREMENTS = 60
+"""Rows of a table: of more requirements the worst ones."""
+MOST_NAMES = 20
+"""Runs that are named below the table."""
+_GROUP = 10
+"""Marks between two blanks."""
+_LONGEST_ID = 24
+Line = tuple[Piece, ...]
+_BLANK: Line = (("", None),)
+
+
+@dataclass(frozen=True, slots=True)
+class Grid:
+    """The words of all results, by the number of the run and the requirement."""
+
+    names: Sequence[str]
+    """Of the runs."""
+    ids: Sequence[str]
+    words: Mapping[tuple[int, str], str]
+    answers: Mapping[str, str]
+    """What all runs say of a requirement with a probability."""
+
+    @staticmethod
+    def of(
+        results: Iterable[Result], estimates: Iterable[Estimated], refused: Collection[str]
+    ) -> Grid:
+        """That of an audit."""
+        of_run = runs(results)
+        return Grid(
+            [run[0].run for run in of_run],
+            [*dict.fromkeys(result.requirement for run in of_run for result in run)],
+            {
+                (number, result.requirement): word_of(result, refused)
+                for number, run in enumerate(of_run)
+                for result in run
+            },
+            {one.requirement: one.answer for one in estimates},
+        )
+
+    def word(self, id: str) -> str:
+        """The worst of a requirement."""
+        words = (self.words[run, id] for run in range(len(self.names)) if (run, id) in self.words)
+        return min((*words, *filter(None, [self.answers.get(id)])), key=severity)
+
+    def counts(self, run: int) -> Counter[str]:
+        """Of a run: how many requirements have which word."""
+        return Counter(self.words[run, id] for id in self.ids if (run, id) in self.words)
+
+
+def table(
+    results: Iterable[Result],
+    estimates: Iterable[Estimated],
+    refused: Collection[str],
+    screen: Screen,
+) -> Iterator[Line]:
+    """The lines of the table, and below it the runs in which something is not shown.
+
+    Args:
+        results: of two runs or more.
+        estimates: what all runs say of requirements with a probability.
+        refused: the ids of requirements that could not be held against any run.
+        screen: where it is shown.
+    """
+    grid = Grid.of(results, estimates, refused)
+    badness = [_badness(grid.counts(run)) for run in range(len(grid.names))]
+    columns = sorted(sorted(range(len(grid.names)), key=badness.__getitem__)[:MOST_RUNS])
+    worst_ids = sorted(grid.ids, key=lambda id: severity(grid.word(id)))[:MOST_REQUIREMENTS]
+    rows = [id for id in grid.ids if id in {*worst_ids}]
+    yield from _blocks(grid, rows, columns, screen)
+    yield from _left_out(grid, rows, columns)
+    bad = [run for run in columns if not {*grid.counts(run)} <= {*SHOWN, COUNTED}]
+    yield from _legend(grid, sorted(bad, key=badness.__getitem__), screen)
+
+
+def _badness(counts: Counter[str]) -> tuple[tuple[int, int], ...]:
+    """The key that sorts runs: their words, the worst first, and how often they have each."""
+    return tuple(sorted((severity(word), -count) for word, count in counts.items()))
+
+
+def _blocks(
+    grid: Grid, rows: Sequence[str], columns: Sequence[int], screen: Screen
+) -> Iterator[Line]:
+    """All rows, with as many columns as fit; then all rows again with the next ones."""
+    names = [screen.text(id) for id in rows]
+    room = min(max(map(width, (*names, "run"))), screen.width // 3, _LONGEST_ID)
+    names = [padded(fitted(name, room), room) for name in names]
+    groups = max(1, (screen.width - room - 5) // (_GROUP + 1))
+    for start in range(0, len(columns), groups * _GROUP):
+        block = columns[start : start + groups * _GROUP]
+        if start:
+            yield _BLANK
+        yield ((f"    {padded('run', room)} {_numbers(block)}".rstrip(), None),)
+        for name, id in zip(names, rows, strict=True):
+            sign = sign_of(grid.word(id))
+            head: Line = ((f"  {sign.glyph} {name}", sign.colour),)
+            yield (*head, *_marks(grid, id, block))
+
+
+def _numbers(block: Sequence[int]) -> str:
+    """The number of the first run of each group."""
+    firsts = [f"{run + 1}" for run in block[::_GROUP]]
+    return " ".join(padded(first, _GROUP) for first in firsts).rstrip()
+
+
+def _marks(grid: Grid, id: str, block: Sequence[int]) -> Iterator[Piece]:
+    for place, run in enumerate(block):
+        gap = " " if place % _GROUP == 0 else ""
+        word = grid.words.get((run, id))
+        sign = sign_of(word) if word else None
+        yield (f"{gap}{sign.glyph}", sign.colour) if sign else (f"{gap} ", None)
+
+
+def _left_out(grid: Grid, rows: Sequence[str], columns: Sequence[int]) -> Iterator[Line]:
+    """What the table does not have, in one line; none of it is worse than what it has."""
+    kept_runs, kept_ids = {*columns}, {*rows}
+    words = Counter(
+        word for (run, id), word in grid.words.items() if run not in kept_runs or id not in kept_ids
+    )
+    if not words:
+        return
+    parts = [
+        f"{count:,} {what}"
+        for count, what in (
+            (len(grid.names) - len(columns), "runs"),
+            (len(grid.ids) - len(rows), "requirements"),
+        )
+        if count
+    ]
+    yield _BLANK
+    line = f"not in the table: {' and '.join(parts)} with {_counted(words)}; `-v` lists them"
+    yield ((line, sign_of(min(words, key=severity)).colour),)
+
+
+def _legend(grid: Grid, bad: Sequence[int], screen: Screen) -> Iterator[Line]:
+    """The names of the worst runs, and how many more there are."""
+    if bad:
+        yield _BLANK
+    for run in bad[:MOST_NAMES]:
+        counts = grid.counts(run)
+        for word in (*SHOWN, COUNTED):
+            counts.pop(word, None)
+        head = f"  run {run + 1}: {_counted(counts)}: "
+        name = screen.text(grid.names[run])
+        room = screen.width - width(head)
+        if room >= min(width(name), _LONGEST_ID):
+            yield ((f"{head}{fitted(name, room)}", None),)
+        else:
+            yield ((fitted(head.rstrip(), screen.width), None),)
+            yield ((f"    {fitted(name, screen.width - 4)}", None),)
+    more = len(bad) - MOST_NAMES
+    if more > 0:
+        yield ((f"  and {more:,} more; `-v` lists them", None),)
+
+
+def _counted(words: Counter[str]) -> str:
+    return ", ".join(f"{words[word]:,} {word}" for word in sorted(words, key=severity))

@@ -1,0 +1,188 @@
+"""What `fretc audit` prints for a person: the verdicts, the one to look at first, the counts."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from shlex import quote
+
+from compiler.formalization.record import wording
+from compiler.project.folder import Project
+from fretc.audit.evidence.declared_units import without_samples
+from fretc.audit.evidence.schema import Result, Threshold, Violation
+from fretc.audit.evidence.verdicts import SHOWN
+from fretc.audit.many_logs import Audit, estimate_lines
+from fretc.audit.measurements.confidence_intervals import REFUTED
+from fretc.audit.outputs.totals import (
+    COUNTED,
+    Total,
+    longest,
+    runs,
+    totals,
+    word_of,
+    worst,
+)
+from fretc.audit.outputs.violated_values import values
+from fretc.commands.audit_table import Line, table
+from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER
+from fretc.terminal.screen import Screen
+from fretish.bindings.amounts import exact, instant, seconds, value
+from fretish.diagnostics.rendering import visible
+
+_FIRST_DATE = 10**17
+"""Nanoseconds, in 1973: a clock that tells less is simulated, and counts from its own zero."""
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where the user keeps what an audit reads and writes, as named on the command line."""
+
+    requirements: str
+    bindings: str | None
+    evidence: str
+
+    def commands(self, id: str) -> Iterator[str]:
+        """Those that show more of a requirement."""
+        folder = self._option("--requirements", self.requirements, REQUIREMENTS_FOLDER)
+        project = f"{folder}{self._option('--bindings', self.bindings, None)}"
+        if self.evidence != "-":
+            evidence = self._option("--evidence", self.evidence, EVIDENCE)
+            yield f"fretc report{project}{evidence}"
+        yield f"fretc explain {quote(id)}{project}"
+
+    @staticmethod
+    def _option(name: str, value: str | None, default: str | None) -> str:
+        return "" if value is None or value == default else f" {name} {quote(value)}"
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """An audit, and what its text needs beside it."""
+
+    audit: Audit
+    project: Project
+    refused: Collection[str]
+    """The ids of requirements that could not be held against any run."""
+    places: Places
+    seconds: float
+    """That the audit took."""
+
+
+def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
+    """All lines, the counts last.
+
+    Args:
+        subject: what is shown.
+        screen: where.
+        every: list each result also where a table would have them.
+    """
+    audit, refused = subject.audit, subject.refused
+    if every or len(runs(audit.results)) == 1:
+        yield from ((line,) for line in audit.text)
+    else:
+        yield from table(audit.results, audit.estimates, refused, screen)
+        yield from (((visible(text), colour),) for text, colour in estimate_lines(audit.estimates))
+    for text in _first_to_look_at(subject):
+        yield ((visible(text), None),)
+    yield _last(subject)
+
+
+def _first_to_look_at(subject: Subject) -> Iterator[str]:
+    """The worst result, and the commands that show more; nothing where all is shown."""
+    result = worst(subject.audit.results, subject.refused)
+    refuted = next((one for one in subject.audit.estimates if one.answer == REFUTED), None)
+    if refuted is not None and (result is None or longest(result) is None):
+        id, where, details = refuted.requirement, f"{REFUTED} over all runs", [refuted.lines[0]]
+    elif result is not None:
+        id, details = result.requirement, [*_details(result, subject)]
+        where = f"{word_of(result, subject.refused)} in {result.run}"
+    else:
+        return
+    yield ""
+    yield f"worst: {id} {where}: {_title(subject, id)}"
+    yield from (f"  {line}" for line in details)
+    for place, command in enumerate(subject.places.commands(id)):
+        yield f"  {'more:' if place == 0 else '     '} {command}"
+
+
+def _details(result: Result, subject: Subject) -> Iterator[str]:
+    """The longest violation of a result, or the reason of another verdict."""
+    violation = longest(result)
+    if violation is None:
+        yield result.reason
+        return
+    (shown,) = without_samples([result], subject.project.declarations)
+    yield from _violation(shown, shown.violations[result.violations.index(violation)])
+
+
+def _title(subject: Subject, id: str) -> str:
+    """Of a requirement; its sentence, where it has none."""
+    requirement = next((each for each in subject.project.requirements if each.id == id), None)
+    return requirement.title or wording(requirement) if requirement else ""
+
+
+def _violation(result: Result, violation: Violation) -> Iterator[str]:
+    """When it was, what was demanded, the values then, and the limits.
+
+    Args:
+        result: in declared units.
+        violation: one of its violations.
+    """
+    first, start = violation.start_ns, result.start_ns or 0
+    end = f", until {seconds((violation.end_ns - start) / 1e9)}"
+    many = len(result.violations)
+    yield (
+        f"at {_time(first)}, {seconds((first - start) / 1e9)} into the log"
+        f"{end if violation.end_ns > first else ''}"
+        f"{f'; the longest of {many:,} stretches' if many > 1 else ''}"
+    )
+    known = f"; {values(result, violation)}" if violation.values else ""
+    if violation.missing or known:
+        yield f"demanded: {violation.missing}{known}"
+    for threshold in result.thresholds:
+        if _is_in(threshold.proposition, violation.missing):
+            yield f"limit: {_limit(threshold)}"
+
+
+def _time(ns: int) -> str:
+    return instant(ns) if ns >= _FIRST_DATE else f"{seconds(ns / 1e9)} by the clock of the log"
+
+
+def _is_in(proposition: str, expression: str) -> bool:
+    return re.search(rf"(?<!\w){re.escape(proposition)}(?!\w)", expression) is not None
+
+
+def _limit(threshold: Threshold) -> str:
+    """`speed <= 1.5 m/s (slow); from 0 m/s to 1.8 m/s in this run`."""
+    unit, bound = threshold.unit, threshold.bound
+    comparison = f"{threshold.signal} {threshold.operator} {exact(bound, unit)}"
+    name = f" ({threshold.proposition})" if threshold.proposition.isidentifier() else ""
+    least, greatest = (value(each, unit, [bound]) for each in (threshold.least, threshold.greatest))
+    known = "" if threshold.least is None else f"; from {least} to {greatest} in this run"
+    return f"{comparison}{name}{known}"
+
+
+def _last(subject: Subject) -> Line:
+    """`16 runs x 15 requirements: 12 violated (3 requirements in 4 runs), 228 satisfied  2.1 s`."""
+    results = subject.audit.results
+    ids = {result.requirement for result in results}
+    of_runs = runs(results)
+    counts = totals(results, subject.audit.estimates, subject.refused)
+    parts = [_count(total, many=len(of_runs) > 1) for total in counts]
+    times = "\N{MULTIPLICATION SIGN}"
+    head = f"{_times(len(of_runs), 'run')} {times} {_times(len(ids), 'requirement')}"
+    text = f"{head}: {', '.join(parts)}  {subject.seconds:.1f} s"
+    return ((text, counts[0].colour if counts else None),)
+
+
+def _count(total: Total, *, many: bool) -> str:
+    if not total.runs:
+        return f"{total.results:,} {total.word} over all runs"
+    where = f" ({_times(total.requirements, 'requirement')} in {_times(total.runs, 'run')})"
+    bad = total.word not in (*SHOWN, COUNTED)
+    return f"{total.results:,} {total.word}{where if many and bad else ''}"
+
+
+def _times(count: int, noun: str) -> str:
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"

@@ -1,0 +1,94 @@
+"""The clock of one topic of a log: where it was never set, stands still, or jumps.
+
+A message has a log time, at which it was recorded, and a declared time, by the clock that the
+bindings declare. All times are nanoseconds and stand in the order of the file.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.logs.signals.samples import Times
+
+JUMP = 10**9
+"""A step of more than this between two messages means that a clock was set: no message is so late.
+
+It is also how long a clock that begins at zero counts as being at its beginning.
+"""
+STILL_RUN = 10
+"""From so many messages in a row with one time on, their clock stands still: a burst is shorter."""
+
+
+def unset(log_times: Times, times: Times, *, from_zero: bool) -> NDArray[np.bool_]:
+    """Which messages have a zero for a declared time because nobody set it.
+
+    On a clock that begins at zero, as those of simulations do, a zero can be a true time. It is
+    where it comes before every other time, was recorded within the first `JUMP`, and fewer than
+    `STILL_RUN` messages have one.
+
+    Args:
+        log_times: of the messages.
+        times: the declared times of the same messages.
+        from_zero: whether the clock of the log begins at zero.
+    """
+    zero: NDArray[np.bool_] = times == 0
+    if not from_zero or np.count_nonzero(zero) >= STILL_RUN:
+        return zero
+    first: NDArray[np.bool_] = np.logical_and.accumulate(zero) & (log_times < JUMP)
+    return zero & ~first
+
+
+def forward_fill(times: Times, missing: NDArray[np.bool_]) -> Times:
+    """The times, each missing one replaced by the last one before it that is not missing.
+
+    Those before the first known time get that one. Unchanged where all are missing.
+    """
+    known = np.flatnonzero(~missing)
+    if not len(known):
+        return times
+    last_known = np.searchsorted(known, np.arange(len(times)), "right") - 1
+    result: Times = times[known[last_known.clip(0)]]
+    return result
+
+
+def count_still(times: Times) -> int:
+    """The number of messages during which the clock stands still: those of all long runs.
+
+    A run is of messages with equal times, one after the other; it is long from `STILL_RUN` on.
+    """
+    starts = np.flatnonzero(np.append(True, times[1:] != times[:-1]))
+    lengths = np.diff(np.append(starts, len(times)))
+    return int(lengths[lengths >= STILL_RUN].sum())
+
+
+@dataclass(frozen=True, slots=True)
+class ClockOffset:
+    """How far the declared times of a topic's messages are ahead of their log times."""
+
+    jumps: int
+    """How often the offset changes by more than `JUMP` from a message to the next."""
+    largest_jump: int
+    """The largest such change, whichever its direction; 0 where there is none."""
+    median: int
+    """The median of the offsets; negative: the declared times are behind."""
+
+
+def clock_offset(log_times: Times, times: Times) -> ClockOffset | None:
+    """The offset of the declared times of a topic's messages, and its jumps.
+
+    Args:
+        log_times: of the messages.
+        times: the declared times of the same messages.
+
+    Returns:
+        None where there are no messages.
+    """
+    if not len(times):
+        return None
+    offsets = times - log_times
+    steps = np.abs(np.diff(offsets))
+    jumps = steps[steps > JUMP]
+    return ClockOffset(len(jumps), int(jumps.max(initial=0)), int(np.median(offsets)))

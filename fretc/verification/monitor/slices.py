@@ -1,0 +1,122 @@
+"""What the signals of one requirement depend on, in the text of a monitor of several.
+
+The text is read without regard to the order of its statements: a name depends on all that any
+statement gives it, and on the tests around that. So what is not found is of no influence.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Hashable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from compiler.formalization.letters import Valuation
+from compiler.targets.python.program import MARKS, SIGNALS
+from fretc.verification.monitor.equivalence import Judgement
+from fretc.verification.monitor.machine import Stepped
+from fretc.verification.monitor.text_check import own
+
+_Given = Mapping[str, frozenset[str]]
+"""Each name with those that it is made of."""
+
+
+@dataclass(frozen=True, slots=True)
+class Slice:
+    """A part of a monitor that is stepped by itself."""
+
+    propositions: frozenset[str]
+    cells: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Alone:
+    """A monitor of several requirements, stepped by the propositions of one."""
+
+    machine: Stepped
+    others: int
+    """Propositions at the end of a letter that the requirement does not depend on."""
+
+    def save(self) -> Hashable:
+        """The cells of the machine."""
+        return self.machine.save()
+
+    def load(self, state: Hashable) -> None:
+        """Go back to them."""
+        self.machine.load(state)
+
+    def step(self, letter: Valuation) -> Judgement:
+        """With any values of the others: false."""
+        return self.machine.step((*letter, *(False,) * self.others))
+
+
+def slice_of(text: str, prefix: str, propositions: Mapping[str, str]) -> Slice:
+    """The part that the signals and the marks of a requirement depend on.
+
+    Args:
+        text: a monitor's, laid out as fretc writes it.
+        prefix: of the names of the requirement's signals and marks.
+        propositions: each with its parameter.
+    """
+    rail = next(
+        node
+        for node in own(text).body
+        if isinstance(node, ast.ClassDef) and node.name.endswith("Rail")
+    )
+    advance = next(
+        part for part in rail.body if isinstance(part, ast.FunctionDef) and part.name == "advance"
+    )
+    given: dict[str, frozenset[str]] = {}
+    for name, sources in _given(advance.body, frozenset()):
+        given[name] = given.get(name, frozenset()) | sources
+    reached = _closure(given, (f"{prefix}_{name}" for name in (*MARKS, *SIGNALS)))
+    return Slice(
+        frozenset(name for name, parameter in propositions.items() if parameter in reached),
+        reached,
+    )
+
+
+def _closure(given: _Given, names: Iterable[str]) -> frozenset[str]:
+    found = {*names}
+    waiting = [*found]
+    while waiting:
+        for name in given.get(waiting.pop(), frozenset()) - found:
+            found.add(name)
+            waiting.append(name)
+    return frozenset(found)
+
+
+def _given(
+    statements: Iterable[ast.stmt], tests: frozenset[str]
+) -> Iterator[tuple[str, frozenset[str]]]:
+    """Each name that a statement changes, with all names that it changes by."""
+    for statement in statements:
+        match statement:
+            case ast.Assign(targets, value):
+                sources = tests | _names(value)
+                for name in (*_names(*targets), *_stepped(value)):
+                    yield name, sources
+            case ast.If(test, body, orelse):
+                inside = tests | _names(test)
+                for name in _stepped(test):
+                    yield name, inside
+                yield from _given((*body, *orelse), inside)
+            case ast.For(_, _, body):
+                yield from _given(body, tests)
+
+
+def _names(*nodes: ast.expr) -> set[str]:
+    """Local names and the attributes of `self`, which have the same names."""
+    return {
+        part.id if isinstance(part, ast.Name) else part.attr
+        for node in nodes
+        for part in ast.walk(node)
+        if isinstance(part, ast.Name | ast.Attribute)
+    } - {"self"}
+
+
+def _stepped(node: ast.expr) -> Iterator[str]:
+    """The windows that are stepped in it."""
+    for part in ast.walk(node):
+        match part:
+            case ast.Attribute(ast.Name(name), "step"):
+                yield name

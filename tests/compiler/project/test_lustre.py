@@ -1,0 +1,80 @@
+"""FRET's assignments in Lustre, and expressions of FRETish: only what certainly is the same."""
+
+import pytest
+from hypothesis import given
+
+from compiler.project.lustre import fretish, lustre
+from fretish import expressions as e
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.parser import parse_value
+from fretish.printer import expression
+from tests.strategies import expressions
+
+
+@pytest.mark.parametrize(
+    ("text", "meaning"),
+    [
+        ("0.5", "0.5"),
+        ("-3", "-3"),
+        ("true", "true"),
+        ("a and not b", "a & !b"),
+        ("not(a or b) => c", "!(a | b) -> c"),
+        ("x <> 3 and y >= z + 1.0", "x != 3 & y >= z + 1.0"),
+        ("a or b and c", "a | b & c"),
+        ("a => b => c", "a -> b -> c"),
+        ("x mod 2 = 0", "x mod 2 = 0"),
+        ("preReal(0.0, speed) < speed", "preReal(0.0, speed) < speed"),
+        ("(a xor b) and (x < 3)", "(a xor b) & x < 3"),
+        ("x=3", "x = 3"),
+        ("a or (b xor c)", "a | (b xor c)"),
+    ],
+)
+def test_lustre_is_read(text: str, meaning: str) -> None:
+    tree = fretish(text)
+    assert tree is not None
+    assert expression(tree) == meaning
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "0.0 -> pre x",
+        "if a then b else c",
+        "pre(x)",
+        "x div 2",
+        "not x = y",
+        "not (x) = y",
+        "a or b xor c",
+        "a && b",
+        "a ; b",
+        "speed = ",
+        "5 m",
+        "x[2]",
+        "the x",
+        "(" * 30_000,
+    ],
+)
+def test_what_is_not_certain_stays_a_text(text: str) -> None:
+    assert fretish(text) is None
+
+
+@pytest.mark.parametrize("text", ["1.5 m/s", "x ^ 2 < 3", '"two words" & a', "a.b"])
+def test_what_lustre_has_not_is_not_written(text: str) -> None:
+    tree = parse_value(Source("v", text).span())
+    assert not isinstance(tree, Diagnostic)
+    assert lustre(tree) is None
+
+
+@pytest.mark.slow
+@given(expressions)
+def test_what_is_written_is_read_as_the_same_or_not_at_all(tree: e.Expression) -> None:
+    """But for `<->`, which Lustre has no sign for beside `=`."""
+    text = lustre(tree)
+    if text is None or any(isinstance(part, e.Iff) for part in e.parts(tree)):
+        return
+    again = fretish(text)
+    assert again is None or again == tree
+    if not any(isinstance(part, e.Name | e.Call) for part in e.parts(tree)):
+        assert again == tree

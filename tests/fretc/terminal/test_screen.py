@@ -1,0 +1,47 @@
+"""Texts in columns: nothing is wider than it may be, and nothing is written that cannot be."""
+
+import unicodedata
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fretc.terminal.screen import Screen, fitted, padded, screen, width
+from fretish.diagnostics.signs import SIGNS
+
+ENCODINGS = ("utf-8", "latin-1", "ascii", "cp437")
+
+
+@given(st.text(max_size=60), st.integers(3, 40), st.sampled_from(ENCODINGS))
+def test_a_text_fits_into_its_columns(text: str, columns: int, encoding: str) -> None:
+    shown = Screen(encoding=encoding).text(text)
+    shown.encode(encoding)
+    assert not [c for c in shown if unicodedata.category(c) in ("Cc", "Cf", "Zl", "Zp")]
+    assert width(fitted(shown, columns)) <= columns
+    assert width(padded(fitted(shown, columns), columns)) == columns
+
+
+def test_what_is_cut_keeps_more_of_its_end() -> None:
+    assert fitted("runs/2024/night/a.mcap", 12) == "run\N{HORIZONTAL ELLIPSIS}t/a.mcap"
+    assert fitted("short", 12) == "short"
+
+
+def test_a_wide_character_takes_two_columns() -> None:
+    assert width("日本") == 4
+    assert padded("日本", 6) == "日本  "
+
+
+def test_a_hundred_marks_upon_a_letter_are_cut() -> None:
+    assert len(fitted("a" + "\u0301" * 4000, 10)) <= 60
+
+
+def test_each_sign_has_a_letter_of_its_own_for_terminals_that_cannot_write_it() -> None:
+    letters = Screen(encoding="ascii").signs("".join(sign.glyph for sign in SIGNS))
+    assert letters.isascii()
+    assert len({*letters}) == len(SIGNS) == len(letters)
+    assert all(width(sign.glyph) == width(sign.letter) == 1 for sign in SIGNS)
+
+
+def test_what_is_no_terminal_has_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    assert screen().width == 80
