@@ -84,7 +84,7 @@ def compile_(
         stop(paths)
     project = load(paths, bindings)
     undecided = _undecided(project.rules)
-    say([*project.diagnostics, *undecided])
+    say([*project.diagnostics, *project.answered(undecided)])
     as_json = form == "json" and set(kinds) <= {"ltl"}
     if as_json and _only_failed(project):
         _deliver_formulas(project, output if kinds else "-")

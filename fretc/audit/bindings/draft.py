@@ -220,9 +220,8 @@ def _unread(rule: Formalized, name: str, declared: Declarations | None) -> tuple
 
 def durations(project: Project) -> tuple[int, ...]:
     """Those of the requirements, in nanoseconds; ticks are none."""
-    timings = [rule.sentence.timing for rule in project.rules]
-    found = [t.duration for t in timings if isinstance(t, s.Within | s.For | s.After)]
-    return tuple(d.amount * NANOSECONDS[d.unit] for d in found if d.unit in NANOSECONDS)
+    found = [s.duration(rule.sentence.timing) for rule in project.rules]
+    return tuple(d.amount * NANOSECONDS[d.unit] for d in found if d and d.unit in NANOSECONDS)
 
 
 def _missing_proposition(name: str, rules: Sequence[Formalized]) -> MissingProposition:

@@ -219,4 +219,4 @@ def test_no_other_proposition_is_proposed(fretc: Fretc, name: str) -> None:
     assert run.status == 2
     assert "did you mean" not in run.err
     assert name == "q" or f"[proposition.{name}]" not in run.err
-    assert '`[proposition."(p >= 2)"]`' in run.err
+    assert "`[signal.p]`" in run.err

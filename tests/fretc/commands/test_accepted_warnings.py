@@ -272,6 +272,17 @@ def test_other_commands_count_what_is_accepted(fretc: Fretc) -> None:
     assert (run.status, run.err) == (0, "1 warning is accepted: `fretc check` lists the reasons\n")
 
 
+@pytest.mark.parametrize("emit", [(), ("--emit", "monitor"), ("--emit", "json")])
+def test_a_file_whose_header_accepts_its_warning_is_shown_without_it(
+    fretc: Fretc, emit: tuple[str, ...]
+) -> None:
+    project(CAUSES["F203"], {"F203": "meant"})
+    run = fretc("requirements/r1.fret", *emit)
+    assert run.status == 0
+    assert run.err.startswith("1 warning is accepted: `fretc check` lists the reasons\n")
+    assert "F203" not in run.err
+
+
 # Reviews and the report ------------------------------------------------------------------------
 
 
