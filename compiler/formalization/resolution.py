@@ -40,15 +40,27 @@ def in_own_units(
         mistakes.append(own)
         return comparison
 
+    worded = _worded(sentence, declarations, place)
+    if isinstance(worded, Diagnostic):
+        return worded
+    own = s.with_expressions(worded, lambda each: e.with_comparisons(each, converted))
+    return mistakes[0] if mistakes else own
+
+
+def _worded(sentence: Sentence, declarations: Declarations, place: Span) -> Sentence | Diagnostic:
+    """The sentence as it is written, with the words of its signals as words."""
+    signals = _without(declarations.propositions, declarations.signals)
+    mistakes: list[Diagnostic] = []
+
     def rewritten(expression: e.Expression) -> e.Expression:
-        worded = words(expression, _without(declarations.propositions, signals), place)
+        worded = words(expression, signals, place)
         if isinstance(worded, Diagnostic):
             mistakes.append(worded)
             return expression
-        return e.with_comparisons(worded, converted)
+        return worded
 
-    own = s.with_expressions(sentence, rewritten)
-    return mistakes[0] if mistakes else own
+    found = s.with_expressions(sentence, rewritten)
+    return mistakes[0] if mistakes else found
 
 
 def _without(
@@ -67,7 +79,10 @@ def resolved(rule: Formalized, declarations: Declarations) -> Formalized | Diagn
     propositions: dict[str, Proposition] = {}
     mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
     atoms = {*rule.propositions, *rule.watched}
-    for name, part in _candidates(rule.sentence):
+    written = _worded(rule.written, declarations, rule.requirement.wording)
+    assert not isinstance(written, Diagnostic), "the rule has been made of it"
+    parts = zip(_candidates(rule.sentence), _candidates(written), strict=True)
+    for (name, own), (_, part) in parts:
         if name not in atoms or name in propositions:
             continue
         if name in declarations.propositions or ("proposition", name) in declarations.mistakes:
@@ -80,7 +95,7 @@ def resolved(rule: Formalized, declarations: Declarations) -> Formalized | Diagn
             if isinstance(bound, Diagnostic):
                 return bound
             span = getattr(part, "span", None) or rule.requirement.wording
-            propositions[name] = Proposition(name, bound, printed(part), span=span)
+            propositions[name] = Proposition(name, bound, printed(own), span=span)
     return replace(rule, declarations=extended(declarations, propositions, mistakes))
 
 
@@ -100,7 +115,10 @@ def extended(
 
 
 def _candidates(sentence: Sentence) -> Iterator[tuple[str, e.Expression]]:
-    """Comparisons and variables, by the names that formulas give them."""
+    """Comparisons and variables, by the names that formulas give them.
+
+    Those of a sentence in other units come in the same order.
+    """
     waiting = list(conditions(sentence))
     while waiting:
         part = waiting.pop()

@@ -15,7 +15,17 @@ from fretish.bindings import expressions as binding
 from fretish.bindings.declarations import Signal
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
-from fretish.units import DIMENSIONLESS, ONE, Unit, number, times, unit, unit_product, unit_quotient
+from fretish.units import (
+    DIMENSIONLESS,
+    ONE,
+    Unit,
+    is_vague,
+    number,
+    times,
+    unit,
+    unit_product,
+    unit_quotient,
+)
 
 FUNCTIONS = {
     "absReal": "abs", "absInt": "abs",
@@ -43,6 +53,8 @@ class _Measure:
     """Whether a signal says so; a quantity is converted."""
     mixed: bool = False
     """Whether signals in several units of one dimension meet."""
+    vague: bool = False
+    """Whether nobody means a bare number in it: one in cm/m."""
 
 
 _PLAIN = _Measure("", ONE, measured=False)
@@ -138,10 +150,12 @@ class _Writer:
         first, second = self._measure(left), self._measure(right)
         if first is None and second is None:
             return None
-        a, b = first or _PLAIN, second or _PLAIN
+        a, b = _of_factor(first), _of_factor(second)
         combined = times(a.unit, b.unit, 1 if op == "*" else -1)
         name = unit_product(a.name, b.name) if op == "*" else unit_quotient(a.name, b.name)
-        return _Measure(name, combined, a.measured or b.measured, a.mixed or b.mixed)
+        both = bool(a.name and b.name)
+        vague = a.vague or b.vague or (both and is_vague(name))
+        return _Measure(name, combined, a.measured or b.measured, a.mixed or b.mixed, vague)
 
     def _common(self, parts: Sequence[e.Expression]) -> _Measure:
         """The unit of parts that are compared or added: that of the signals among them."""
@@ -154,7 +168,8 @@ class _Writer:
                 raise _MistakeError(_mismatch(first, other, self._span(part)))
         measured = [m for _, m in measures if m.measured]
         mixed = len({m.unit.factor for m in measured}) > 1 or any(m.mixed for m in measured)
-        return replace(measured[0] if measured else first, mixed=mixed)
+        vague = any(m.vague for _, m in measures)
+        return replace(measured[0] if measured else first, mixed=mixed, vague=vague)
 
     def _span(self, part: e.Expression) -> Span:
         return getattr(part, "span", None) or self._place
@@ -189,12 +204,12 @@ class _Writer:
             if isinstance(each, e.Number) and not _is_number(each.digits):
                 raise _MistakeError(_too_long(self._span(each)))
         zero = isinstance(part, e.Number) and number(part.digits) == 0
-        if target.mixed and not zero:
-            raise _MistakeError(_which_unit(self._span(part)))
+        if (target.mixed or target.vague) and not zero:
+            raise _MistakeError(_which_unit(self._span(part), target))
         if self._bare or not target.name:
             return part
         if unit(target.name) is None:
-            raise _MistakeError(_which_unit(self._span(part)))
+            raise _MistakeError(_which_unit(self._span(part), target))
         if isinstance(part, e.Number):
             return e.Quantity(part.digits, target.name, part.span)
         if isinstance(part, e.Negation):
@@ -210,18 +225,40 @@ class _Writer:
     def _factors(
         self, part: e.Arithmetic, left: e.Expression, right: e.Expression, target: _Measure
     ) -> e.Expression:
-        """Each factor in its own unit; a product of quantities is converted as a whole."""
+        """Each signal in its own unit, each quantity in its base unit.
+
+        A product of quantities is converted as a whole.
+        """
         own = self._measure(part)
         assert own is not None
         product = replace(
             part,
-            left=self._written(left, self._measure(left) or _PLAIN),
-            right=self._written(right, self._measure(right) or _PLAIN),
+            left=self._factor(left),
+            right=self._factor(right),
         )
         if not self._bare or own.measured or own.unit == target.unit:
             return product
         ratio = plain(own.unit.factor / target.unit.factor, part.span)
         return e.Arithmetic("*", product, ratio, part.span)
+
+    def _factor(self, part: e.Expression) -> e.Expression:
+        """Nothing says what a bare number is that is added to a quantity there."""
+        measure = self._measure(part)
+        target = _of_factor(measure)
+        added = measure is not None and not measure.measured
+        return self._written(part, replace(target, vague=target.vague or added))
+
+
+def _of_factor(measure: _Measure | None) -> _Measure:
+    """In which unit a factor is: a quantity is in its base unit, `50 %` is a half."""
+    if measure is None:
+        return _PLAIN
+    if measure.measured:
+        return measure
+    dimension = measure.unit.dimension
+    vague = measure.vague or (dimension != DIMENSIONLESS and measure.unit.factor != 1)
+    base = Unit(dimension, Fraction(1))
+    return _Measure(str(base), base, measured=False, vague=vague)
 
 
 def plain(exact: Fraction, span: Span | None = None) -> e.Expression:
@@ -263,12 +300,13 @@ def _mismatch(left: _Measure, right: _Measure, place: Span) -> Diagnostic:
     )
 
 
-def _which_unit(place: Span) -> Diagnostic:
+def _which_unit(place: Span, target: _Measure) -> Diagnostic:
+    plain = target.unit.dimension == DIMENSIONLESS
     return Diagnostic(
         Code.WHICH_UNIT,
-        "this number has no unit, and the signals beside it have several",
+        "this number has no unit, and what is beside it has several",
         place,
-        help="give it its unit: `5 m/s`",
+        help="write it in percent: 2 is `200 %`" if plain else "give it its unit: `5 m/s`",
     )
 
 
