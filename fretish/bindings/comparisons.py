@@ -231,6 +231,8 @@ class _Writer:
         """
         own = self._measure(part)
         assert own is not None
+        if target.mixed and not own.measured:
+            return part
         product = replace(
             part,
             left=self._factor(left),
