@@ -14,9 +14,11 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from compiler.project.fret_import import OWN, STATUSES
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible
+from fretish import expressions as e
 from fretish import syntax as s
+from fretish.bindings.comparisons import is_mixed
 from fretish.bindings.declarations import Variable
-from fretish.checking import has_units
+from fretish.checking import conditions, has_units
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import Requirement
@@ -41,7 +43,14 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
 
 
 def refuse(rule: Formalized) -> Diagnostic | None:
-    """F601: FRET has no units, and nothing says in which one a number would have to be."""
+    """F601: FRET has no units, and converts nothing."""
+    if _mixes_units(rule):
+        return not_expressible(
+            "FRET",
+            rule,
+            "a comparison of signals in several units",
+            "bind it under a name of its own, `[proposition.NAME]`, and write that name",
+        )
     if not has_units(rule.sentence):
         return None
     return not_expressible(
@@ -49,6 +58,16 @@ def refuse(rule: Formalized) -> Diagnostic | None:
         rule,
         "a number with a unit",
         "declare the signals beside it in bindings.toml, in one unit, or leave the unit out",
+    )
+
+
+def _mixes_units(rule: Formalized) -> bool:
+    """Whether FRET would compare metres with centimetres: its variables are bare numbers."""
+    signals = rule.declarations.signals if rule.declarations else {}
+    return any(
+        isinstance(part, e.Comparison) and is_mixed(part, signals, rule.requirement.wording)
+        for tree in conditions(rule.sentence)
+        for part in e.parts(tree)
     )
 
 

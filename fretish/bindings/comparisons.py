@@ -93,6 +93,13 @@ def bound(
     return _Writer(signals, place, bare=False).comparison(comparison)
 
 
+def is_mixed(comparison: e.Comparison, signals: Mapping[str, Signal], place: Span) -> bool:
+    """Whether signals in several units of one dimension meet: their bare numbers do not compare."""
+    return is_measured(comparison, signals) and _Writer(signals, place, bare=True).is_mixed(
+        comparison
+    )
+
+
 class _Writer:
     """Rewrites the numbers of a comparison, each for the unit of its place."""
 
@@ -111,6 +118,13 @@ class _Writer:
         except _MistakeError as error:
             return error.diagnostic
         return replace(comparison, left=left, right=right)
+
+    def is_mixed(self, comparison: e.Comparison) -> bool:
+        """Whether both sides and all their parts are not in one unit of each dimension."""
+        try:
+            return self._common((comparison.left, comparison.right)).mixed
+        except _MistakeError:
+            return False
 
     # Units
 
@@ -231,7 +245,7 @@ class _Writer:
         """
         own = self._measure(part)
         assert own is not None
-        if target.mixed and not own.measured:
+        if self._bare and target.mixed and not own.measured:
             return part
         product = replace(
             part,

@@ -402,6 +402,8 @@ def of(sentence: str) -> Formalized:
         ("gap + way > 1 % * 20 m", {"way": 0.0, "gap": 21.0}, True),
         ("gap + way > 20 cm / 2", {"way": 0.0, "gap": 9.0}, False),
         ("gap + way > 20 cm / 2", {"way": 0.0, "gap": 11.0}, True),
+        ("gap + way > 2 * minReal(10 cm, 1 m)", {"way": 0.0, "gap": 19.0}, False),
+        ("gap + way > 2 * minReal(10 cm, 1 m)", {"way": 0.0, "gap": 21.0}, True),
         ("gap / 3 m < 50 %", {"gap": 149.0}, True),
         ("gap / 3 m < 50 %", {"gap": 151.0}, False),
     ],
