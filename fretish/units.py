@@ -229,3 +229,13 @@ def unknown_unit(name: str, span: Span) -> Diagnostic:
         span,
         help=f"did you mean `{near}`?" if near else f"write one such as {examples}",
     )
+
+
+def too_long(span: Span) -> Diagnostic:
+    """F308 for a number that `number` does not read."""
+    return Diagnostic(
+        Code.BAD_EXPRESSION,
+        "the number has more than 60 digits, or an exponent of more than 3",
+        span,
+        help="write fewer digits",
+    )

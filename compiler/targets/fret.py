@@ -66,7 +66,7 @@ def _mixes_units(rule: Formalized) -> bool:
     signals = rule.declarations.signals if rule.declarations else {}
     return any(
         isinstance(part, e.Comparison) and is_mixed(part, signals, rule.requirement.wording)
-        for tree in conditions(rule.sentence)
+        for tree in conditions(rule.written)
         for part in e.parts(tree)
     )
 

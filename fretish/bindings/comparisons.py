@@ -22,6 +22,7 @@ from fretish.units import (
     is_vague,
     number,
     times,
+    too_long,
     unit,
     unit_product,
     unit_quotient,
@@ -90,7 +91,12 @@ def bound(
     comparison: e.Comparison, signals: Mapping[str, Signal], place: Span
 ) -> e.Comparison | Diagnostic:
     """The comparison in the language of bindings, where each number has its unit."""
-    return _Writer(signals, place, bare=False).comparison(comparison)
+    found = _Writer(signals, place, bare=False).comparison(comparison)
+    if isinstance(found, Diagnostic):
+        return found
+    kinds = {name: signal.unit.dimension for name, signal in signals.items()}
+    wrong = binding.dimension(found, kinds, comparison.span or place)
+    return wrong if isinstance(wrong, Diagnostic) else found
 
 
 def is_mixed(comparison: e.Comparison, signals: Mapping[str, Signal], place: Span) -> bool:
@@ -216,11 +222,14 @@ class _Writer:
         """What is made of bare numbers alone."""
         for each in e.parts(part):
             if isinstance(each, e.Number) and not _is_number(each.digits):
-                raise _MistakeError(_too_long(self._span(each)))
+                raise _MistakeError(too_long(self._span(each)))
         zero = isinstance(part, e.Number) and number(part.digits) == 0
         if (target.mixed or target.vague) and not zero:
             raise _MistakeError(_which_unit(self._span(part), target))
-        if self._bare or not target.name:
+        if self._bare:
+            return part
+        part = _renamed(part)
+        if not target.name:
             return part
         if unit(target.name) is None:
             raise _MistakeError(_which_unit(self._span(part), target))
@@ -277,6 +286,19 @@ def _of_factor(measure: _Measure | None) -> _Measure:
     return _Measure(str(base), base, measured=False, vague=vague)
 
 
+def _renamed(part: e.Expression) -> e.Expression:
+    """Numbers alone, their functions by the names that bindings have for them."""
+    match part:
+        case e.Call(name, args):
+            return replace(part, name=FUNCTIONS.get(name, name), args=tuple(map(_renamed, args)))
+        case e.Negation(arg):
+            return replace(part, arg=_renamed(arg))
+        case e.Arithmetic(_, left, right):
+            return replace(part, left=_renamed(left), right=_renamed(right))
+        case _:
+            return part
+
+
 def plain(exact: Fraction, span: Span | None = None) -> e.Expression:
     """A number as FRETish writes it: a decimal where there is one, else a quotient."""
     rest, digits = exact.denominator, 0
@@ -323,13 +345,4 @@ def _which_unit(place: Span, target: _Measure) -> Diagnostic:
         "this number has no unit, and what is beside it has several",
         place,
         help="write it in percent: 2 is `200 %`" if plain else "give it its unit: `5 m/s`",
-    )
-
-
-def _too_long(place: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EXPRESSION,
-        "the number has more than 60 digits, or an exponent of more than 3",
-        place,
-        help="write fewer digits",
     )

@@ -85,6 +85,8 @@ def rewritten(text: str) -> tuple[str, str] | Code:
         ("speed < wind + 0", "speed < wind + 0", "speed < wind + 0 km/h"),
         ("speed < wind + 1 m/s", "speed < wind + 1 m/s", "speed < wind + 1 m/s"),
         ("tally < 5", "tally < 5", "tally < 5"),
+        ("tally < absInt(5)", "tally < absInt(5)", "tally < abs(5)"),
+        ("speed < -maxReal(1, 2)", "speed < -maxReal(1, 2)", "speed < -(max(1, 2) * 1 km/h)"),
         ("way < 2 m * 3", "way < 2 * 3 * 100", "way < 2 m * 3"),
     ],
 )
@@ -109,6 +111,7 @@ def test_a_number_is_in_the_unit_of_the_signal_beside_it(
         ("way * (1 h + 2) < 3 m*s", Code.WHICH_UNIT),
         ("wind < (1 m/s + 2) * 3", Code.WHICH_UNIT),
         ("tally < 1e9999", Code.BAD_EXPRESSION),
+        ("absReal(way, way) < 3", Code.BAD_EXPRESSION),
     ],
 )
 def test_what_has_no_certain_unit_is_refused(text: str, code: Code) -> None:
