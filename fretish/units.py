@@ -132,7 +132,7 @@ def _is_alike(a: Unit, b: Unit) -> bool:
     """Whether one is a multiple of the other, or shares a base with it, and not both are SI's."""
     shared = any(map(mul, a.dimension, b.dimension))
     plain = DIMENSIONLESS in (a.dimension, b.dimension)
-    return (shared or plain) and (a.factor, b.factor) != (1, 1)
+    return (shared or plain) and not a.factor == b.factor == 1
 
 
 def _without_power(factor: str) -> str:

@@ -148,7 +148,7 @@ class _Terms:
     def _is_number(self, stated: e.Expression, number: Fraction, bound: e.Expression) -> bool:
         """Whether a number is bound to itself; a bare one in the unit of the others beside it."""
         if _units(stated):
-            return meaning(stated) == meaning(bound)
+            return bool(meaning(stated) == meaning(bound))
         if number != _constant(bound):
             return False
         kinds = [((name, u.dimension), u.factor) for u in _units(bound) for name in self._names]
