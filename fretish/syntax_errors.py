@@ -31,7 +31,7 @@ from fretish.mistakes.order import (
     timing,
 )
 from fretish.mistakes.unexpected import STARTS_EXPRESSION, Unexpected, not_fretish
-from fretish.units import number, unknown_unit
+from fretish.units import number, too_long, unit, unknown_unit
 
 _GROUPS: tuple[tuple[str, frozenset[str]], ...] = (
     ("a scope (`in m`, `before m`, ...)", frozenset({"DURING", "EXCEPT", "ONLY", "WHILE"})),
@@ -174,6 +174,8 @@ def _measured(u: Unexpected) -> Diagnostic | None:
     """A name behind a number stands where a unit may stand."""
     if u.before is None or u.before.kind != "NUMBER" or u.lexeme.kind != "ID":
         return None
+    if unit(u.lexeme.word) is not None:
+        return too_long(u.before.span)
     return unknown_unit(u.lexeme.word, u.lexeme.span)
 
 

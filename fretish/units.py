@@ -9,8 +9,11 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import combinations
+from operator import mul
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from fretish.diagnostics.source import Span
@@ -121,6 +124,26 @@ def unit_quotient(left: str, right: str) -> str:
     return _spelt([*above, *less], [*below, *more])
 
 
+def is_vague(name: str) -> bool:
+    """Whether units of one kind meet in a product and do not cancel: `cm/m`, `km/h*s`, `%*m`."""
+    above, below = (Counter(map(_without_power, part)) for part in _fraction(name))
+    left = {*(above - below), *(below - above)} - {"1"}
+    return any(_is_alike(_UNITS[a], _UNITS[b]) for a, b in combinations(left, 2))
+
+
+def _is_alike(a: Unit, b: Unit) -> bool:
+    """Whether one is a multiple of the other, or shares a base with it, and not both are SI's."""
+    shared = any(map(mul, a.dimension, b.dimension))
+    plain = DIMENSIONLESS in (a.dimension, b.dimension)
+    return (shared or plain) and not a.factor == b.factor == 1
+
+
+def _without_power(factor: str) -> str:
+    match = _FACTOR.fullmatch(factor.strip())
+    assert match is not None, "the reader of bindings refuses unknown units"
+    return match[1]
+
+
 def _fraction(name: str) -> tuple[list[str], list[str]]:
     """The factors above and below the line; `m/s*s` is m / (s s)."""
     above, *below = name.split("/")
@@ -208,4 +231,14 @@ def unknown_unit(name: str, span: Span) -> Diagnostic:
         f"`{name}` is no unit",
         span,
         help=f"did you mean `{near}`?" if near else f"write one such as {examples}",
+    )
+
+
+def too_long(span: Span) -> Diagnostic:
+    """F308 for a number that `number` does not read."""
+    return Diagnostic(
+        Code.BAD_EXPRESSION,
+        "the number has more than 60 digits, or an exponent of more than 3",
+        span,
+        help="write fewer digits",
     )

@@ -32,12 +32,16 @@ _MIRRORED: Mapping[str, e.ComparisonOperator] = {**e.MIRRORED, "=": "=", "!=": "
 def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
     """F524 for each comparison of the sentence that is bound to another one."""
     stated = _stated(rule.sentence)
+    terms = _Terms.of_signals(declarations)
     for name in rule.watched:
         proposition = declarations.propositions.get(name)
         if proposition is None or name not in stated:
             continue
-        if not _agrees(stated[name], proposition.expression, declarations):
+        agreed = _agreed(stated[name], proposition.expression, declarations, terms)
+        if agreed is None:
             yield _drifted(rule, name, stated[name], proposition)
+        else:
+            terms = agreed
 
 
 def _stated(sentence: Sentence) -> Mapping[str, e.Expression]:
@@ -67,24 +71,25 @@ def _quoted(name: e.Name) -> e.Comparison | None:
     return response if isinstance(response, e.Comparison) else None
 
 
-def _agrees(stated: e.Expression, declared: e.Expression, declarations: Declarations) -> bool:
+def _agreed(
+    stated: e.Expression, declared: e.Expression, declarations: Declarations, terms: _Terms
+) -> _Terms | None:
+    """What the names of the sentence stand for, this comparison included; None: it is another."""
     if not isinstance(stated, e.Comparison):
-        return not any(_constant(part) is not None for part in e.parts(stated))
+        return None if any(_constant(part) is not None for part in e.parts(stated)) else terms
     if not isinstance(declared, e.Comparison):
-        return False
+        return None
     if is_measured(stated, declarations.signals):
-        return _is_same(stated, declared, declarations)
-    if stated.op == declared.op and _Terms(declarations).fit(
-        (stated.left, declared.left), (stated.right, declared.right)
-    ):
-        return True
+        return terms if _is_same(stated, declared, declarations) else None
     sided = _constant(stated.left) is not None or _constant(stated.right) is not None
+    if stated.op == declared.op:
+        found = terms.fit(stated, declared.left, declared.right)
+        if found is not None:
+            return found
     turned = sided or stated.op in ("=", "!=")  # of two names nothing says which is which
-    return (
-        turned
-        and _MIRRORED[stated.op] == declared.op
-        and _Terms(declarations).fit((stated.left, declared.right), (stated.right, declared.left))
-    )
+    if turned and _MIRRORED[stated.op] == declared.op:
+        return terms.fit(stated, declared.right, declared.left)
+    return None
 
 
 def _is_same(stated: e.Comparison, declared: e.Comparison, declarations: Declarations) -> bool:
@@ -97,20 +102,31 @@ def _is_same(stated: e.Comparison, declared: e.Comparison, declarations: Declara
 
 
 class _Terms:
-    """What each name of a comparison stands for in the binding: one term, without a number."""
+    """What each name of a sentence stands for in the bindings: one term, without a number."""
 
-    def __init__(self, declarations: Declarations) -> None:
-        names = declarations.signal_names  # a signal with a mistake is still that signal
-        self._terms: dict[str, e.Expression] = {name: e.Name(name) for name in names}
+    def __init__(self, terms: Mapping[str, e.Expression], units: Mapping[_Kind, Fraction]) -> None:
+        self._terms = dict(terms)
+        self._units = dict(units)
+        """Of the bare numbers beside each name."""
+        self._names: tuple[str, ...] = ()
+        """Those of the comparison that is looked at."""
 
-    def fit(self, *pairs: tuple[e.Expression, e.Expression]) -> bool:
-        """Whether each stated expression has the shape and the numbers of the bound one."""
-        return all(self._fits(stated, bound) for stated, bound in pairs)
+    @classmethod
+    def of_signals(cls, declarations: Declarations) -> _Terms:
+        """A signal is itself, even one with a mistake."""
+        return cls({name: e.Name(name) for name in declarations.signal_names}, {})
+
+    def fit(self, stated: e.Comparison, left: e.Expression, right: e.Expression) -> _Terms | None:
+        """These and those of the comparison, if it has the shape and the numbers of the sides."""
+        terms = _Terms(self._terms, self._units)
+        terms._names = tuple(name.id for name in e.names(stated))
+        both = terms._fits(stated.left, left) and terms._fits(stated.right, right)
+        return terms if both else None
 
     def _fits(self, stated: e.Expression, bound: e.Expression) -> bool:
         number = _constant(stated)
         if number is not None:
-            return number == _constant(bound)
+            return self._is_number(stated, number, bound)
         match stated, bound:
             case e.Name(id), e.Word(text):
                 return id == text and self._terms.setdefault(id, bound) == bound
@@ -128,7 +144,25 @@ class _Terms:
 
     def _all(self, stated: e.Expression, bound: e.Expression) -> bool:
         left, right = e.children(stated), e.children(bound)
-        return len(left) == len(right) and self.fit(*zip(left, right, strict=True))
+        return len(left) == len(right) and all(map(self._fits, left, right))
+
+    def _is_number(self, stated: e.Expression, number: Fraction, bound: e.Expression) -> bool:
+        """Whether a number is bound to itself; a bare one in the unit of the others beside it."""
+        if _units(stated):
+            return bool(meaning(stated) == meaning(bound))
+        if number != _constant(bound):
+            return False
+        kinds = [((name, u.dimension), u.factor) for u in _units(bound) for name in self._names]
+        return not number or all(self._units.setdefault(*kind) == kind[1] for kind in kinds)
+
+
+_Kind = tuple[str, units.Dimension]
+
+
+def _units(number: e.Expression) -> list[units.Unit]:
+    """The unit of a number, if it has one."""
+    found = (units.unit(p.unit) for p in e.parts(number) if isinstance(p, e.Quantity))
+    return [unit for unit in found if unit is not None]
 
 
 def _constant(expression: e.Expression) -> Fraction | None:

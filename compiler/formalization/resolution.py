@@ -16,6 +16,7 @@ from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings import comparisons
 from fretish.bindings.declarations import Aggregate, Declarations, Part, Proposition, Signal
+from fretish.bindings.definitions import expanded
 from fretish.bindings.expressions import ticks_back
 from fretish.bindings.words import words
 from fretish.checking import conditions
@@ -41,15 +42,27 @@ def in_own_units(
         mistakes.append(own)
         return comparison
 
+    worded = _worded(sentence, declarations, place)
+    if isinstance(worded, Diagnostic):
+        return worded
+    own = s.with_expressions(worded, lambda each: e.with_comparisons(each, converted))
+    return mistakes[0] if mistakes else own
+
+
+def _worded(sentence: Sentence, declarations: Declarations, place: Span) -> Sentence | Diagnostic:
+    """The sentence as it is written, with the words of its signals as words."""
+    signals = _without(declarations.propositions, declarations.signals)
+    mistakes: list[Diagnostic] = []
+
     def rewritten(expression: e.Expression) -> e.Expression:
-        worded = words(expression, _without(declarations.propositions, signals), place)
+        worded = words(expression, signals, place)
         if isinstance(worded, Diagnostic):
             mistakes.append(worded)
             return expression
-        return e.with_comparisons(worded, converted)
+        return worded
 
-    own = s.with_expressions(sentence, rewritten)
-    return mistakes[0] if mistakes else own
+    found = s.with_expressions(sentence, rewritten)
+    return mistakes[0] if mistakes else found
 
 
 def _without(
@@ -68,7 +81,9 @@ def resolved(rule: Formalized, declarations: Declarations) -> Formalized | Diagn
     propositions: dict[str, Proposition] = {}
     mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
     atoms = {*rule.propositions, *rule.watched}
-    for name, part in candidates(rule.sentence):
+    written = _as_written(rule, declarations)
+    parts = zip(candidates(rule.sentence), candidates(written), strict=True)
+    for (name, own), (_, part) in parts:
         if name not in atoms or name in propositions:
             continue
         if name in declarations.propositions or ("proposition", name) in declarations.mistakes:
@@ -85,7 +100,7 @@ def resolved(rule: Formalized, declarations: Declarations) -> Formalized | Diagn
             if isinstance(aggregate, Diagnostic):
                 return aggregate
             propositions[name] = Proposition(
-                name, bound, printed(part), aggregate=aggregate, span=span
+                name, bound, printed(own), aggregate=aggregate, span=span
             )
     return replace(rule, declarations=extended(declarations, propositions, mistakes))
 
@@ -122,8 +137,23 @@ def extended(
     )
 
 
+def _as_written(rule: Formalized, declarations: Declarations) -> Sentence:
+    """The sentence in the units in which it is written, with words, and with what names stand for.
+
+    It has the same comparisons in the same places as the one in the signals' units.
+    """
+    whole = expanded(rule.written, rule.definitions)
+    assert isinstance(whole, Sentence), "the rule has been made of it"
+    worded = _worded(whole, declarations, rule.requirement.wording)
+    assert isinstance(worded, Sentence), "the rule has been made of it"
+    return worded
+
+
 def candidates(sentence: Sentence) -> Iterator[tuple[str, e.Expression]]:
-    """Comparisons and variables, by the names that formulas give them."""
+    """Comparisons and variables, by the names that formulas give them.
+
+    Those of a sentence in other units come in the same order.
+    """
     waiting = list(conditions(sentence))
     while waiting:
         part = waiting.pop()

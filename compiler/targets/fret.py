@@ -16,10 +16,12 @@ from compiler.logic import printing
 from compiler.project.fret_import import OWN, STATUSES, assignment_field
 from compiler.project.lustre import fretish, lustre
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible
+from fretish import expressions as e
 from fretish import syntax as s
+from fretish.bindings.comparisons import is_mixed
 from fretish.bindings.declarations import Role, Variable
 from fretish.bindings.definitions import expanded
-from fretish.checking import has_units
+from fretish.checking import conditions, has_units
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import Requirement
@@ -44,7 +46,14 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
 
 
 def refuse(rule: Formalized) -> Diagnostic | None:
-    """F601: FRET has no units, and nothing says in which one a number would have to be."""
+    """F601: FRET has no units, and converts nothing."""
+    if _mixes_units(rule):
+        return not_expressible(
+            "FRET",
+            rule,
+            "a comparison of signals in several units",
+            "bind it under a name of its own, `[proposition.NAME]`, and write that name",
+        )
     if not has_units(rule.sentence):
         return None
     return not_expressible(
@@ -77,6 +86,16 @@ def _with_names(rule: Formalized) -> Formalized:
     }
     plain, _ = formalize(rule.requirement, replace(rule.declarations, variables=variables))
     return replace(plain, glossary=rule.glossary) if plain else _without_units(rule)
+
+
+def _mixes_units(rule: Formalized) -> bool:
+    """Whether FRET would compare metres with centimetres: its variables are bare numbers."""
+    signals = rule.declarations.signals if rule.declarations else {}
+    return any(
+        isinstance(part, e.Comparison) and is_mixed(part, signals, rule.requirement.wording)
+        for tree in conditions(rule.written)
+        for part in e.parts(tree)
+    )
 
 
 def _without_units(rule: Formalized) -> Formalized:

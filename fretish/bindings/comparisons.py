@@ -16,7 +16,18 @@ from fretish.bindings.declarations import Signal
 from fretish.bindings.expressions import MOST_TICKS_BACK, is_base, ticks_back
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
-from fretish.units import DIMENSIONLESS, ONE, Unit, number, times, unit, unit_product, unit_quotient
+from fretish.units import (
+    DIMENSIONLESS,
+    ONE,
+    Unit,
+    is_vague,
+    number,
+    times,
+    too_long,
+    unit,
+    unit_product,
+    unit_quotient,
+)
 
 FUNCTIONS = {
     "absReal": "abs", "absInt": "abs",
@@ -45,6 +56,8 @@ class _Measure:
     """Whether a signal says so; a quantity is converted."""
     mixed: bool = False
     """Whether signals in several units of one dimension meet."""
+    vague: bool = False
+    """Whether nobody means a bare number in it: one in cm/m."""
 
 
 _PLAIN = _Measure("", ONE, measured=False)
@@ -105,7 +118,19 @@ def bound(
     comparison: e.Comparison, signals: Mapping[str, Signal], place: Span
 ) -> e.Comparison | Diagnostic:
     """The comparison in the language of bindings, where each number has its unit."""
-    return _Writer(signals, place, bare=False).comparison(comparison)
+    found = _Writer(signals, place, bare=False).comparison(comparison)
+    if isinstance(found, Diagnostic):
+        return found
+    kinds = {name: signal.unit.dimension for name, signal in signals.items()}
+    wrong = binding.dimension(found, kinds, comparison.span or place)
+    return wrong if isinstance(wrong, Diagnostic) else found
+
+
+def is_mixed(comparison: e.Comparison, signals: Mapping[str, Signal], place: Span) -> bool:
+    """Whether signals in several units of one dimension meet: their bare numbers do not compare."""
+    return is_measured(comparison, signals) and _Writer(signals, place, bare=True).is_mixed(
+        comparison
+    )
 
 
 class _Writer:
@@ -126,6 +151,13 @@ class _Writer:
         except _MistakeError as error:
             return error.diagnostic
         return replace(comparison, left=left, right=right)
+
+    def is_mixed(self, comparison: e.Comparison) -> bool:
+        """Whether both sides and all their parts are not in one unit of each dimension."""
+        try:
+            return self._common((comparison.left, comparison.right)).mixed
+        except _MistakeError:
+            return False
 
     # Units
 
@@ -167,10 +199,12 @@ class _Writer:
         first, second = self._measure(left), self._measure(right)
         if first is None and second is None:
             return None
-        a, b = first or _PLAIN, second or _PLAIN
+        a, b = _of_factor(first), _of_factor(second)
         combined = times(a.unit, b.unit, 1 if op == "*" else -1)
         name = unit_product(a.name, b.name) if op == "*" else unit_quotient(a.name, b.name)
-        return _Measure(name, combined, a.measured or b.measured, a.mixed or b.mixed)
+        both = bool(a.name and b.name)
+        vague = a.vague or b.vague or (both and is_vague(name))
+        return _Measure(name, combined, a.measured or b.measured, a.mixed or b.mixed, vague)
 
     def _power(self, base: e.Expression, exponent: e.Expression) -> _Measure | None:
         first, count = self._measure(base), _exponent(exponent)
@@ -193,7 +227,8 @@ class _Writer:
                 raise _MistakeError(_mismatch(first, other, self._span(part)))
         measured = [m for _, m in measures if m.measured]
         mixed = len({m.unit.factor for m in measured}) > 1 or any(m.mixed for m in measured)
-        return replace(measured[0] if measured else first, mixed=mixed)
+        vague = any(m.vague for _, m in measures)
+        return replace(measured[0] if measured else first, mixed=mixed, vague=vague)
 
     def _span(self, part: e.Expression) -> Span:
         return getattr(part, "span", None) or self._place
@@ -228,17 +263,17 @@ class _Writer:
         """What is made of bare numbers alone."""
         for each in e.parts(part):
             if isinstance(each, e.Number) and not _is_number(each.digits):
-                raise _MistakeError(_too_long(self._span(each)))
+                raise _MistakeError(too_long(self._span(each)))
         zero = isinstance(part, e.Number) and number(part.digits) == 0
-        if target.mixed and not zero:
-            raise _MistakeError(_which_unit(self._span(part)))
+        if (target.mixed or target.vague) and not zero:
+            raise _MistakeError(_which_unit(self._span(part), target))
         if self._bare:
             return part
         part = _in_bindings(part)
         if not target.name:
             return part
         if unit(target.name) is None:
-            raise _MistakeError(_which_unit(self._span(part)))
+            raise _MistakeError(_which_unit(self._span(part), target))
         if isinstance(part, e.Number):
             return e.Quantity(part.digits, target.name, part.span)
         if isinstance(part, e.Negation):
@@ -254,16 +289,28 @@ class _Writer:
     def _factors(
         self, part: e.Arithmetic, left: e.Expression, right: e.Expression, target: _Measure
     ) -> e.Expression:
-        """Each factor in its own unit; a product of quantities is converted as a whole."""
+        """Each signal in its own unit, each quantity in its base unit.
+
+        A product of quantities is converted as a whole.
+        """
+        if self._stays(part, target):
+            return part
         product = replace(
             part,
-            left=self._written(left, self._measure(left) or _PLAIN),
-            right=self._written(right, self._measure(right) or _PLAIN),
+            left=self._factor(left),
+            right=self._factor(right),
         )
         return self._converted(product, part, target)
 
+    def _stays(self, part: e.Expression, target: _Measure) -> bool:
+        """Whether it keeps its units: a quantity where signals in several units meet."""
+        own = self._measure(part)
+        return self._bare and target.mixed and own is not None and not own.measured
+
     def _raised(self, part: e.Arithmetic, target: _Measure) -> e.Expression:
         """A power of what is in its own unit, converted as a whole."""
+        if self._stays(part, target):
+            return part
         power = replace(part, left=self._written(part.left, self._measure(part.left) or _PLAIN))
         if not self._bare:  # bindings write exponents with digits alone
             power = replace(power, right=e.Number(str(_exponent(part.right))))
@@ -279,6 +326,25 @@ class _Writer:
             return product
         ratio = plain(own.unit.factor / target.unit.factor, part.span)
         return e.Arithmetic("*", product, ratio, part.span)
+
+    def _factor(self, part: e.Expression) -> e.Expression:
+        """Nothing says what a bare number is that is added to a quantity there."""
+        measure = self._measure(part)
+        target = _of_factor(measure)
+        added = measure is not None and not measure.measured
+        return self._written(part, replace(target, vague=target.vague or added))
+
+
+def _of_factor(measure: _Measure | None) -> _Measure:
+    """In which unit a factor is: a quantity is in its base unit, `50 %` is a half."""
+    if measure is None:
+        return _PLAIN
+    if measure.measured:
+        return measure
+    dimension = measure.unit.dimension
+    vague = measure.vague or (dimension != DIMENSIONLESS and measure.unit.factor != 1)
+    base = Unit(dimension, Fraction(1))
+    return _Measure(str(base), base, measured=False, vague=vague)
 
 
 def plain(exact: Fraction, span: Span | None = None) -> e.Expression:
@@ -332,19 +398,11 @@ def _mismatch(left: _Measure, right: _Measure, place: Span) -> Diagnostic:
     )
 
 
-def _which_unit(place: Span) -> Diagnostic:
+def _which_unit(place: Span, target: _Measure) -> Diagnostic:
+    plain = target.unit.dimension == DIMENSIONLESS
     return Diagnostic(
         Code.WHICH_UNIT,
-        "this number has no unit, and the signals beside it have several",
+        "this number has no unit, and what is beside it has several",
         place,
-        help="give it its unit: `5 m/s`",
-    )
-
-
-def _too_long(place: Span) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EXPRESSION,
-        "the number has more than 60 digits, or an exponent of more than 3",
-        place,
-        help="write fewer digits",
+        help="write it in percent: 2 is `200 %`" if plain else "give it its unit: `5 m/s`",
     )

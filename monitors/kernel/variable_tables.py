@@ -54,7 +54,7 @@ def read_variables(
 def _value(value: Any, name: str, variable: Variable, place: str) -> Value:
     if variable.kind == "truth":
         return _truth(value, name, place)
-    if value is None or not str(value).strip():
+    if value is None or not (str(value).strip() or value in variable.words):
         return None
     if variable.kind == "word":
         return _word(value, name, variable.words, place)
@@ -62,8 +62,10 @@ def _value(value: Any, name: str, variable: Variable, place: str) -> Value:
 
 
 def _word(value: Any, name: str, words: tuple[str, ...], place: str) -> str:
-    text = str(value).strip()
-    if text not in words:
+    text = str(value)
+    if text not in words:  # spaces around a cell are none of it, unless they are of a word
+        text = text.strip()
+    if text not in words or not isinstance(value, str):
         raise InputError(
             f"{place}: column `{name}`: `{_short(text)}` is none of its words; "
             f"write {', '.join(words)}, or nothing for unknown"

@@ -28,6 +28,14 @@ def mistake_of(text: str) -> Diagnostic:
             "`within 3 seconds`",
         ),
         (
+            "the sw shall always satisfy v < 1e9999 m/s",
+            "F308 the number has more than 60 digits, or an exponent of more than 3\n"
+            "  --> r.fret:1:33\n"
+            "   | the sw shall always satisfy v < 1e9999 m/s\n"
+            "   |                                 ^^^^^^\n"
+            "help: write fewer digits",
+        ),
+        (
             "the sw shall within 3 ms satisfy p",
             "F108 a duration needs a unit, and `ms` is none\n"
             "  --> r.fret:1:23\n"

@@ -18,6 +18,7 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import atom, variable
 from compiler.logic.printing import is_compound
 from fretish import expressions as e
+from fretish.bindings.comparisons import is_measured
 from fretish.bindings.constants import called, computed, whole_exponent
 from fretish.bindings.declarations import Signal
 from fretish.checking import conditions
@@ -48,8 +49,11 @@ class Compared:
     tree: e.Comparison
     units: Mapping[str, tuple[str, Fraction]]
     """The unit of each variable that is a signal, and its factor to base units."""
-    word: str | None = None
-    """What its only variable is compared with, where that is a word."""
+
+    @property
+    def is_of_words(self) -> bool:
+        """Whether its variables are words."""
+        return any(each.kind == WORD for each in self.inputs.values())
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +93,7 @@ def front(rules: Sequence[Formalized], propositions: Sequence[str]) -> Front | N
     inputs: dict[str, Input] = {}
     for name in propositions:
         inputs |= known[name].inputs if name in known else {name: Input(TRUTH)}
-    return Front(inputs, known)
+    return Front(inputs, known) if inputs else None
 
 
 def _comparisons(rule: Formalized) -> dict[str, Compared]:
@@ -126,16 +130,23 @@ def _clashing(rules: Sequence[Formalized], found: Iterable[Compared]) -> Iterato
 
 
 def _compared(tree: e.Comparison, rule: Formalized) -> Compared | None:
-    """The comparison with its variables; None where it cannot be compiled."""
+    """The comparison with its variables; None where it cannot be compiled.
+
+    One that is bound by its text to other names is what these say: what they are is not its
+    variables.
+    """
     signals = rule.declarations.signals if rule.declarations else {}
+    is_bound = rule.declarations and atom(tree) in rule.declarations.propositions
+    if is_bound and not is_measured(tree, signals):
+        return None
     names = tuple(dict.fromkeys(name.id for name in e.names(tree)))
     units = {
         variable(id): (signals[id].unit_name, signals[id].scale) for id in names if id in signals
     }
     spoken = _spoken(tree, signals)
     if spoken is not None:
-        id, word, words = spoken
-        return Compared({variable(id): Input(WORD, words)}, tree, units, word)
+        ids, words = spoken
+        return Compared({variable(id): Input(WORD, words) for id in ids}, tree, units)
     compared = Compared({variable(id): Input(NUMBER) for id in names}, tree, units)
     try:
         Writer(dict.fromkeys(compared.inputs, "x")).comparison(compared)
@@ -146,13 +157,17 @@ def _compared(tree: e.Comparison, rule: Formalized) -> Compared | None:
 
 def _spoken(
     tree: e.Comparison, signals: Mapping[str, Signal]
-) -> tuple[str, str, tuple[str, ...]] | None:
-    """A signal of words, the word that it is compared with by `=` or `!=`, and all its words."""
+) -> tuple[tuple[str, ...], tuple[str, ...]] | None:
+    """The signals of words that are compared by `=` or `!=`, and their words."""
     match tree:
-        case e.Comparison("=" | "!=", e.Name(id), e.Word(word)) | e.Comparison(
-            "=" | "!=", e.Word(word), e.Name(id)
+        case e.Comparison("=" | "!=", e.Name(id), e.Word()) | e.Comparison(
+            "=" | "!=", e.Word(), e.Name(id)
         ) if id in signals:
-            return id, word, signals[id].values
+            return (id,), signals[id].values
+        case e.Comparison("=" | "!=", e.Name(id), e.Name(other)) if (
+            id in signals and other in signals and signals[id].values
+        ):
+            return (id, other), signals[id].values
         case _:
             return None
 
@@ -206,9 +221,8 @@ class Writer:
         """
         self.units = compared.units
         op = compared.tree.op
-        if compared.word is not None:
-            (name,) = compared.inputs
-            return f'is_word({self.parameters[name]}, "{op}", {python(compared.word)})'
+        if compared.is_of_words:
+            return self._spoken(compared, op)
         if not compared.units.keys() >= compared.inputs.keys() and _has_unit(compared.tree):
             raise NotCompiledError  # nothing says in which unit the variable is
         left, right = self._term(compared.tree.left), self._term(compared.tree.right)
@@ -221,6 +235,15 @@ class Writer:
         if max(map(_nesting, (text, *itertools.chain(*self.earlier)))) > _MOST_NESTING:
             raise NotCompiledError
         return text
+
+    def _spoken(self, compared: Compared, op: str) -> str:
+        sides = (compared.tree.left, compared.tree.right)
+        first, second = (
+            python(side.text) if isinstance(side, e.Word) else self.parameters[variable(side.id)]
+            for side in sides
+            if isinstance(side, e.Word | e.Name)
+        )
+        return f'is_word({first}, "{op}", {second})'
 
     def _term(self, tree: e.Expression) -> _Term:
         match tree:

@@ -63,6 +63,8 @@ AGREE = [
     ("a < a", "(a < a)", "vx < vx"),
     ("speed + 1 < 3", "((speed + 1) < 3)", "vx + 1 m/s < 3 m/s"),
     ('"speed <= 1.5"', "speed <= 1.5", "vx <= 1.5 m/s"),
+    ("speed <= 1.5 m/s", "(speed <= 1.5 m/s)", "vx <= 150 cm/s"),
+    ("charge >= 20 %", "(charge >= 20 %)", "soc >= 0.2"),
     ("near(drum)", "near(drum)", "vx <= 1.5 m/s"),
     ("slow", "slow", "vx <= 1.5 m/s"),
     ("state = docking", "(state = docking)", "state = 'docking'"),
@@ -95,6 +97,9 @@ DIFFER = [
     ("preReal(0, speed) < 2", "(preReal(0,speed) < 2)", "vx < 2 m/s"),
     ('"speed <= 1.5"', "speed <= 1.5", "vx <= 15 m/s"),
     ("near(5)", "near(5)", "vx <= 1.5 m/s"),
+    ("charge >= 0.5 %", "(charge >= 0.5 %)", "soc >= 0.5"),
+    ("speed <= 1.5 m/s", "(speed <= 1.5 m/s)", "vx <= 1.5 cm/s"),
+    ("speed > -1.5 m/s", "(speed > (- 1.5 m/s))", "vx > -1.5 cm/s"),
     ("p | persisted(3, speed <= 1.5)", "(speed <= 1.5)", "vx <= 15 m/s"),
 ]
 
@@ -108,6 +113,22 @@ def test_the_same_comparison_is_taken(sentence: str, proposition: str, expr: str
 def test_another_comparison_is_refused(sentence: str, proposition: str, expr: str) -> None:
     remarks = said(sentence, proposition, expr)
     assert [remark.code for remark in remarks if remark.is_error] == [Code.NUMBER_DRIFT]
+
+
+@pytest.mark.parametrize(
+    ("least", "codes"),
+    [
+        ("vx >= 0.5 m/s", []),
+        ("vy >= 0.5 m/s", [Code.NUMBER_DRIFT]),
+        ("vx >= 0.5 cm/s", [Code.NUMBER_DRIFT]),
+    ],
+)
+def test_a_name_is_one_term_in_one_unit_throughout_a_sentence(
+    least: str, codes: list[Code]
+) -> None:
+    other = f"(speed >= 0.5)']\nexpr = \"{least}\"\n[proposition.'(speed <= 1.5)"
+    remarks = said("speed <= 1.5 & speed >= 0.5", other, "vx <= 1.5 m/s")
+    assert [remark.code for remark in remarks] == codes
 
 
 def test_both_places_are_told_and_no_number_is_proposed() -> None:

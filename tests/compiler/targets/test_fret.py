@@ -275,6 +275,20 @@ def test_a_number_is_not_said_to_be_a_truth_value(fretc: Fretc) -> None:
     assert found["x"]["dataType"] != "boolean"
 
 
+@pytest.mark.parametrize("sentence", ["way < gap", "way > 2 s * v - gap", "(gap - way) / 2 > 0"])
+def test_fret_does_not_compare_metres_with_centimetres(fretc: Fretc, sentence: str) -> None:
+    signals = {"way": "m", "gap": "cm", "v": "m/s"}
+    bindings = '[clock]\ntick = "100 ms"\n' + "".join(
+        f'[signal.{name}]\npath = "/{name}.data"\nunit = "{unit}"\n'
+        for name, unit in signals.items()
+    )
+    write("bindings.toml", bindings)
+    write("r.fret", f"the rover shall always satisfy {sentence}\n")
+    run = fretc("r.fret", "--emit", "fret-json")
+    assert run.status == 2
+    assert "F601 FRET cannot express a comparison of signals in several units of r" in run.err
+
+
 def test_a_bound_proposition_tells_its_role_and_its_text(fretc: Fretc) -> None:
     bindings = (
         '[clock]\ntick = "1 s"\n'

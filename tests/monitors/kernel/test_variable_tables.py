@@ -98,3 +98,14 @@ def test_what_cannot_be_read_is_refused_with_its_place(text: str, message: str) 
     with pytest.raises(InputError) as caught:
         rows(text)
     assert str(caught.value) == message
+
+
+def test_a_word_is_read_to_the_letter_before_spaces_are_none_of_it() -> None:
+    words = {"mode": Variable("mode", "word", ("dock", " dock", " ", "1"))}
+
+    def read(text: str) -> list[tuple[Value, ...]]:
+        return list(read_variables(text.splitlines(keepends=True), words, "t.csv"))
+
+    assert read('mode\n" dock"\n"dock "\n" "\n1\n') == [(" dock",), ("dock",), (" ",), ("1",)]
+    with pytest.raises(InputError, match="`1` is none of its words"):
+        read('{"mode": 1}\n')

@@ -13,6 +13,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import Formalized
 from compiler.targets.python import monitor as target
 from compiler.targets.python.comparisons import (
     FUNCTIONS,
@@ -28,6 +29,7 @@ from fretc.logs.signals.propositions import truth, truth_values
 from fretc.logs.signals.samples import widest
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal, path
+from fretish.bindings.reader import read_bindings
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
@@ -350,6 +352,92 @@ def test_what_is_compared_in_another_unit_is_converted() -> None:
     machine = load("monitor", text)
     assert step(machine, v=36, w=10) == "pending"
     assert step(machine, v=36.001, w=10) == "violated"
+
+
+BINDINGS = """
+[clock]
+tick = "100 ms"
+[signal.way]
+path = "/way.data"
+unit = "m"
+[signal.gap]
+path = "/gap.data"
+unit = "cm"
+[signal.v]
+path = "/v.data"
+unit = "m/s"
+[signal.mode]
+path = "/mode.data"
+values = ["drive", "docking"]
+[signal.wish]
+path = "/wish.data"
+values = ["drive", "docking"]
+[proposition."(speed <= 150)"]
+expr = "v <= 150 cm/s"
+"""
+
+
+def of(sentence: str) -> Formalized:
+    declared, wrong = read_bindings(Source("bindings.toml", BINDINGS))
+    assert wrong == ()
+    source = Source("r.fret", f"the sw shall always satisfy {sentence}")
+    rule, remarks = formalize(Requirement("R1", source.span()), declared)
+    assert rule is not None, remarks
+    return rule
+
+
+@pytest.mark.parametrize(
+    ("sentence", "values", "expected"),
+    [
+        ("50 % * way > gap", {"way": 1.0, "gap": 60.0}, False),
+        ("50 % * way > gap", {"way": 1.0, "gap": 40.0}, True),
+        ("50 % * way > 40", {"way": 1.0}, False),
+        ("way > v * 2 s", {"way": 3.0, "v": 1.4}, True),
+        ("way > v * 2 s", {"way": 3.0, "v": 1.6}, False),
+        ("gap > v * 1 min", {"gap": 61.0, "v": 0.01}, True),
+        ("gap > v * 1 min", {"gap": 59.0, "v": 0.01}, False),
+        ("gap / 2 s < v", {"gap": 150.0, "v": 0.76}, True),
+        ("gap / 2 s < v", {"gap": 150.0, "v": 0.74}, False),
+        ("gap + way > 1 % * 20 m", {"way": 0.0, "gap": 19.0}, False),
+        ("gap + way > 1 % * 20 m", {"way": 0.0, "gap": 21.0}, True),
+        ("gap + way > 20 cm / 2", {"way": 0.0, "gap": 9.0}, False),
+        ("gap + way > 20 cm / 2", {"way": 0.0, "gap": 11.0}, True),
+        ("gap + way > 2 * minReal(10 cm, 1 m)", {"way": 0.0, "gap": 19.0}, False),
+        ("gap + way > 2 * minReal(10 cm, 1 m)", {"way": 0.0, "gap": 21.0}, True),
+        ("gap / 3 m < 50 %", {"gap": 149.0}, True),
+        ("gap / 3 m < 50 %", {"gap": 151.0}, False),
+    ],
+)
+def test_a_quantity_that_multiplies_is_one_in_audits_and_monitors(
+    sentence: str, values: Mapping[str, float], expected: bool
+) -> None:
+    rule = of(sentence)
+    assert rule.declarations is not None
+    (proposition,) = (rule.declarations.propositions[name] for name in rule.propositions)
+    signals = rule.declarations.signals
+    numbers = {name: np.array([value]) for name, value in values.items()}
+    scales = {name: signals[name].scale for name in values}
+    (audited,) = truth_values(truth(proposition.expression, Scope(1, numbers, scales=scales)))
+    machine: Any = load("monitor", target.text(rule))
+    assert (audited, machine.truths(**values)) == (expected, (expected,))
+
+
+def test_two_signals_of_words_are_words_of_a_monitor() -> None:
+    machine: Any = load("monitor", target.text(of("mode = wish")))
+    rows = (("drive", "drive"), ("drive", "docking"), (None, "drive"))
+    assert [machine.truths(*row) for row in rows] == [(True,), (False,), (None,)]
+
+
+def test_a_comparison_that_is_bound_to_other_names_stays_a_proposition() -> None:
+    """Its variables are none of the log's, and nothing says in which unit they are."""
+    machine: Any = load("monitor", target.text(of("speed <= 150")))
+    assert dict(machine.PROPOSITIONS) == {"(speed <= 150)": "speed_le_150"}
+    assert not hasattr(machine, "VARIABLES")
+
+
+def test_numbers_alone_need_no_variables() -> None:
+    machine: Any = load("monitor", target.text(of("3 m > 20 cm")))
+    assert machine.step(**dict.fromkeys(machine.PROPOSITIONS.values(), True)) == "pending"
 
 
 # What looks back ------------------------------------------------------------------------------

@@ -591,8 +591,8 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "scoped": "in m, when p the sw shall after 2 ticks satisfy q",
         "names": "after l mode, whenever class | I the sw shall for 2 ticks "
         'satisfy x.y & "a b" > 3',
-        "numbers": "whenever absReal(preReal(0.1, speed) - 2) < maxReal(speed, 1 / 3) & x mod 3 = y"
-        " the sw shall within 2 ticks satisfy q",
+        "comparing": "whenever absReal(preReal(0.1, speed) - 2) < maxReal(speed, 1 / 3) "
+        "& x mod 3 = y the sw shall within 2 ticks satisfy q",
         "always": "the sw shall always satisfy q",
         "long": "only after some_rather_long_mode_name, upon another_rather_long_name > 3 the sw "
         "shall until yet_another_rather_long_stop_name satisfy the_response_is_long_too",
@@ -813,14 +813,14 @@ def test_a_table_of_numbers_is_compared_and_judged(programs: Path) -> None:
     """`x mod 3 = y` holds at the first two ticks; no response comes to the first in time."""
     trace = b"x,y,speed,q\n4,1,3,0\n7.5,1.5,2.5,0\n,1,2.5,0\n5,1,1,1\n"
     for engine in ("columns", "online"):
-        done = call(programs, "numbers", "-", "--engine", engine, "--format", "json", stdin=trace)
+        done = call(programs, "comparing", "-", "--engine", engine, "--format", "json", stdin=trace)
         outcome = json.loads(done.stdout)
         assert (outcome["triggers"], outcome["violations"]) == ([0, 1], [[2, 2]]), engine
         assert (done.returncode, done.stderr) == (1, b"")
 
 
 def test_a_table_of_numbers_that_cannot_be_read_is_refused_with_its_place(programs: Path) -> None:
-    done = call(programs, "numbers", "-", stdin=b"x,y,speed,q\n4,1,3,0\n4,one,3,0\n")
+    done = call(programs, "comparing", "-", stdin=b"x,y,speed,q\n4,1,3,0\n4,one,3,0\n")
     assert (done.returncode, done.stdout) == (2, b"")
     assert done.stderr.decode() == (
         "<stdin>:3: column `y`: `one` is no number; write it as 17.5 or 1e-3, or nothing for "
@@ -829,7 +829,7 @@ def test_a_table_of_numbers_that_cannot_be_read_is_refused_with_its_place(progra
 
 
 def test_a_monitor_of_numbers_reads_the_truth_of_comparisons_too(programs: Path) -> None:
-    text = call(programs, "numbers", "--help").stdout.decode()
+    text = call(programs, "comparing", "--help").stdout.decode()
     assert "columns: speed, x, y, q\n" in text
     header = text.split("with --propositions: ")[1].splitlines()[0]
     names = re.split(r", (?=[(q])", header)
@@ -837,4 +837,4 @@ def test_a_monitor_of_numbers_reads_the_truth_of_comparisons_too(programs: Path)
     assert names[-1] == "q"
     quoted = ",".join(f'"{name}"' for name in names)
     trace = f"{quoted}\n1,1,0\n0,0,0\n0,0,0\n".encode()
-    assert call(programs, "numbers", "-", "--propositions", stdin=trace).returncode == 1
+    assert call(programs, "comparing", "-", "--propositions", stdin=trace).returncode == 1
