@@ -69,7 +69,7 @@ class Lane:
     """Whether it is only asked for where the lane before it is not as it must be."""
 
     @property
-    def told(self) -> str:
+    def remark(self) -> str:
         """All that is written beside the lane but its name."""
         link = "or else " if self.otherwise else ""
         whose = "" if self.trigger is None else f", trigger at tick {self.trigger}"
@@ -255,8 +255,8 @@ def _true(column: Column) -> tuple[Stretch, ...]:
 def words(drawn: Diagram) -> str:
     """The picture as sentences, for those who do not see it."""
     end = "The run ends with the last tick" if drawn.ends else "The run goes on"
-    told = [_in_words(lane) for lane in drawn.lanes if lane.kind is not Kind.BOUND]
-    return " ".join([f"A run of ticks 0 to {drawn.ticks - 1}.", *told, f"{end}."])
+    lanes = [_in_words(lane) for lane in drawn.lanes if lane.kind is not Kind.BOUND]
+    return " ".join([f"A run of ticks 0 to {drawn.ticks - 1}.", *lanes, f"{end}."])
 
 
 def _in_words(lane: Lane) -> str:

@@ -87,7 +87,7 @@ def text(drawn: Diagram, indent: str = "") -> str:
 
 def _named(lane: Lane, most: int) -> str:
     name = shortened(visible(lane.name), most)
-    return f"{name}: {lane.told}" if name else lane.told
+    return f"{name}: {lane.remark}" if name else lane.remark
 
 
 def _cells(lane: Lane, columns: Sequence[Slot], width: int) -> str:
@@ -227,7 +227,7 @@ def _row(lane: Lane, number: int, columns: Sequence[Slot]) -> Row:
         y=_TOP + _ROW * number,
         name=shortened(full, _NAME_LETTERS),
         full=full,
-        note=lane.told,
+        note=lane.remark,
         kind=lane.kind.value,
         bars=tuple(_bars(lane, columns)),
     )

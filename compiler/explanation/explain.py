@@ -49,7 +49,7 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """All that is said of a requirement."""
+    """Everything about a requirement, in words."""
 
     rule: Formalized
     picture: Diagram
@@ -112,8 +112,8 @@ def _check(rule: Formalized, atoms: Sequence[str], example: Example) -> None:
         from compiler.logic.spot import holds_on
 
         if loop or example.decided is not None:
-            told = holds_on(rule.ft_infinite, prefix, loop or prefix[-1:])
-            assert told is example.satisfied
+            on_all_of_it = holds_on(rule.ft_infinite, prefix, loop or prefix[-1:])
+            assert on_all_of_it is example.satisfied
 
 
 def _shown(rule: Formalized, letters: Mapping[Valuation, Any], example: Example) -> Shown:
@@ -198,11 +198,11 @@ def _label(row: Row) -> str:
 def as_record(explained: Explanation) -> dict[str, Any]:
     """Plain values, in a fixed order of keys."""
     rule, picture = explained.rule, explained.picture
-    told = record.record(rule)
+    everything = record.record(rule)
     kept = ("id", "title", "sentence", "meaning", "ft_infinite", "ft_finite", "pt", "tick_ns")
     return {
         "schema": SCHEMA,
-        **{key: told[key] for key in kept},
+        **{key: everything[key] for key in kept},
         "diagram": {
             "ticks": picture.ticks,
             "run_ends": picture.ends,
@@ -219,7 +219,7 @@ def _lane(lane: Lane) -> dict[str, Any]:
     stretches = [
         {"first": each.first, "last": each.last, "goes_on": each.goes_on} for each in lane.stretches
     ]
-    return {"kind": lane.kind.value, "name": lane.name, "note": lane.told, "ticks": stretches}
+    return {"kind": lane.kind.value, "name": lane.name, "note": lane.remark, "ticks": stretches}
 
 
 def _trace(propositions: Sequence[str], shown: Shown) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from fretish.printer import expression
 from fretish.syntax import Extent
 
 _MOST = 2
-"""Triggers that are told one by one."""
+"""Triggers that get a sentence each."""
 
 
 def why(
@@ -46,13 +46,13 @@ def why(
     broken = [window for window in every if not window.kept(q)]
     assert satisfied is None or satisfied is not bool(broken), (counted, prefix, loop)
     if broken:
-        return f"{teller.told(broken[0], kept=False)}{teller.bound()}"
+        return f"{teller.sentence(broken[0], kept=False)}{teller.bound()}"
     if not found:
         return _nothing(rule, counted, m)
-    told = [teller.told(window, kept=True) for window in found[:_MOST]]
+    sentences = [teller.sentence(window, kept=True) for window in found[:_MOST]]
     left = len(found) - _MOST
     rest = [f"and so on, {left} more time{'s' * (left > 1)}"] if left > 0 else []
-    return f"{'; '.join([*told, *rest])}{teller.bound()}"
+    return f"{'; '.join([*sentences, *rest])}{teller.bound()}"
 
 
 def _nothing(rule: Formalized, counted: Template, m: Column) -> str:
@@ -78,7 +78,7 @@ class _Teller:
     endless: bool
     """Whether what follows is a loop that matters."""
 
-    def told(self, window: Window, *, kept: bool) -> str:
+    def sentence(self, window: Window, *, kept: bool) -> str:
         """`triggered at tick 1, ...`."""
         begun = "triggered" if self.rule.sentence.condition else "begins"
         start = f"{begun} at tick {window.trigger}"
@@ -92,8 +92,8 @@ class _Teller:
             )
         chosen = [part for part in window.parts if part.kept(self.q) is kept]
         say = self._kept if kept else self._broken
-        told = " and ".join(say(part, window) for part in chosen[: 1 if window.either else None])
-        return f"{start}, {told}"
+        clauses = " and ".join(say(part, window) for part in chosen[: 1 if window.either else None])
+        return f"{start}, {clauses}"
 
     def bound(self) -> str:
         """What the duration counts."""
@@ -124,14 +124,14 @@ class _Teller:
 
     def _kept(self, part: Part, window: Window) -> str:
         value = _wanted(part)
-        said = f"{self._name} is {str(value).lower()}"
+        clause = f"{self._name} is {str(value).lower()}"
         if part.need in (Need.SOME, Need.MISS):
             hit = self._hit(part.first, value=value)
             assert hit is not None
-            return f"{said} at tick {hit}, {_later(hit - window.trigger)}"
+            return f"{clause} at tick {hit}, {_later(hit - window.trigger)}"
         if part.last > self.shown:
-            return f"{said} from tick {part.first} on"
-        return f"{said} at {_ticks(part.first, part.last)}{self._end(part, window)}"
+            return f"{clause} from tick {part.first} on"
+        return f"{clause} at {_ticks(part.first, part.last)}{self._end(part, window)}"
 
     def _end(self, part: Part, window: Window) -> str:
         """What ends a demand that is not counted."""
@@ -159,14 +159,14 @@ class _Teller:
     def _broken(self, part: Part, window: Window) -> str:
         value = _wanted(part)
         wanted, opposite = str(value).lower(), str(not value).lower()
-        said = f"{self._name} is {opposite}"
+        clause = f"{self._name} is {opposite}"
         if part.last < part.first:
             return f"{self._stop} is true at that same tick, before {self._name} is {wanted}"
         if part.need in (Need.ALL, Need.NONE):
             at = self._hit(part.first, value=not value)
             assert at is not None
             later = f", {_later(at - window.trigger)}" if at > window.trigger else ""
-            return f"{said} at tick {at}{later}{self._must(part, wanted)}"
+            return f"{clause} at tick {at}{later}{self._must(part, wanted)}"
         if self.endless and not self._is_closed(window):
             return f"{self._name} is never {wanted} from that tick on"
         late = part.last + 1
@@ -175,7 +175,7 @@ class _Teller:
         end = self._end(part, window)
         if self._stops:
             end = f", and then {self._stop} is true"
-        return f"{said} at {_ticks(part.first, part.last)}{end}"
+        return f"{clause} at {_ticks(part.first, part.last)}{end}"
 
     def _must(self, part: Part, wanted: str) -> str:
         match self._extent:

@@ -70,8 +70,8 @@ class Window:
 
     def kept(self, q: Column) -> bool:
         """Whether the response is as the trigger asks."""
-        told = [part.kept(q) for part in self.parts]
-        return not told or (any(told) if self.either else all(told))
+        kept = [part.kept(q) for part in self.parts]
+        return not kept or (any(kept) if self.either else all(kept))
 
 
 def windows(template: Template, m: Column, p: Column, s: Column) -> tuple[Window, ...]:

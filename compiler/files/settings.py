@@ -132,8 +132,8 @@ def _settings(empty: Settings, table: Any) -> Settings | Diagnostic:
     for code, reason in accept.items():
         reasons = reason.values() if isinstance(reason, dict) else [reason]
         if not all(isinstance(each, str) for each in reasons):
-            told = f"`{code}` must have a reason, or a table of reasons"
-            return _bad_settings(empty, told, f"write {_ACCEPT}", "accept", code)
+            message = f"`{code}` must have a reason, or a table of reasons"
+            return _bad_settings(empty, message, f"write {_ACCEPT}", "accept", code)
     return replace(empty, parents=tuple(parents), accept=accept)
 
 

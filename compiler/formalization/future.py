@@ -53,10 +53,10 @@ def probabilistic(obligation: Obligation, op: str, bound: str) -> Formula:
     return Odds(">=", "1", endless(met))
 
 
-def _everywhere(obligation: Obligation, told: Callable[[Formula], Formula]) -> Formula:
+def _everywhere(obligation: Obligation, form: Callable[[Formula], Formula]) -> Formula:
     m = obligation.mode
     end = end_marker(obligation.scope, m)
-    enforced = _enforced(obligation, end, told)
+    enforced = _enforced(obligation, end, form)
     match obligation.scope:
         case None | ScopeKind.ONLY_AFTER:
             return enforced
@@ -94,29 +94,29 @@ def end_marker(scope: ScopeKind | None, m: Formula) -> Formula:
 def _on_runs(inside: Formula, end: Formula, enforced: Formula) -> Formula:
     """`enforced` at the first tick of every maximal run of `inside`.
 
-    A part `end R x` says x at every tick of the run: then it is said of every tick inside.
+    A part `end R x` says x at every tick of the run: then it is claimed of every tick inside.
     """
     parts = enforced.args if isinstance(enforced, And) else (enforced,)
     throughout = [p.right for p in parts if isinstance(p, Release) and p.left == end]
     at_first = and_(*(p for p in parts if not (isinstance(p, Release) and p.left == end)))
     enters = and_(not_(LAST), not_(inside), next_(inside))
     return and_(
-        *(release(LAST, _given(inside, said)) for said in throughout),
+        *(release(LAST, _given(inside, claim)) for claim in throughout),
         release(LAST, implies(enters, next_(at_first))),
         implies(inside, at_first),
     )
 
 
-def _given(inside: Formula, said: Formula) -> Formula:
+def _given(inside: Formula, claim: Formula) -> Formula:
     """`inside -> (a -> b)` as `inside & a -> b`."""
-    if isinstance(said, Implies):
-        return implies(and_(inside, said.left), said.right)
-    return implies(inside, said)
+    if isinstance(claim, Implies):
+        return implies(and_(inside, claim.left), claim.right)
+    return implies(inside, claim)
 
 
-def _enforced(obligation: Obligation, end: Formula, told: Callable[[Formula], Formula]) -> Formula:
-    """At the first tick of an interval: the demand, as told, at every trigger of the interval."""
-    met = told(demanded_at(obligation.demand, end))
+def _enforced(obligation: Obligation, end: Formula, form: Callable[[Formula], Formula]) -> Formula:
+    """At the first tick of an interval: the demand, in the given form, at every trigger of the interval."""
+    met = form(demanded_at(obligation.demand, end))
     p = obligation.trigger
     match obligation.condition:
         case None:

@@ -84,25 +84,25 @@ def load(
         hazards: their `hazards.toml`; None: no hazards are read.
         parents: whether parents in other tools are read, as the settings name them.
     """
-    declarations, said = _declarations(bindings or beside_first(paths, BINDINGS))
-    known, told = read_hazards(hazards) if hazards else ({}, ())
+    declarations, of_bindings = _declarations(bindings or beside_first(paths, BINDINGS))
+    known, of_hazards = read_hazards(hazards) if hazards else ({}, ())
     written, unread = _written(paths)
     chosen = _settings(paths)
     above, elsewhere = _above(chosen) if parents else ({}, ())
-    broken = declarations is None and has_errors(said)
+    broken = declarations is None and has_errors(of_bindings)
     rules, failed, mistaken, remarks = _formalized(written, declarations, broken=broken)
-    upward = [*told, *elsewhere]
+    upward = [*of_hazards, *elsewhere]
     if (hazards or parents) and not has_errors(upward):
         upward.extend(unknown_parents(written, known, above, hazards))
         upward.extend(circles(written))
     declarations = _with_atoms(declarations, rules)
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
-    general = (*(each for each in said if each not in single), *unread, *upward)
+    general = (*(each for each in of_bindings if each not in single), *unread, *upward)
     accepted, unanswered = acceptances(written, chosen if isinstance(chosen, Settings) else None)
     if isinstance(chosen, Diagnostic) and not parents:
         unanswered = (*unanswered, chosen)
-    everything = (*said, *unread, *remarks, *upward, *unanswered)
+    everything = (*of_bindings, *unread, *remarks, *upward, *unanswered)
     return Project(
         tuple(written),
         rules,
@@ -153,21 +153,21 @@ def _formalized(
     """
     unsaid = frozenset({Code.NO_CLOCK}) if broken else frozenset()
     mistaken = dict(duplicates(written))
-    rules, failed, said = [], [], list(dict.fromkeys(mistaken.values()))
+    rules, failed, diagnostics = [], [], list(dict.fromkeys(mistaken.values()))
     for requirement in written:
         rule, remarks = None, (*requirement.mistakes, *unreadable_sentence(requirement))
         if not requirement.mistakes:
             rule, remarks = formalize(requirement, declarations)
         if rule is not None and rule.declarations is not None:
             remarks = (*remarks, *disagreements(rule, rule.declarations))
-        said.extend(remark for remark in remarks if remark.code not in unsaid)
+        diagnostics.extend(remark for remark in remarks if remark.code not in unsaid)
         if rule is None:
             failed.append(Failed(requirement, _reason(remarks), remarks))
             continue
         rules.append(rule)
         if has_errors(remarks):
             mistaken.setdefault(id(requirement), _reason(remarks))
-    return tuple(rules), tuple(failed), mistaken, said
+    return tuple(rules), tuple(failed), mistaken, diagnostics
 
 
 def whole(

@@ -71,38 +71,38 @@ def check(
     if isinstance(project, Diagnostic):
         stop(project)
     units = first_unit(project.rules)
-    said = [*project.diagnostics, *([units] if units is not None else [])]
+    diagnostics = [*project.diagnostics, *([units] if units is not None else [])]
     audited = read_evidence(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:
-        said.append(audited)
+        diagnostics.append(audited)
     proofs = proven(verification)
     if isinstance(proofs, Diagnostic):
-        said.append(proofs)
+        diagnostics.append(proofs)
         proofs = ()
     results = None if isinstance(audited, Diagnostic) else audited
     lock, path = None, beside(requirements, "fretc.lock")
     if path is not None:
         known = read_lock(path)
         lock = known if isinstance(known, Lock) else None
-        said.extend([] if isinstance(known, Lock) else [known])
+        diagnostics.extend([] if isinstance(known, Lock) else [known])
     waivers, waived = {}, beside(requirements, "waivers.toml")
     if waived is not None:
         found, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
         waivers = {id: waiver for id, waiver in found.items() if waiver.covers(today())}
-        said.extend(wrong)
+        diagnostics.extend(wrong)
     assessed = assessments(project, results, lock, waivers, proofs)
     standings = [assessment.standing for assessment in assessed]
     if path is not None:
         chains = [standing.chain for standing in standings]
         withdrawn = withdrawn_requirements(project.requirements, chains, lock)
-        said.extend(withdrawal_warnings(withdrawn, path))
-    said.extend(stale_evidence(assessed, results, evidence))
-    said.extend(idle_waivers(assessed))
-    flawed = has_errors(said)
-    said.extend(reason for _, why in refusals(project) for reason in why)
+        diagnostics.extend(withdrawal_warnings(withdrawn, path))
+    diagnostics.extend(stale_evidence(assessed, results, evidence))
+    diagnostics.extend(idle_waivers(assessed))
+    flawed = has_errors(diagnostics)
+    diagnostics.extend(reason for _, why in refusals(project) for reason in why)
     if not flawed:
-        said.extend(warnings(project, standings, lock, results))
-    _finish(tuple(dict.fromkeys(said)), len(project.requirements), form)
+        diagnostics.extend(warnings(project, standings, lock, results))
+    _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), form)
 
 
 def _mend(folder: str) -> None:

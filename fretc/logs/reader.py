@@ -289,7 +289,9 @@ def _recording(
     lost = [gap for _, _, gap in run.damages if gap is not None]
     gaps = tuple(sorted({columns.on_clock(gap) for gap in lost}))
     origin = min(start for start, _ in [*run.spans, *lost])
-    told = [log_diagnostics.damaged(damage, gap, origin, file) for file, damage, gap in run.damages]
+    damages = [
+        log_diagnostics.damaged(damage, gap, origin, file) for file, damage, gap in run.damages
+    ]
     samples = {
         signal.name: Samples(*columns.samples(signal), signal.scale, signal.values)
         for signal in wanted
@@ -310,7 +312,7 @@ def _recording(
             *columns.findings(),
             *clocks(columns, wanted),
             *never_stated(samples, examples, wanted),
-            *log_diagnostics.few(told, place),
+            *log_diagnostics.few(damages, place),
             *run.notes,
         ),
         intact=not run.damages,

@@ -260,8 +260,8 @@ class _Interval:
         return self.throughout(not_(and_(idle, until(idle, not_(self.last)))))
 
 
-def _given(inside: Formula, said: Formula) -> Formula:
+def _given(inside: Formula, claim: Formula) -> Formula:
     """`inside -> (a -> b)` as `inside & a -> b`."""
-    if isinstance(said, f.Implies):
-        return implies(and_(inside, said.left), said.right)
-    return implies(inside, said)
+    if isinstance(claim, f.Implies):
+        return implies(and_(inside, claim.left), claim.right)
+    return implies(inside, claim)

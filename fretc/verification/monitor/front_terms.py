@@ -150,22 +150,22 @@ def differing(
     for length in _LENGTHS:
         monitor.reset()
         reference.reset()
-        told: list[Mapping[str, Truth]] = []
+        truths: list[Mapping[str, Truth]] = []
         for _ in range(length):
             row = {name: _drawn(choose, each, numbers) for name, each in inputs.items()}
             expected = right(row)
-            told.append(expected)
+            truths.append(expected)
             try:
                 actual = left(row)
             except Exception as error:
-                return Differing(tuple(told), f"it stops: {type(error).__name__}", _given(row))
+                return Differing(tuple(truths), f"it stops: {type(error).__name__}", _given(row))
             for name in propositions:
                 if actual[name] is not expected[name]:
                     right_one = _in_words(expected[name])
                     fault = (
                         f"`{name}` is {_in_words(actual[name])} in it, and should be {right_one}"
                     )
-                    return Differing(tuple(told), fault, _given(row))
+                    return Differing(tuple(truths), fault, _given(row))
     return None
 
 
