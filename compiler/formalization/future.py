@@ -115,7 +115,7 @@ def _given(inside: Formula, claim: Formula) -> Formula:
 
 
 def _enforced(obligation: Obligation, end: Formula, form: Callable[[Formula], Formula]) -> Formula:
-    """At the first tick of an interval: the demand, in the given form, at every trigger of the interval."""
+    """At the first tick of an interval: the demand, in that form, at every trigger of it."""
     met = form(demanded_at(obligation.demand, end))
     p = obligation.trigger
     match obligation.condition:
