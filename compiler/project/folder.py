@@ -141,6 +141,10 @@ def _written(paths: Sequence[str]) -> tuple[list[Requirement], list[Diagnostic]]
     return found, wrong
 
 
+_MOST_BROKEN_HEADERS = 100
+"""Below so many mistaken headers sentences are read, too: a file of thousands is none to mend."""
+
+
 def _formalized(
     written: Sequence[Requirement], declarations: Declarations | None, *, broken: bool
 ) -> tuple[tuple[Formalized, ...], tuple[Failed, ...], dict[int, Diagnostic], list[Diagnostic]]:
@@ -153,9 +157,13 @@ def _formalized(
     """
     unsaid = frozenset({Code.NO_CLOCK}) if broken else frozenset()
     mistaken = dict(duplicates(written))
-    rules, failed, diagnostics = [], [], list(dict.fromkeys(mistaken.values()))
+    rules: list[Formalized] = []
+    failed: list[Failed] = []
+    diagnostics = list(dict.fromkeys(mistaken.values()))
     for requirement in written:
-        rule, remarks = None, (*requirement.mistakes, *unreadable_sentence(requirement))
+        rule, remarks = None, requirement.mistakes
+        if remarks and len(failed) < _MOST_BROKEN_HEADERS:
+            remarks = (*remarks, *unreadable_sentence(requirement))
         if not requirement.mistakes:
             rule, remarks = formalize(requirement, declarations)
         if rule is not None and rule.declarations is not None:

@@ -14,6 +14,8 @@ from compiler.formalization.resolution import candidates
 from compiler.logic import formula as f
 from compiler.logic.identifiers import legal_names
 from compiler.logic.printing import identifier, is_compound
+from fretish import expressions as e
+from fretish.bindings.comparisons import bound, is_measured
 from fretish.printer import expression
 
 
@@ -25,14 +27,25 @@ def comparison_names(rule: Formalized) -> Mapping[str, str]:
 
 
 def in_words(rule: Formalized) -> Mapping[str, str]:
-    """What each of these atoms means: `battery < 20 %`."""
-    declared = rule.declarations.propositions if rule.declarations else {}
-    written = dict(candidates(rule.sentence))
-    found = {}
+    """What each of these atoms means, in the units of its signals: `battery < 20 %`."""
+    parts = dict(candidates(rule.sentence))
+    meanings = {}
     for atom in comparison_names(rule):
-        tree = declared[atom].expression if atom in declared else written.get(atom)
-        found[atom] = atom if tree is None else " ".join(expression(tree).split())
-    return found
+        tree = _meaning(rule, atom, parts.get(atom))
+        meanings[atom] = atom if tree is None else " ".join(expression(tree).split())
+    return meanings
+
+
+def _meaning(rule: Formalized, atom: str, part: e.Expression | None) -> e.Expression | None:
+    if rule.declarations is None:
+        return part
+    signals = rule.declarations.signals
+    if isinstance(part, e.Comparison) and is_measured(part, signals):
+        comparison = bound(part, signals, rule.requirement.wording)
+        if isinstance(comparison, e.Comparison):
+            return comparison
+    declared = rule.declarations.propositions.get(atom)
+    return part if declared is None else declared.expression
 
 
 def definitions(rule: Formalized) -> Mapping[str, str]:

@@ -37,7 +37,7 @@ from compiler.targets.target import (
 from fretish import syntax as s
 from fretish.bindings.comparisons import FUNCTIONS
 from fretish.bindings.declarations import Modality
-from fretish.checking import LOOK_AHEAD, LOOK_BACK, calls, conditions
+from fretish.checking import LOOK_AHEAD, LOOK_BACK, NUMBERS_BACK, calls, conditions
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.expressions import Comparison, names
 from fretish.printer import timing as printing_of
@@ -180,7 +180,7 @@ def _refused_name(rule: Formalized) -> Diagnostic | None:
     compared = {
         atom
         for atom, part in candidates(rule.sentence)
-        if isinstance(part, Comparison) and FUNCTIONS.keys() >= {*calls(part)}
+        if isinstance(part, Comparison) and FUNCTIONS.keys() - NUMBERS_BACK >= {*calls(part)}
     }
     for atom in rule.propositions:
         if atom in spelt and atom not in compared:

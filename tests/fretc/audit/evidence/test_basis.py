@@ -437,6 +437,10 @@ def older(result: dict[str, Any]) -> bool:
     return any("since the review of" not in reason for reason in result["suspicions"])
 
 
+_OUTDATED = re.compile(r"F504 warning: the evidence of (.+?) is suspect")
+"""Requirements whose evidence is suspect for one reason share a message."""
+
+
 def asked(fretc: Fretc) -> Said:
     diff = json.loads(fretc("diff", "--format", "json").out)
     check = fretc("check").err
@@ -449,7 +453,7 @@ def asked(fretc: Fretc) -> Said:
     everywhere = any("this is fretc" in reason for one in again for reason in one["reasons"])
     return Said(
         {
-            "check": set(re.findall(r"F504 warning: the evidence of (\S+) is suspect", check)),
+            "check": {id for ids in _OUTDATED.findall(check) for id in re.findall(r"R\w+", ids)},
             "report": {v["id"] for v in report if any(map(older, v["results"]))},
         },
         {
