@@ -5,7 +5,7 @@ import io
 import json
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TextIO
 
 from monitors.kernel.columns import columns_of
@@ -19,11 +19,35 @@ from monitors.kernel.verdicts import (
     SATISFIED,
     VACUOUS,
     VIOLATED,
+    Truth,
 )
+
+Read = Callable[[TextIO, str, argparse.Namespace], Iterable[Sequence[Truth]]]
+"""Gives the truth of the propositions, a row a tick, from a table, its source and the options."""
 
 
 def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
     """Run the monitor over tables of propositions and print the verdicts.
+
+    Returns:
+        As `judge`.
+    """
+    names = tuple(monitor.PROPOSITIONS)
+    return judge(
+        monitor,
+        _parser(monitor),
+        lambda text, source, options: read_rows(text, names, source),
+        arguments,
+    )
+
+
+def judge(
+    monitor: type[Monitor],
+    parser: argparse.ArgumentParser,
+    read: Read,
+    arguments: Sequence[str] | None,
+) -> int:
+    """Run the monitor over the tables that the arguments name, and print the verdicts.
 
     Returns:
         0 all satisfied, 1 a violation, 2 bad use or input, 3 something is not shown, 130 stopped by
@@ -33,8 +57,8 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     try:
-        options = _parser(monitor).parse_args(arguments)
-        statuses = [_report(monitor(), path, options) for path in options.trace]
+        options = parser.parse_args(arguments)
+        statuses = [_report(monitor(), path, options, read) for path in options.trace]
         if sys.stdout is None:
             raise InputError("standard output is closed")
         sys.stdout.flush()
@@ -107,12 +131,12 @@ def _literal(text: str) -> str:
     return text.replace("%", "%%") if "%(prog)" in text else text
 
 
-def _report(monitor: Monitor, path: str, options: argparse.Namespace) -> int:
+def _report(monitor: Monitor, path: str, options: argparse.Namespace, read: Read) -> int:
     source = "<stdin>" if path == "-" else path
     names = tuple(monitor.PROPOSITIONS)
     with _opened(path) as text:
         try:
-            ticks, columns = columns_of(read_rows(text, names, source), len(names))
+            ticks, columns = columns_of(read(text, source, options), len(names))
         except UnicodeDecodeError:
             raise InputError(f"{source}: the trace is not UTF-8 text") from None
         except OSError as error:

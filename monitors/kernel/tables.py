@@ -36,6 +36,18 @@ def read_rows(
     Raises:
         InputError: a column is missing, a value is no truth value, ticks jump.
     """
+    for place, row in placed_rows(text, names, source):
+        yield tuple(_truth(row[name], name, place) for name in names)
+
+
+def placed_rows(
+    text: Iterable[str], names: Sequence[str], source: str
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Each row with its place, by its columns; a column `tick` is held to its rule.
+
+    Raises:
+        InputError: a column is missing, ticks jump.
+    """
     lines = iter(text)
     lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
     number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
@@ -53,7 +65,7 @@ def read_rows(
             has_tick = "tick" in row
             if has_tick:
                 tick = _next_tick(row["tick"], tick, place)
-        yield tuple(_truth(row[name], name, place) for name in names)
+        yield place, row
 
 
 def _csv_rows(

@@ -1,18 +1,10 @@
 """Reading tables of variables: CSV with a header, or JSON lines; one row a tick."""
 
-import itertools
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from monitors.kernel.tables import (
-    InputError,
-    _csv_rows,
-    _json_rows,
-    _next_tick,
-    _short,
-    _truth,
-)
+from monitors.kernel.tables import InputError, _short, _truth, placed_rows
 from monitors.kernel.variables import Value, Variable
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", re.ASCII)
@@ -32,23 +24,8 @@ def read_variables(
     Raises:
         InputError: a column is missing, a value is of another kind than its variable, ticks jump.
     """
-    names = tuple(variables)
-    lines = iter(text)
-    lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
-    number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
-    if not number:
-        raise InputError(f"{source}: the trace is empty")
-    read = _json_rows if re.match(r'\s*\{\s*["}]', first) else _csv_rows
-    tick: int | None = None
-    has_tick: bool | None = None
-    for place, row in read(itertools.chain([first], lines), names, source, number):
-        if "tick" not in variables:
-            if has_tick not in (None, "tick" in row):
-                raise InputError(f"{place}: some rows have a `tick` and some have none")
-            has_tick = "tick" in row
-            if has_tick:
-                tick = _next_tick(row["tick"], tick, place)
-        yield tuple(_value(row[name], name, variables[name], place) for name in names)
+    for place, row in placed_rows(text, tuple(variables), source):
+        yield tuple(_value(row[name], name, each, place) for name, each in variables.items())
 
 
 def _value(value: Any, name: str, variable: Variable, place: str) -> Value:

@@ -816,6 +816,18 @@ def read_rows(
     Raises:
         InputError: a column is missing, a value is no truth value, ticks jump.
     """
+    for place, row in placed_rows(text, names, source):
+        yield tuple(_truth(row[name], name, place) for name in names)
+
+
+def placed_rows(
+    text: Iterable[str], names: Sequence[str], source: str
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Each row with its place, by its columns; a column `tick` is held to its rule.
+
+    Raises:
+        InputError: a column is missing, ticks jump.
+    """
     lines = iter(text)
     lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
     number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
@@ -833,7 +845,7 @@ def read_rows(
             has_tick = "tick" in row
             if has_tick:
                 tick = _next_tick(row["tick"], tick, place)
-        yield tuple(_truth(row[name], name, place) for name in names)
+        yield place, row
 
 
 def _csv_rows(
@@ -920,8 +932,32 @@ def _next_tick(value: Any, before: int | None, place: str) -> int:
     return tick
 
 
+Read = Callable[[TextIO, str, argparse.Namespace], Iterable[Sequence[Truth]]]
+"""Gives the truth of the propositions, a row a tick, from a table, its source and the options."""
+
+
 def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
     """Run the monitor over tables of propositions and print the verdicts.
+
+    Returns:
+        As `judge`.
+    """
+    names = tuple(monitor.PROPOSITIONS)
+    return judge(
+        monitor,
+        _parser(monitor),
+        lambda text, source, options: read_rows(text, names, source),
+        arguments,
+    )
+
+
+def judge(
+    monitor: type[Monitor],
+    parser: argparse.ArgumentParser,
+    read: Read,
+    arguments: Sequence[str] | None,
+) -> int:
+    """Run the monitor over the tables that the arguments name, and print the verdicts.
 
     Returns:
         0 all satisfied, 1 a violation, 2 bad use or input, 3 something is not shown, 130 stopped by
@@ -931,8 +967,8 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
     try:
-        options = _parser(monitor).parse_args(arguments)
-        statuses = [_report(monitor(), path, options) for path in options.trace]
+        options = parser.parse_args(arguments)
+        statuses = [_report(monitor(), path, options, read) for path in options.trace]
         if sys.stdout is None:
             raise InputError("standard output is closed")
         sys.stdout.flush()
@@ -1005,12 +1041,12 @@ def _literal(text: str) -> str:
     return text.replace("%", "%%") if "%(prog)" in text else text
 
 
-def _report(monitor: Monitor, path: str, options: argparse.Namespace) -> int:
+def _report(monitor: Monitor, path: str, options: argparse.Namespace, read: Read) -> int:
     source = "<stdin>" if path == "-" else path
     names = tuple(monitor.PROPOSITIONS)
     with _opened(path) as text:
         try:
-            ticks, columns = columns_of(read_rows(text, names, source), len(names))
+            ticks, columns = columns_of(read(text, source, options), len(names))
         except UnicodeDecodeError:
             raise InputError(f"{source}: the trace is not UTF-8 text") from None
         except OSError as error:
