@@ -63,23 +63,12 @@ def _too_deep(place: Span | None) -> Diagnostic:
 
 def calls(expression: e.Expression) -> Iterator[str]:
     """The name of each function and predicate that the expression calls."""
-    waiting = [expression]
-    while waiting:
-        part = waiting.pop()
-        if isinstance(part, e.Call):
-            yield part.name
-        waiting.extend(reversed(e.children(part)))
+    return (part.name for part in e.parts(expression) if isinstance(part, e.Call))
 
 
 def has_units(sentence: Sentence) -> bool:
     """Whether a number in it has a unit, which FRET does not know."""
-    waiting = list(conditions(sentence))
-    while waiting:
-        part = waiting.pop()
-        if isinstance(part, e.Quantity):
-            return True
-        waiting.extend(e.children(part))
-    return False
+    return any(map(e.has_unit, conditions(sentence)))
 
 
 def check_names(sentence: Sentence) -> Iterator[Diagnostic]:

@@ -270,6 +270,11 @@ def names(expression: Expression) -> Iterator[Name]:
     return (part for part in parts(expression) if isinstance(part, Name))
 
 
+def has_unit(expression: Expression) -> bool:
+    """Whether a number in it has a unit."""
+    return any(isinstance(part, Quantity) for part in parts(expression))
+
+
 def depth(expression: Expression) -> int:
     """How many operators stand within each other, without recursion."""
     deepest = 0

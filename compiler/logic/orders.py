@@ -129,7 +129,7 @@ class _Relation:
 
 def _relation(comparison: e.Comparison, scales: Mapping[str, Fraction]) -> _Relation:
     factors = {scales.get(name.id) for name in e.names(comparison)}
-    is_base = len(factors) > 1 or _has_unit(comparison)
+    is_base = len(factors) > 1 or e.has_unit(comparison)
     left, right = _constant(comparison.left), _constant(comparison.right)
     if left is not None and right is not None:
         return _Relation(_Constant(left), comparison.op, _Constant(right))
@@ -183,7 +183,7 @@ def _constant(expression: e.Expression) -> Fraction | None:
     if any(e.names(expression)):
         return None
     try:
-        for part in _parts(expression):
+        for part in e.parts(expression):
             if isinstance(part, e.Number | e.Quantity):
                 number(part.digits)  # it has no more digits than can be computed with
         exact = constants.number(expression)
@@ -194,18 +194,6 @@ def _constant(expression: e.Expression) -> Fraction | None:
 
 _LARGE = 2**127
 """From about here on 32-bit floats are infinite."""
-
-
-def _has_unit(expression: e.Expression) -> bool:
-    return any(isinstance(part, e.Quantity) for part in _parts(expression))
-
-
-def _parts(expression: e.Expression) -> Iterator[e.Expression]:
-    waiting = [expression]
-    while waiting:
-        part = waiting.pop()
-        yield part
-        waiting.extend(e.children(part))
 
 
 def _groups(relations: Mapping[str, _Relation]) -> Iterator[tuple[str, ...]]:

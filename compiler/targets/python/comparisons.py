@@ -100,20 +100,12 @@ def _comparisons(rule: Formalized) -> dict[str, Compared]:
     """The comparisons of a sentence that can be compiled, by the names of their propositions."""
     found: dict[str, Compared] = {}
     for tree in conditions(rule.sentence):
-        for part in _parts(tree):
+        for part in e.parts(tree):
             if isinstance(part, e.Comparison):
                 compared = _compared(part, rule)
                 if compared is not None:
                     found[atom(part)] = compared
     return found
-
-
-def _parts(tree: e.Expression) -> Iterator[e.Expression]:
-    waiting = [tree]
-    while waiting:
-        part = waiting.pop()
-        yield part
-        waiting.extend(reversed(e.children(part)))
 
 
 def _clashing(rules: Sequence[Formalized], found: Iterable[Compared]) -> Iterator[str]:
@@ -223,7 +215,7 @@ class Writer:
         op = compared.tree.op
         if compared.is_of_words:
             return self._spoken(compared, op)
-        if not compared.units.keys() >= compared.inputs.keys() and _has_unit(compared.tree):
+        if not compared.units.keys() >= compared.inputs.keys() and e.has_unit(compared.tree):
             raise NotCompiledError  # nothing says in which unit the variable is
         left, right = self._term(compared.tree.left), self._term(compared.tree.right)
         if _UNKNOWN in (left, right):
@@ -398,10 +390,6 @@ _MOST_NESTING = 150
 def _nesting(text: str) -> int:
     """How many parentheses are within each other."""
     return max(itertools.accumulate((c == "(") - (c == ")") for c in text))
-
-
-def _has_unit(tree: e.Expression) -> bool:
-    return any(isinstance(part, e.Quantity) for part in _parts(tree))
 
 
 def _holds(op: e.ComparisonOperator, left: Fraction, right: Fraction) -> bool:
