@@ -1,0 +1,175 @@
+"""A result without its events, and evidence that gives results in this form: what counts of many.
+
+Ten thousand runs do not fit into memory with all their events. What counts results, marks them and
+sorts them reads briefs, and asks for the few results that it shows in full.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from statistics import median
+from typing import Protocol
+
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.schema import Bindings, Hashes, Health, Requirement, Result, Threshold
+from fretc.audit.measurements.trials import Trials
+from fretish.bindings.canonical import digest
+
+
+@dataclass(frozen=True, slots=True)
+class Brief:
+    """What the audit of one run says of one requirement, with its events counted."""
+
+    run: str
+    requirement: str
+    verdict: str
+    finite: bool | None
+    reason: str
+    ticks: int
+    start_ns: int | None
+    end_ns: int | None
+    triggers: int
+    answers: int
+    at_once: int
+    """Of the answers, those at the tick of their trigger."""
+    open: int
+    violations: int
+    violated_ticks: int
+    first_violation_ns: int | None
+    first_violation_s: float | None
+    unknown_ticks: int
+    latency_median_s: float | None
+    latency_max_s: float | None
+    intact: bool
+    """Whether nothing of the log could have been lost."""
+    fingerprints: Hashes
+    judgement: str
+    """SHA-256 of the verdict and the ticks that it is about, as a review accepts it."""
+    trials: Trials | None
+    """Of a requirement with a probability, where the log could be read."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunFacts:
+    """What all results of one run share."""
+
+    run: str
+    clock: str
+    ticks: int
+    start_ns: int | None
+    end_ns: int | None
+    log: str
+    """SHA-256 of the log; empty where it was not read whole, or could not be read."""
+    log_summary: str
+    health: Health
+    assumptions: tuple[str, ...]
+    """Of all its results, each once."""
+
+
+class EvidenceSource(Protocol):
+    """Evidence in a file or in a store. The place of a result is its number in it, from 0."""
+
+    @property
+    def file(self) -> str:
+        """Its name, as the user gave it."""
+
+    @property
+    def sha256(self) -> str:
+        """Of the file; of a store that of its manifest, which has those of its tables."""
+
+    @property
+    def fretc(self) -> str:
+        """Version of the tool that audited."""
+
+    @property
+    def bindings(self) -> Bindings:
+        """Those that the logs were read by."""
+
+    @property
+    def requirements(self) -> Sequence[Requirement]:
+        """Of the audit."""
+
+    @property
+    def probabilities(self) -> Sequence[Estimated]:
+        """What all runs say of each requirement with a probability."""
+
+    def briefs(self) -> Iterator[tuple[int, Brief]]:
+        """Each result with its place, in order: the requirements of a run stand together."""
+
+    def runs(self) -> Iterator[RunFacts]:
+        """The facts of each run, in the order of their first results."""
+
+    def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
+        """The whole results at some places, in order."""
+
+    def latencies(self, requirement: str) -> Iterator[tuple[int, Sequence[float]]]:
+        """The latencies in seconds of each result of a requirement, with its place, in order."""
+
+    def thresholds(self, requirement: str) -> Iterator[tuple[int, Sequence[Threshold]]]:
+        """The thresholds of each result of a requirement, with its place, in order."""
+
+
+def brief(result: Result) -> Brief:
+    """The brief of a result."""
+    violations, latencies = result.violations, result.latencies
+    first = violations[0] if violations else None
+    return Brief(
+        run=result.run,
+        requirement=result.requirement,
+        verdict=result.verdict,
+        finite=result.finite,
+        reason=result.reason,
+        ticks=result.ticks,
+        start_ns=result.start_ns,
+        end_ns=result.end_ns,
+        triggers=len(result.triggers),
+        answers=len(latencies),
+        at_once=sum(late <= 0 for late in latencies),
+        open=len(result.open),
+        violations=len(violations),
+        violated_ticks=sum(v.last_tick - v.first_tick + 1 for v in violations),
+        first_violation_ns=first.start_ns if first else None,
+        first_violation_s=first.start_s if first else None,
+        unknown_ticks=sum(last - first + 1 for first, last in result.unknown),
+        latency_median_s=median(latencies) if latencies else None,
+        latency_max_s=max(latencies, default=None),
+        intact=result.health.intact,
+        fingerprints=result.fingerprints,
+        judgement=judgement(result),
+        trials=result.trials,
+    )
+
+
+def judgement(result: Result) -> str:
+    """SHA-256 of the verdict and the ticks that it is about."""
+    return digest(
+        {
+            "verdict": result.verdict,
+            "finite": result.finite,
+            "triggers": len(result.triggers),
+            "violations": [[v.first_tick, v.last_tick] for v in result.violations],
+            "open": [moment.tick for moment in result.open],
+        }
+    )
+
+
+def run_facts(results: Sequence[Result]) -> RunFacts:
+    """The facts of a run.
+
+    Args:
+        results: all of one run, at least one.
+    """
+    first = results[0]
+    assumptions = dict.fromkeys(text for result in results for text in result.assumptions)
+    return RunFacts(
+        run=first.run,
+        clock=first.clock,
+        ticks=first.ticks,
+        start_ns=first.start_ns,
+        end_ns=first.end_ns,
+        log=first.fingerprints.log or "",
+        log_summary=first.fingerprints.log_summary or "",
+        health=first.health,
+        assumptions=tuple(assumptions),
+    )
