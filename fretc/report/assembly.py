@@ -19,6 +19,7 @@ from fretc.audit.evidence.schema import Evidence
 from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE, SUPPORTED
 from fretc.report.diagnostics import idle_waivers, stale_evidence
+from fretc.report.front.front import front
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, assessments
 from fretc.report.model.views import (
@@ -37,7 +38,7 @@ from fretc.report.sections.overall import overall
 from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.reproduction import commands, folder_of, manifest
 from fretc.report.sections.requirement import remark, section
-from fretc.report.sections.runs import run_views, runs
+from fretc.report.sections.runs import run_views, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.traceability.acceptances import warnings
 from fretc.report.traceability.artefacts import shared_products
@@ -98,18 +99,34 @@ def report(
         *(line for assessment in assessed for line in reviews.reservations(assessment)),
     )
     signature_list = signatures(book, assessed, evidence, proofs)
+    overall_result = overall(
+        project, assessed, sections, all_runs, reservations, withdrawn, signature_list
+    )
+    rows = matrix(project, assessed, sections)
+    run_list = run_views(all_runs, project)
+    changes = (*reviews.changes(assessed), *reviews.withdrawals(withdrawn))
+    components = tuple(sorted({rule.sentence.component for rule in project.rules}))
     checked = _checks(project, assessed, lock, evidence)
     return Report(
         schema=SCHEMA,
         fretc=__version__,
         project=folder_of(project),
-        components=tuple(sorted({rule.sentence.component for rule in project.rules})),
+        components=components,
         evidence=phrases.place(path) if evidence else "",
         audited_by=evidence.fretc if evidence else "",
-        overall=overall(
-            project, assessed, sections, all_runs, reservations, withdrawn, signature_list
+        overall=overall_result,
+        front=front(
+            ": ".join(filter(None, [phrases.joined(components), folder_of(project)])),
+            overall_result,
+            sections,
+            rows,
+            assessed,
+            all_runs,
+            run_list,
+            changes,
+            [text for text in overall_result.sentences if text != trust(all_runs, project)],
         ),
-        runs=run_views(all_runs, project),
+        runs=run_list,
         claims=_claims(assessed, len(all_runs)),
         counts=_counts(assessed),
         not_shown=tuple(_not_shown(view) for view in worst_first(sections) if view.reasons),
@@ -119,10 +136,10 @@ def report(
         verification=phrases.place(proofs.file) if proofs else "",
         remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
         hazards=hazard_views(project),
-        matrix=matrix(project, assessed, sections, runs_by_key),
+        matrix=rows,
         orphans=orphans(project, assessed, evidence),
         reviewed=reviews.summary(assessed, book),
-        changes=(*reviews.changes(assessed), *reviews.withdrawals(withdrawn)),
+        changes=changes,
         withdrawn=tuple(Withdrawal(one.review.requirement, one.text) for one in withdrawn),
         waivers=tuple(view.waiver for view in sections if view.waiver),
         signatures=signature_list,

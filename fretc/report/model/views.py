@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from fretc.audit.evidence.verdicts import SUSPECT, VERDICTS, severity, shows
+from fretc.report.model.front import Front
 from fretc.report.model.pictures import Histogram, Timeline
 from fretc.report.traceability.artefacts import Product
 from fretish.diagnostics.signs import Sign
@@ -151,15 +152,6 @@ class Planned:
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
-    """The verdict of one run in the matrix, or of several; `anchor` leads to the details."""
-
-    mark: Mark
-    label: str
-    anchor: str
-
-
-@dataclass(frozen=True, slots=True)
 class Row:
     """A requirement and a hazard that it traces to; `hazard` is empty where it traces to none."""
 
@@ -171,10 +163,13 @@ class Row:
     status: str
     anchor: str
     mark: Mark
+    runs: int
+    """How many runs have the verdict; of a waived one, that behind the waiver."""
     limit: str
     """Why no run can violate it; empty where one can."""
-    artefacts: tuple[Product, ...]
-    cells: tuple[Cell, ...]
+    proof: Mark | None
+    """What is proved of it: the closed loop, or its monitor; None: neither."""
+    review: Mark
 
 
 @dataclass(frozen=True, slots=True)
@@ -513,6 +508,7 @@ class Report:
     evidence: str
     audited_by: str
     overall: Overall
+    front: Front
     runs: tuple[RunView, ...]
     claims: str
     counts: tuple[Count, ...]

@@ -14,6 +14,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Report
+from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import Selection, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram
@@ -32,6 +33,7 @@ def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
     """
     choice = selection(report)
     page = slimmed(report, choice)
+    matrix = picture(report, choice.anchors)
     script, style = render(_SCRIPT), render(_STYLE)
     return render(
         "report/report.html.j2",
@@ -42,6 +44,8 @@ def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
         histograms=_visible(_histograms(page)),
         scales=_visible(_scales(page)),
         diagrams=_diagrams(page, rules),
+        matrix=_visible(asdict(matrix)),
+        rows=_rows(matrix),
         argument=_visible(_argument(report)),
         script_hash=_hash(script),
         style_hash=_hash(style),
@@ -76,6 +80,12 @@ def _histograms(page: Report) -> dict[str, list[dict[str, Any]]]:
         ]
         for view in page.requirements
     }
+
+
+def _rows(matrix: Picture) -> dict[str, str]:
+    """The first row of each requirement in the matrix, where it has rows of requirements."""
+    lines = (line for block in matrix.blocks for line in block.lines if line.id)
+    return {line.row.anchor: line.id for line in lines}
 
 
 def _diagrams(page: Report, rules: Sequence[Formalized]) -> Mapping[str, dict[str, Any]]:
