@@ -18,15 +18,13 @@ from fretc.report.front.groups import run_groups
 from fretc.report.front.speech import capital, day, days, duration
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.front import Figure, FigureLine, Front
+from fretc.report.model.front import Figure, FigureLine, Front, Link
 from fretc.report.model.views import Change, Overall, RequirementView, Row, RunView
 from fretc.report.sections.proofs import is_proved_layer, is_refuted
 from fretc.report.sections.runs import Run
+from fretc.report.traceability.comparison import difference
 from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Severity
-
-_CHANGES = 3
-"""The most changes that a figure names."""
 
 
 def front(
@@ -68,7 +66,7 @@ def front(
             _shown(active),
             _violated(active, red),
             _not_shown(active, views),
-            _changed(active, changes),
+            _changed(active, assessed, changes),
         ),
         trust=tuple(_trust(views, names)),
         notes=tuple(notes),
@@ -162,18 +160,15 @@ def _not_shown(active: Sequence[RequirementView], runs: Sequence[RunView]) -> Fi
     return Figure("not shown", len(unshown), "not shown", kind, "not-shown", lines)
 
 
-def _changed(active: Sequence[RequirementView], changes: Sequence[Change]) -> Figure:
+def _changed(
+    active: Sequence[RequirementView], assessed: Sequence[Assessment], changes: Sequence[Change]
+) -> Figure:
     words = "changed since the review"
     unreviewed = [link(view) for view in active if view.review.signature is None]
     if active and len(unreviewed) == len(active) and not changes:
         nothing = FigureLine("nothing has been reviewed", (), 0)
         return Figure("changed", None, words, "", "reviews", (nothing,))
-    lines = [
-        FigureLine(f"{change.requirement}: {'; '.join(change.lines[:2]) or 'verdicts'}", (), 0)
-        for change in changes[:_CHANGES]
-    ]
-    more = len(changes) - _CHANGES
-    lines += [FigureLine(f"and {phrases.times(more, 'more requirement')}", (), 0)] * (more > 0)
+    lines = [line(kind, names) for kind, names in _kinds(assessed, changes).items()]
     verdicts = [(then, now) for change in changes for _, then, now in change.verdicts]
     worse = sum(now in BROKEN and then not in BROKEN for then, now in verdicts)
     became = f"{phrases.times(worse, 'verdict')} became violated"
@@ -181,6 +176,20 @@ def _changed(active: Sequence[RequirementView], changes: Sequence[Change]) -> Fi
     lines += [line("not reviewed", unreviewed)] if unreviewed else []
     kind = signs.OPEN.kind if changes else ""
     return Figure("changed", len(changes), words, kind, "reviews", tuple(lines))
+
+
+def _kinds(assessed: Sequence[Assessment], changes: Sequence[Change]) -> dict[str, list[Link]]:
+    """The requirements of which each kind of thing has changed; verdicts are what comes of it."""
+    kinds: dict[str, list[Link]] = {}
+    for one in assessed:
+        if one.standing.review is None:
+            continue
+        for kind in dict.fromkeys(node.kind for node, _ in difference(one.standing).changes):
+            if kind != "verdict":
+                name = Link(one.id, one.requirement.title, one.anchor)
+                kinds.setdefault(f"{kind} changed", []).append(name)
+    gone = [Link(each.requirement, "", "reviews") for each in changes if each.state == "gone"]
+    return {"gone": gone, **kinds} if gone else kinds
 
 
 # Trust -----------------------------------------------------------------------------------------

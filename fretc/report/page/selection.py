@@ -17,14 +17,16 @@ COMPACT = 1_000
 """Above this number of results, only runs that are not satisfied have a row."""
 DETAILED, PICTURES = 100, 60
 """The most results with all details, and the most pictures of violations, in one page."""
+_FEW_DETAILED, _FEW_PICTURES = 40, 20
+"""The same in a compact page."""
 _ROWS = 10
 """The most rows of a requirement in a compact page."""
 _RUNS, _RUN_ROWS = 8, 200
 """Above the first number, runs stand in a table; the second is the most rows of that table."""
 _FOLDED = 60
 """Up to this number of results, the page has the details of satisfied runs too, folded."""
-_VIOLATIONS = 12
-"""The most violations of one result in a page with more than `_FOLDED` results."""
+_VIOLATIONS, _FEW_VIOLATIONS = 12, 6
+"""The most violations of one result above `_FOLDED` results, and in a compact page."""
 _WHOLE = 200
 """Above this number of requirements, a compact page has no formulas, artefacts and pictures."""
 _REASONS = 3
@@ -83,7 +85,7 @@ def selection(report: Report) -> Selection:
     """The selection for a report."""
     total = sum(len(view.results) for view in report.requirements)
     compact = total > COMPACT
-    detailed = _detailed(report.requirements, None if total <= _FOLDED else _VIOLATIONS)
+    detailed = _detailed(report.requirements, _limits(total, compact))
     by_anchor = {
         view.anchor: _section_runs(view, detailed, compact, total, len(report.requirements))
         for view in report.requirements
@@ -123,8 +125,8 @@ def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
         return
     yield (
         f"This page is compact, because {phrases.whole(total)} results are more than "
-        f"{phrases.whole(COMPACT)}: runs that satisfy a requirement are counted, and have no rows "
-        "of their own."
+        f"{phrases.whole(COMPACT)}: runs that satisfy a requirement have a mark in the matrix and "
+        "no row of their own, and requirements are not drawn."
     )
     if requirements > _WHOLE:
         yield (
@@ -141,24 +143,28 @@ def _is_good(result: ResultView) -> bool:
     return result.mark.shows
 
 
-def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[str, ResultView]:
-    """The results with all details: the worst of each requirement, then the next of each, ...
+def _limits(total: int, compact: bool) -> tuple[int, int, int | None]:
+    """The most results with details, pictures, and violations of one result; None: no limit."""
+    if compact:
+        return min(DETAILED, _FEW_DETAILED), min(PICTURES, _FEW_PICTURES), _FEW_VIOLATIONS
+    return DETAILED, PICTURES, None if total <= _FOLDED else _VIOLATIONS
 
-    Args:
-        views: the requirements with all their results.
-        listed: the most violations of one result; None: all that the report lists.
-    """
+
+def _detailed(
+    views: Sequence[RequirementView], limits: tuple[int, int, int | None]
+) -> Mapping[str, ResultView]:
+    """The results with all details: the worst of each requirement, then the next of each, ..."""
+    most, pictures, listed = limits
     wanted = [
         sorted(
             (r for r in view.results if not _is_good(r) or len(view.results) == 1),
             key=lambda result: result.mark.severity,
-        )[:DETAILED]
+        )[:most]
         for view in views
     ]
     details: dict[str, ResultView] = {}
-    pictures = PICTURES
     for result in (r for turn in zip_longest(*wanted) for r in turn if r is not None):
-        if len(details) == DETAILED:
+        if len(details) == most:
             break
         kept = result.timelines[:pictures]
         pictures -= len(kept)
@@ -253,9 +259,11 @@ def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
     """A section without its results: the template takes those from the selection."""
     reasons = _few(view.reasons) if chosen.is_compact else view.reasons
     kept = replace(view, results=(), reasons=reasons)
+    if chosen.is_compact:
+        kept = replace(kept, diagram="")
     if not chosen.by_anchor[view.anchor].is_short:
         return kept
-    return replace(kept, formulas=(), propositions=(), artefacts=(), histograms=(), diagram="")
+    return replace(kept, formulas=(), propositions=(), artefacts=(), histograms=())
 
 
 def _few(reasons: Sequence[str]) -> tuple[str, ...]:
