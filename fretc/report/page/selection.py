@@ -180,7 +180,8 @@ def _section_runs(
     total: int,
     requirements: int,
 ) -> SectionRuns:
-    details = tuple(detailed[r.anchor] for r in view.results if r.anchor in detailed)
+    worst_first = sorted(view.results, key=lambda result: result.mark.severity)
+    details = tuple(detailed[r.anchor] for r in worst_first if r.anchor in detailed)
     rest = [result for result in view.results if result.anchor not in detailed]
     folded = tuple(filter(_is_good, rest)) if total <= _FOLDED else ()
     rows: Sequence[ResultView] = view.results if len(view.results) > 1 else ()
