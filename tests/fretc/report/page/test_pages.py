@@ -106,9 +106,8 @@ def visit(browser: Browser, pages: dict[str, Path]) -> Iterator[Visit]:
     contexts = []
 
     def open_it(name: str, width: int = 1440, height: int = 900, **options: Any) -> Page:
-        size = {"width": width, "height": height}
-        calm = {"offline": True, "viewport": size, "reduced_motion": "reduce"}
-        contexts.append(browser.new_context(**calm, **options))
+        size: Any = {"width": width, "height": height}
+        contexts.append(browser.new_context(offline=True, viewport=size, **options))
         page = contexts[-1].new_page()
         page.on("console", lambda message: messages.append(message.text))
         page.on("pageerror", lambda error: messages.append(str(error)))
