@@ -6,8 +6,8 @@ sorts them reads briefs, and asks for the few results that it shows in full.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from statistics import median
 from typing import Protocol
 
@@ -65,6 +65,8 @@ class RunFacts:
     health: Health
     assumptions: tuple[str, ...]
     """Of all its results, each once."""
+    labels: Mapping[str, str] = field(default_factory=dict)
+    """What is known of the run beside its messages: version, scenario and others."""
 
 
 class EvidenceSource(Protocol):
@@ -172,4 +174,5 @@ def run_facts(results: Sequence[Result]) -> RunFacts:
         log_summary=first.fingerprints.log_summary or "",
         health=first.health,
         assumptions=tuple(assumptions),
+        labels=first.labels or {},
     )
