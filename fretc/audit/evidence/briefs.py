@@ -7,8 +7,8 @@ sorts them reads briefs, and asks for the few results that it shows in full.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from statistics import median
 from typing import Protocol
 
@@ -66,6 +66,8 @@ class RunFacts:
     health: Health
     assumptions: tuple[str, ...]
     """Of all its results, each once."""
+    labels: Mapping[str, str] = field(default_factory=dict)
+    """What is known of the run beside its messages: version, scenario and others."""
 
 
 Span = tuple[float, float]
@@ -196,6 +198,7 @@ def run_facts(results: Sequence[Result]) -> RunFacts:
         log_summary=first.fingerprints.log_summary or "",
         health=first.health,
         assumptions=tuple(assumptions),
+        labels=first.labels or {},
     )
 
 

@@ -47,6 +47,9 @@ from fretc.audit.measurements.violations import Moment as Moment
 
 SCHEMA: Final = "fretc-evidence-1"
 Verdict = Literal["satisfied", "violated", "inconclusive", "vacuous", "no data"]
+LabelName = Annotated[str, Meta(min_length=1, max_length=50)]
+LabelText = Annotated[str, Meta(min_length=1, max_length=200)]
+"""Texts of a stranger's log: whoever shows one escapes it."""
 StateWord = Literal["idle", "open", "violated", "unknown"]
 Comparison = Literal["true", "false", "crossed"]
 Part = Annotated[
@@ -423,6 +426,14 @@ class Result(Record, frozen=True, kw_only=True):
     course: Annotated[
         Course | UnsetType,
         about("absent: the bindings declare no map, and no signal of words is read"),
+    ] = UNSET
+    labels: Annotated[
+        Annotated[dict[LabelName, LabelText], Meta(min_length=1, max_length=32)] | UnsetType,
+        about(
+            "what is known of the run beside its messages: robot, version, commit, scenario, date "
+            "and others, as `[run.label]` of the bindings or `--label` says; no verdict rests on "
+            "them. Absent: there is none"
+        ),
     ] = UNSET
 
     @property
