@@ -13,6 +13,7 @@ from fretc.audit.evidence.verdicts import SUSPECT, VERDICTS, severity, shows
 from fretc.report.model.pictures import Histogram, Timeline
 from fretc.report.traceability.artefacts import Product
 from fretish.diagnostics.signs import Sign
+from fretish.documents import named
 
 SCHEMA = "fretc-report-1"
 
@@ -475,6 +476,11 @@ class RequirementView:
     """How far along the chain it is; one of `fretc.report.model.assessments.COVERAGE`."""
     review: ReviewView
     waiver: WaiverView | None
+
+    @property
+    def name(self) -> str:
+        """As a person calls it: `No contact (R14)`."""
+        return named(self.id, self.title)
 
 
 def worst_first(views: Iterable[RequirementView]) -> list[RequirementView]:
