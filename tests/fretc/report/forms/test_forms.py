@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import re
+from math import isfinite
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -11,10 +12,13 @@ from xml.etree import ElementTree
 import jsonschema  # type: ignore[import-untyped]
 import pytest
 import yaml
+from hypothesis import example, given
+from hypothesis import strategies as st
 
+from fretc.report.forms.csv_rows import _harmless
 from tests.command import Fretc, write
 from tests.fretc.report import junit_schema
-from tests.fretc.report.cases import evidence, project, requirement, result, violation
+from tests.fretc.report.cases import evidence, moment, project, requirement, result, violation
 from tests.fretc.report.sarif_schema import SARIF
 
 HOSTILE = "=cmd|' /C calc'!A0 <script>alert(1)</script> | * _x_ @team \u202e [a](b)"
@@ -67,11 +71,50 @@ def test_csv_has_a_row_for_each_requirement_and_run(reported: Fretc) -> None:
     assert rows[2]["violations"] == "1"
 
 
+NUMBERS = (
+    "triggers", "answers", "open", "violations", "latency_median_s", "latency_longest_s",
+)  # fmt: skip
+
+
+def test_csv_has_numbers_as_numbers_and_units_in_its_head(fretc: Fretc) -> None:
+    known = project(Path("requirements"))
+    late = {"latencies_s": [0.25, 39.8004, 0.25], "triggers": [moment(1), moment(2), moment(400)]}
+    none: dict[str, list[object]] = {"latencies_s": [], "triggers": [], "open": []}
+    results = [
+        result(known, "satisfied", run="a.mcap", **late, open=[moment(500)]),
+        result(known, "satisfied", run="b.mcap", hashes={"log": "cd" * 32}, **none),
+    ]
+    write("build/evidence.json", json.dumps(evidence(known, *results)))
+    assert fretc("report", "--csv", "out.csv").status == 0
+    text = Path("out.csv").read_text(encoding="utf-8")
+    rows = list(csv.DictReader(io.StringIO(text)))
+    assert [[row[name] for name in NUMBERS] for row in rows] == [
+        ["3", "3", "1", "0", "0.25", "39.8004"],
+        ["0", "0", "0", "0", "", ""],
+    ]
+    # What is no number is in quotes: a reader that turns all others into numbers reads the file.
+    typed = list(csv.reader(io.StringIO(text), quoting=csv.QUOTE_NONNUMERIC))
+    assert typed[1][-6:] == [3.0, 3.0, 1.0, 0.0, 0.25, 39.8004]
+
+
 def test_no_cell_is_a_formula_for_a_spreadsheet(reported: Fretc) -> None:
     rows = list(csv.reader(io.StringIO(form(reported, "csv"))))
     cells = [cell for row in rows for cell in row]
     assert any(cell.startswith("'=cmd") for cell in cells)
     assert not [cell for cell in cells if cell[:1] in ("=", "+", "-", "@")]
+
+
+@given(st.sampled_from(["", *"=+-@\t\r\n", "\uff1d"]), st.text() | st.floats().map(str))
+@example("-", "1")
+@example("-", "1+cmd|' /C calc'!A0")
+def test_of_texts_only_plain_numbers_begin_like_a_formula(start: str, rest: str) -> None:
+    cell = _harmless(start + rest)
+    assert isinstance(cell, str)
+    assert cell in (start + rest, f"'{start}{rest}")
+    if cell[:1] in ("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d"):
+        assert cell[0] in "+-"
+        assert isfinite(float(cell)) or "e" in cell.lower()
+    assert _harmless(-1.5) == -1.5
 
 
 def test_markdown_names_the_worst_first_and_takes_texts_as_text(reported: Fretc) -> None:
