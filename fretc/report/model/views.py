@@ -352,6 +352,7 @@ class Latency:
     is_bounded: bool
     bound: str
     waits: tuple[str, ...]
+    median_s: float
 
 
 @dataclass(frozen=True, slots=True)

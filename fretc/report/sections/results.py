@@ -148,6 +148,7 @@ def _latency(result: Result, rule: Formalized | None) -> Latency | None:
         is_bounded=rule is None or not syntax.is_eventual(rule.sentence.timing),
         bound=_bound(rule),
         waits=_waits(result),
+        median_s=round(median(result.latencies), 9),
     )
 
 

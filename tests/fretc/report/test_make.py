@@ -422,6 +422,7 @@ def test_a_response_without_a_bound_is_shown_with_a_reservation(tmp_path: Path) 
         "bound": "No bound was required: the sentence says `eventually`, so a response satisfies "
         "it however late it comes.",
         "waits": ["1 s to 3.5 s: 2 triggers, the first waited 2.5 s"],
+        "median_s": 2.4,
     }
     line = f"The longest answer of {NAME} took 2.5 s, after the trigger at 1 s, in Run 1."
     assert content["reservations"] == [UNVIOLABLE, line]
