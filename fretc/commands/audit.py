@@ -52,9 +52,8 @@ if TYPE_CHECKING:
 
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
-    "Labels of the runs": ("labels",),
     "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
-    "Many logs": ("jobs", "resume", "engine"),
+    "Many logs": ("labels", "jobs", "resume", "engine"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
         "query",

@@ -164,6 +164,7 @@ class Code(Enum):
     BAD_LABEL = ("F551", "a label of runs is wrong")
     LABEL_CONFLICT = ("F552", "a run has several values of one label")
     NO_LABEL = ("F553", "a run has no value of a label")
+    NOT_COMPARABLE = ("F560", "audits cannot be compared")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")
     BAD_SIGNATURES = ("F556", "signatures cannot be read")
