@@ -85,7 +85,7 @@ def _unanswered(result: Result) -> int:
 
 
 def _latency(late: Sequence[float], runs: Sequence[Result], rule: Formalized | None) -> Histogram:
-    bound = _seconds_allowed(rule)
+    bound = seconds_allowed(rule)
     bins = _bins(late, [0.0, *([bound] if bound is not None else [])], _below)
     label = f"bound {phrases.seconds(bound)}" if bound is not None else ""
     unanswered = sum(map(_unanswered, runs)) if is_answered(rule) else 0
@@ -121,7 +121,7 @@ def _without(unanswered: int, waiting: int) -> str:
     return f" Without an answer: {triggers}." if triggers else ""
 
 
-def _seconds_allowed(rule: Formalized | None) -> float | None:
+def seconds_allowed(rule: Formalized | None) -> float | None:
     """What `within` allows, where a tick is a time."""
     if rule is None or syntax.deadline(rule.sentence.timing) is None:
         return None
