@@ -18,6 +18,7 @@ from fretc.audit.evidence.probabilities import AVERAGE
 from fretc.audit.evidence.schema import Evidence
 from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE, SUPPORTED
+from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, assessments
@@ -130,6 +131,7 @@ def report(
         assumptions=_assumptions(project, evidence),
         commands=commands(project, sections, all_runs, path, proofs, _confidence(evidence)),
         manifest=manifest(project, sections, all_runs, evidence, proofs, book.signers),
+        across=across(assessed, runs_by_key),
     ), (
         *(each for each in checked if each.accepted),
         *stale_evidence(assessed, evidence, path),

@@ -126,7 +126,7 @@ def test_the_page_can_be_read_by_machine_and_ear(tmp_path: Path) -> None:
     assert all(after <= before + 1 for before, after in pairwise(levels))
     assert len(parsed.of("caption")) == len(parsed.of("table"))
     assert {a.get("scope") for a in parsed.of("th")} == {"row", "col"}
-    assert {a.get("role") for a in drawings(parsed)} == {"img"}
+    assert {a.get("role") for a in drawings(parsed)} == {"img", "group"}  # of links
     assert len(parsed.of("desc")) == len(drawings(parsed))
 
 
