@@ -10,7 +10,8 @@ import io
 from collections.abc import Iterator
 
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT
-from fretc.report.model.views import Mark, Report, RequirementView, ResultView
+from fretc.report.model import phrases
+from fretc.report.model.views import Mark, Report, RequirementView, ResultRow
 
 HEAD = (
     "hazards", "requirement", "title", "status", "coverage", "verdict", "currency",
@@ -54,8 +55,7 @@ def _rows(
         yield (*head, "", "", "", "", "", "; ".join(view.reasons), "", "", "")
 
 
-def _run(result: ResultView, hashes: dict[str, str]) -> tuple[str, ...]:
-    late = result.latency
+def _run(result: ResultRow, hashes: dict[str, str]) -> tuple[str, ...]:
     return (
         result.run_file,
         hashes.get(result.run, ""),
@@ -64,9 +64,13 @@ def _run(result: ResultView, hashes: dict[str, str]) -> tuple[str, ...]:
         "; ".join(result.suspicions),
         result.reason,
         str(result.violations_total),
-        late.median if late else "",
-        late.longest if late else "",
+        _seconds(result.latency_median_s),
+        _seconds(result.latency_max_s),
     )
+
+
+def _seconds(latency: float | None) -> str:
+    return "" if latency is None else phrases.seconds(latency)
 
 
 def _currency(mark: Mark) -> str:
