@@ -17,6 +17,7 @@ from fretc.audit.evidence.briefs import Briefs, EvidenceSource
 from fretc.audit.evidence.probabilities import AVERAGE
 from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE, SUPPORTED
+from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, assessments
@@ -134,6 +135,7 @@ def report(
         assumptions=_assumptions(project, all_runs),
         commands=commands(project, sections, all_runs, path, proofs, _confidence(evidence)),
         manifest=manifest(project, sections, all_runs, evidence, proofs, book.signers),
+        across=across(assessed, runs_by_key, evidence, project.declarations),
     )
     diagnostics = (
         *(each for each in checked if each.accepted),
@@ -187,18 +189,18 @@ def _reservations(view: RequirementView, longest: Mapping[str, ResultView]) -> S
     """Sentences that qualify a requirement that is shown."""
     if not view.mark.shows:
         return ()
-    average = [f"{view.id} is supported: {AVERAGE}."] if view.mark.word == SUPPORTED else []
-    unbounded = "" if view.limit else f"{view.id} sets no bound on its response. "
+    average = [f"{view.name} is supported: {AVERAGE}."] if view.mark.word == SUPPORTED else []
+    unbounded = "" if view.limit else f"{view.name} sets no bound on its response. "
     result = longest.get(view.anchor)
     late = (
         [
-            f"{unbounded}The longest answer of {view.id} took {result.latency.longest}, "
+            f"{unbounded}The longest answer of {view.name} took {result.latency.longest}, "
             f"in {result.run_label}."
         ]
         if result and result.latency
         else []
     )
-    draft = [f"{view.id} is a draft."] if view.status == "draft" else []
+    draft = [f"{view.name} is a draft."] if view.status == "draft" else []
     return (*average, *([view.limit] if view.limit else []), *late, *draft)
 
 

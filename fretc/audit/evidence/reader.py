@@ -15,7 +15,7 @@ from compiler.files.checked_json import MisshapenError, parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
+from fretc.audit.evidence.briefs import Brief, RunFacts, Stretches, brief, run_facts, stretches
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Bindings, Document, Requirement, Result, Threshold
 from fretc.audit.measurements.confidence_intervals import REFUTED
@@ -93,6 +93,11 @@ class Evidence:
         """The thresholds of each result of a requirement, with its place, in order."""
         for place, result in self._of(requirement):
             yield place, result.thresholds
+
+    def stretches(self, requirement: str) -> Iterator[tuple[int, Stretches]]:
+        """The stretches of each result of a requirement, with its place, in order."""
+        for place, result in self._of(requirement):
+            yield place, stretches(result)
 
     def _of(self, requirement: str) -> Iterator[tuple[int, Result]]:
         return ((place, self.results[place]) for place in self._places.get(requirement, ()))

@@ -223,7 +223,7 @@ def _row(result: ResultRow, has_details: bool) -> RunRow:
         mark=result.mark,
         triggers=result.triggers,
         violations=result.violations_total,
-        longest="\N{EN DASH}" if longest is None else phrases.seconds(longest),
+        longest="\N{EN DASH}" if longest is None else phrases.duration(longest),
         longest_s=-1.0 if longest is None else longest,
         reason=f"{result.reason}{why}",
         has_details=has_details,
