@@ -31,6 +31,7 @@ from fretc.commands.review import diff, lock
 from fretc.commands.sbom import sbom
 from fretc.commands.sign import sign
 from fretc.commands.simulate import simulate
+from fretc.commands.trends import trends
 from fretc.commands.verify import verify
 from fretc.commands.verify_evidence import verify_evidence
 from fretc.terminal.completion import answered
@@ -80,6 +81,7 @@ for _command in (
     check,
     audit,
     report,
+    trends,
     lock,
     diff,
     verify,

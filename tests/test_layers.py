@@ -24,8 +24,8 @@ fretc.audit.outputs  fretc.audit.bindings
 fretc.verification.engines  fretc.verification.monitor  fretc.verification.interceptor
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.report.traceability  fretc.attestation  fretc.reproduction
-fretc.report.model  fretc.report.pictures  fretc.report.sections  fretc.report.page
-fretc.report.forms  fretc.report
+fretc.report.model  fretc.report.pictures  fretc.report.sections  fretc.report.across
+fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
 simulation.world  simulation.nodes  simulation
 fretc.terminal  fretc.campaigns  fretc.api  fretc.commands  fretc
 """.split()
@@ -50,6 +50,7 @@ DOORS = {
         "compiler/agents/gwendolen_errors.py",
         "fretish/bindings/expressions.py",
         "fretish/parser.py",
+        "fretish/reading/grammars.py",
     },
     "spot": {"compiler/logic/spot.py"},
     "buddy": {"compiler/logic/spot.py"},
@@ -81,6 +82,7 @@ DOORS = {
         "fretc/audit/outputs/annotations.py",
         "fretc/logs/mcap/container.py",
         "fretc/logs/mcap/index.py",
+        "fretc/logs/mcap/metadata.py",
         "fretc/logs/mcap/projection.py",
         "fretc/logs/mcap/walk.py",
         "fretc/logs/messages/decoding.py",

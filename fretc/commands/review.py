@@ -156,13 +156,12 @@ def diff(
         raise SystemExit(BAD)
     base = _read(baseline or _beside(requirements), must=True)
     assert base is not None
-    changes = differences(standings(chains, base), base)
+    changes = differences(standings(chains, base), base, project)
     if form == "json":
         click.echo(to_json([as_record(difference) for difference in changes]))
     else:
-        for difference in changes:
-            for line in text(difference):
-                click.echo(visible(line))
+        for line in text(changes):
+            click.echo(visible(line))
     raise SystemExit(SHOWN if all(d.state == "same" for d in changes) else NOT_SHOWN)
 
 

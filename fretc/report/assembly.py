@@ -18,6 +18,7 @@ from fretc.audit.evidence.probabilities import AVERAGE
 from fretc.audit.evidence.schema import Evidence
 from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE, SUPPORTED
+from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, assessments
@@ -130,6 +131,7 @@ def report(
         assumptions=_assumptions(project, evidence),
         commands=commands(project, sections, all_runs, path, proofs, _confidence(evidence)),
         manifest=manifest(project, sections, all_runs, evidence, proofs, book.signers),
+        across=across(assessed, runs_by_key),
     ), (
         *(each for each in checked if each.accepted),
         *stale_evidence(assessed, evidence, path),
@@ -165,19 +167,19 @@ def _reservations(view: RequirementView) -> Sequence[str]:
     """Sentences that qualify a requirement that is shown."""
     if not view.mark.shows:
         return ()
-    average = [f"{view.id} is supported: {AVERAGE}."] if view.mark.word == SUPPORTED else []
+    average = [f"{view.name} is supported: {AVERAGE}."] if view.mark.word == SUPPORTED else []
     waits = [
         (result.latency.longest_s, result.latency.longest, result.run_label)
         for result in view.results
         if result.latency and not result.latency.is_bounded
         if result.latency.at_once < result.latency.answered
     ]
-    unbounded = "" if view.limit else f"{view.id} sets no bound on its response. "
+    unbounded = "" if view.limit else f"{view.name} sets no bound on its response. "
     late = [
-        f"{unbounded}The longest answer of {view.id} took {longest}, in {run}."
+        f"{unbounded}The longest answer of {view.name} took {longest}, in {run}."
         for _, longest, run in sorted(waits, key=lambda wait: -wait[0])[:1]
     ]
-    draft = [f"{view.id} is a draft."] if view.status == "draft" else []
+    draft = [f"{view.name} is a draft."] if view.status == "draft" else []
     return (*average, *([view.limit] if view.limit else []), *late, *draft)
 
 

@@ -114,7 +114,7 @@ FORMS: Mapping[str, Form] = {
         Form("html", "One file, offline.", _html, default="build/report.html"),
         Form("json", "What the report says, for programs.", _json),
         Form("csv", "A row for each requirement and run, for a spreadsheet.", _csv),
-        Form("junit", "A test case for each requirement, for a CI server.", _junit),
+        Form("junit", "A test case for each requirement and run, for a CI server.", _junit),
         Form("sarif", "What the runs show, for code scanning.", _sarif),
         Form("markdown", "A comment for a pull request.", _markdown),
         Form(

@@ -13,7 +13,7 @@ _GROUPS = 3
 
 
 def violated(assessments: Sequence[Assessment]) -> str:
-    """Violated requirements: `R1 is violated; R2 was violated, and the sentence has changed`.
+    """Violated requirements: `No contact (R14) is violated`.
 
     Args:
         assessments: at least one, all of them violated or refuted.
@@ -54,8 +54,8 @@ def _groups(stale: Sequence[Assessment]) -> list[str]:
 
 
 def _named(assessments: Sequence[Assessment], one: str = "is", many: str = "are") -> str:
-    ids = [assessment.id for assessment in assessments]
-    return f"{phrases.some(ids)} {one if len(ids) == 1 else many}"
+    names = [assessment.requirement.name for assessment in assessments]
+    return f"{phrases.some(names)} {one if len(names) == 1 else many}"
 
 
 def _words(assessments: Sequence[Assessment]) -> Sequence[str]:

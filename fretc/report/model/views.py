@@ -9,48 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from fretc.audit.evidence.verdicts import SUSPECT, VERDICTS, severity, shows
+from fretc.report.model.across import Across
+from fretc.report.model.marks import Mark as Mark
+from fretc.report.model.marks import sign_mark as sign_mark
+from fretc.report.model.marks import verdict_mark as verdict_mark
 from fretc.report.model.pictures import Histogram, Timeline
 from fretc.report.traceability.artefacts import Product
-from fretish.diagnostics.signs import Sign
+from fretish.documents import named
 
 SCHEMA = "fretc-report-1"
-
-
-@dataclass(frozen=True, slots=True)
-class Mark:
-    """A verdict for a reader: a word, a sign, and `kind`, the class of its colour."""
-
-    word: str
-    glyph: str
-    kind: str
-    suspect: bool = False
-    """The currency of the verdict: whether something that it rests on has changed."""
-
-    @property
-    def text(self) -> str:
-        """`violated`, or `violated, suspect`: verdict and currency."""
-        return f"{self.word}, {SUSPECT}" if self.suspect else self.word
-
-    @property
-    def shows(self) -> bool:
-        """Whether the verdict shows its requirement; a suspect verdict never does."""
-        return shows(self.word, suspect=self.suspect)
-
-    @property
-    def severity(self) -> tuple[int, bool]:
-        """The key that sorts verdicts, the worst first."""
-        return severity(self.word, suspect=self.suspect)
-
-
-def verdict_mark(word: str, *, suspect: bool = False) -> Mark:
-    """The mark of a verdict."""
-    return sign_mark(word, VERDICTS[word].sign, suspect=suspect)
-
-
-def sign_mark(word: str, sign: Sign, *, suspect: bool = False) -> Mark:
-    """The mark of any other outcome."""
-    return Mark(word, sign.glyph, sign.kind, suspect)
 
 
 @dataclass(frozen=True, slots=True)
@@ -351,6 +318,7 @@ class Latency:
     is_bounded: bool
     bound: str
     waits: tuple[str, ...]
+    median_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -476,6 +444,11 @@ class RequirementView:
     review: ReviewView
     waiver: WaiverView | None
 
+    @property
+    def name(self) -> str:
+        """As a person calls it: `No contact (R14)`."""
+        return named(self.id, self.title)
+
 
 def worst_first(views: Iterable[RequirementView]) -> list[RequirementView]:
     """The views sorted by verdict; views of one verdict keep their order."""
@@ -538,3 +511,5 @@ class Report:
     assumptions: tuple[str, ...]
     commands: tuple[Command, ...]
     manifest: tuple[Hash, ...]
+    across: Across
+    """All runs in one picture each: their violations, and what they used of the bounds."""

@@ -12,14 +12,17 @@ from compiler.explanation.diagram import diagram
 from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
+from fretc.report.across.layout import drawn_lanes, drawn_uses
 from fretc.report.model.phrases import visible
-from fretc.report.model.views import Report
+from fretc.report.model.views import Report, worst_first
 from fretc.report.page.selection import Selection, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram
 from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
 
+_ACROSS = 16
+"""The most requirements with pictures of all their runs; `--json` has those of all."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
@@ -43,6 +46,7 @@ def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
         scales=_visible(_scales(page)),
         diagrams=_diagrams(page, rules),
         argument=_visible(_argument(report)),
+        across=_visible(_across(report, choice, _links(choice))),
         script_hash=_hash(script),
         style_hash=_hash(style),
     )
@@ -65,6 +69,34 @@ def _pictures(choice: Selection) -> dict[str, list[dict[str, Any]]]:
         ]
         for section in choice.by_anchor.values()
         for result in (*section.details, *section.folded)
+    }
+
+
+def _links(choice: Selection) -> frozenset[str]:
+    """Where links of pictures can lead: to what the page has of pictures, results and runs."""
+    return choice.anchors | {
+        f"picture-{result.anchor}.{number}"
+        for section in choice.by_anchor.values()
+        for result in (*section.details, *section.folded)
+        for number, _ in enumerate(result.timelines, 1)
+    }
+
+
+def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[str, Any]:
+    """The pictures of all runs; those of some requirements, the worst first, by their anchors."""
+    everything = report.across.lanes
+    worst = {view.anchor for view in worst_first(report.requirements)[:_ACROSS]}
+    return {
+        "lanes": everything and asdict(drawn_lanes(everything, "across-lanes", links)),
+        "requirements": {
+            each.anchor: {
+                "lanes": each.lanes
+                and asdict(drawn_lanes(each.lanes, f"lanes-{each.anchor}", links)),
+                "uses": each.uses and asdict(drawn_uses(each.uses, f"uses-{each.anchor}", links)),
+            }
+            for each in report.across.requirements
+            if each.anchor in worst and not choice.by_anchor[each.anchor].is_short
+        },
     }
 
 

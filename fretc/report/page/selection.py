@@ -204,7 +204,7 @@ def _row(result: ResultView, has_details: bool) -> RunRow:
         mark=result.mark,
         triggers=result.triggers,
         violations=result.violations_total,
-        longest=phrases.seconds(latency.longest_s) if latency else "\N{EN DASH}",
+        longest=phrases.duration(latency.longest_s) if latency else "\N{EN DASH}",
         longest_s=latency.longest_s if latency else -1.0,
         reason=f"{result.reason}{why}",
         has_details=has_details,

@@ -85,9 +85,9 @@ def _unanswered(result: Result) -> int:
 
 
 def _latency(late: Sequence[float], runs: Sequence[Result], rule: Formalized | None) -> Histogram:
-    bound = _seconds_allowed(rule)
+    bound = seconds_allowed(rule)
     bins = _bins(late, [0.0, *([bound] if bound is not None else [])], _below)
-    label = f"bound {phrases.seconds(bound)}" if bound is not None else ""
+    label = f"bound {phrases.exact_duration(bound)}" if bound is not None else ""
     unanswered = sum(map(_unanswered, runs)) if is_answered(rule) else 0
     waiting = sum(len(result.open) for result in runs)
     beyond = sum(value > bound + 1e-9 for value in late) if bound is not None else 0
@@ -96,7 +96,7 @@ def _latency(late: Sequence[float], runs: Sequence[Result], rule: Formalized | N
     )
     text = (
         f"{phrases.times(len(late), 'answer')} in {phrases.times(len(runs), 'run')}: "
-        f"{_late(late)}; "
+        f"{_late(late, bound)}; "
         f"{limit}. {_in_words(bins, 's', _UP_TO)}{_without(unanswered, waiting)}"
     )
     return Histogram(
@@ -121,7 +121,7 @@ def _without(unanswered: int, waiting: int) -> str:
     return f" Without an answer: {triggers}." if triggers else ""
 
 
-def _seconds_allowed(rule: Formalized | None) -> float | None:
+def seconds_allowed(rule: Formalized | None) -> float | None:
     """What `within` allows, where a tick is a time."""
     if rule is None or syntax.deadline(rule.sentence.timing) is None:
         return None
@@ -133,9 +133,10 @@ def _seconds_allowed(rule: Formalized | None) -> float | None:
 # Margin ----------------------------------------------------------------------------------------
 
 
-def _late(late: Sequence[float]) -> str:
+def _late(late: Sequence[float], bound: float | None) -> str:
     """The median and the longest; of one answer only how long it took."""
-    middle, longest = phrases.seconds(median(late)), phrases.seconds(max(late))
+    bounds = [] if bound is None else [bound]
+    middle, longest = (phrases.duration(each, bounds) for each in (median(late), max(late)))
     return longest if len(late) == 1 else f"median {middle}, longest {longest}"
 
 

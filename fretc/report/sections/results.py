@@ -27,6 +27,7 @@ from fretc.report.model.views import (
     ThresholdView,
     ViolationView,
 )
+from fretc.report.pictures.histograms import seconds_allowed
 from fretc.report.pictures.timeline import answered, timelines
 from fretc.report.sections.runs import Run, RunKey, run_key
 from fretish import syntax
@@ -130,6 +131,7 @@ def _latency(result: Result, rule: Formalized | None) -> Latency | None:
     if not result.latencies:
         return None
     longest = max(result.latencies)
+    bounds = [bound for bound in [seconds_allowed(rule)] if bound is not None]
     at_once = sum(latency <= 0 for latency in result.latencies)
     answers = phrases.times(len(result.latencies), "trigger")
     unknown = len(result.uncertain - {moment.tick for moment in result.open})
@@ -140,12 +142,13 @@ def _latency(result: Result, rule: Formalized | None) -> Latency | None:
         at_once=at_once,
         answers=f"{answers}, {phrases.whole(at_once)} of them at the same tick"
         f"{_perhaps(unknown, len(result.latencies))}",
-        median=phrases.seconds(median(result.latencies)),
-        longest=f"{phrases.seconds(longest)}{after}",
+        median=phrases.duration(median(result.latencies), bounds),
+        longest=f"{phrases.duration(longest, bounds)}{after}",
         longest_s=longest,
         is_bounded=rule is None or not syntax.is_eventual(rule.sentence.timing),
         bound=_bound(rule),
         waits=_waits(result),
+        median_s=round(median(result.latencies), 9),
     )
 
 
@@ -171,11 +174,15 @@ def _waits(result: Result) -> tuple[str, ...]:
     ends = groupby(sorted(waiting, key=lambda wait: wait[::-1]), key=lambda wait: wait[1])
     waits = [(end, [start for start, _ in group]) for end, group in ends]
     waits.sort(key=lambda wait: (wait[1][0] - wait[0], wait[0]))
-    return tuple(
+    return tuple(_wait(starts, end) for end, starts in waits[:_WAITS])
+
+
+def _wait(starts: Sequence[float], end: float) -> str:
+    first = "the first " if len(starts) > 1 else ""
+    return (
         f"{phrases.seconds(starts[0])} to {phrases.seconds(end)}: "
         f"{phrases.times(len(starts), 'trigger')}, "
-        f"{'the first ' if len(starts) > 1 else ''}waited {phrases.seconds(end - starts[0])}"
-        for end, starts in waits[:_WAITS]
+        f"{first}waited {phrases.duration(round(end - starts[0], 9))}"
     )
 
 

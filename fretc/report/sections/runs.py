@@ -167,7 +167,7 @@ def _topic(name: str, topic: Topic, project: Project) -> TopicView:
 def _longest_gap(topic: Topic) -> str:
     if topic.longest_gap_ns is None or topic.count < 2:
         return _NONE
-    return phrases.seconds(topic.longest_gap_ns / 1e9)
+    return phrases.duration(topic.longest_gap_ns / 1e9)
 
 
 def _rate(topic: Topic) -> str:

@@ -19,13 +19,16 @@ from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.acceptances import TOPIC, Acceptance
 from compiler.project.folder import Project
-from fretc.audit.bases import bases
+from compiler.project.hazards import Hazard
+from fretc.audit.bases import audited_topics, bases
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.reader import by_requirement
 from fretc.audit.evidence.schema import Evidence, Result
+from fretc.report.traceability import texts
 from fretc.report.traceability.artefacts import Product, shared_products
 from fretc.report.traceability.artefacts import products as products_of
+from fretc.report.traceability.texts import Texts
 from fretish.bindings.canonical import described, digest
 from fretish.documents import Requirement
 
@@ -34,7 +37,7 @@ TEXT, WORDS, FORMULAS, ARTEFACT = "text", "words", "formulas", "artefact"
 ACCEPTANCE = "acceptance"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
 PROOF, SHARED = "proof", "shared"
-_ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
+ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
 """Kinds of nodes that may come after a review without a change of what was reviewed."""
 _READINGS = ("ltl", "json")
 """Targets that only print formulas, which have fingerprints of their own."""
@@ -74,6 +77,8 @@ class Chain:
     """Each verdict and proof that is out of date → the nodes that differ."""
     unhashed: tuple[str, ...] = ()
     """Runs without a SHA-256 of their log."""
+    texts: Texts | None = None
+    """What the fingerprints are taken of, as it is written."""
 
 
 def chains(
@@ -119,17 +124,24 @@ class _Common:
     """Those in the header of each requirement, by its `id()`; None → those in the settings."""
     shared: Mapping[str, str]
     """Name of each shared product → its SHA-256; empty where there is no proof."""
+    topics: frozenset[str]
+    """Those that an audit of the project reads."""
+    written: Mapping[str, Any]
+    """The tables of the bindings."""
 
 
 def _common(project: Project, evidence: Evidence | None, proofs: Sequence[Proof]) -> _Common:
     shared = shared_products(project.declarations) if proofs else ()
+    topics = audited_topics(project)
     return _Common(
         project,
         {requirement.id: requirement for requirement in project.requirements},
-        bases(project),
+        bases(project, topics),
         evidence.fretc if evidence else "",
         _by_requirement(project.acceptances),
         {product.file: product.sha256 for product in shared},
+        topics,
+        texts.written_tables(project.declarations),
     )
 
 
@@ -151,6 +163,10 @@ class _ChainBuilder:
         self._prints: dict[Node, str] = {}
         self._links: dict[Link, None] = {}
         self._outdated: dict[Node, tuple[Node, ...]] = {}
+        self._accept: dict[str, str] = {}
+        self._hazards: dict[str, texts.HazardTexts] = {}
+        self._elsewhere: dict[str, texts.Elsewhere] = {}
+        self._above: dict[str, texts.Above] = {}
 
     def build(
         self,
@@ -183,12 +199,44 @@ class _ChainBuilder:
             {result.run: result.verdict for result in results},
             self._outdated,
             tuple(result.run for result in results if not _print_of_log(result)),
+            self._texts(requirement, rule, proofs, audited=bool(results)),
+        )
+
+    def _texts(
+        self,
+        requirement: Requirement,
+        rule: Formalized | None,
+        proofs: Sequence[Proof],
+        *,
+        audited: bool,
+    ) -> Texts:
+        """What the fingerprints are taken of."""
+        declarations, written = self._project.declarations, self._common.written
+        return Texts(
+            sentence=requirement.wording.text,
+            canonical=texts.canonical_text(rule),
+            title=requirement.title,
+            text=requirement.text,
+            rationale=requirement.rationale,
+            status=requirement.status,
+            parents=requirement.parents,
+            verify=requirement.verify,
+            params=dict(requirement.params),
+            accept=self._accept,
+            hazards=self._hazards,
+            elsewhere=self._elsewhere,
+            above=self._above,
+            bindings=texts.bindings(rule, declarations, written) if declarations else None,
+            topics=tuple(sorted(self._common.topics)) if audited and declarations else None,
+            proofs={_claim(each): (each.result, *each.assumptions) for each in proofs}
+            if rule
+            else {},
+            fretc=__version__ if rule else "",
         )
 
     def _add_status_and_plans(self, requirement: Requirement) -> None:
         """Add status and planned methods: a review depends on them, and no verdict does."""
-        retired = requirement.status == "retired"
-        self._add(in_force(self._id), digest("retired") if retired else IN_FORCE)
+        self._add(in_force(self._id), print_of_status(requirement.status))
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
 
@@ -198,24 +246,27 @@ class _ChainBuilder:
         known = self._common.acceptances
         for each in (*known.get(id(requirement), ()), *known.get(None, ())):
             if each.about != TOPIC or each.subject in ("", *topics):
-                self._add(Node(ACCEPTANCE, each.name), digest(_normal(each.reason)))
+                self._accept[each.name] = each.reason
+                self._add(Node(ACCEPTANCE, each.name), print_of_words(each.reason))
 
     def _add_parents(self, requirement: Requirement, visited: set[str]) -> None:
         """Add the hazards and requirements that it traces to, all the way up."""
         text = Node(TEXT, requirement.id)
-        self._add(text, digest(_wording(requirement)))
+        self._add(text, print_of_header(texts.above(requirement)))
         for parent in requirement.parents:
             hazard, above = self._project.hazards.get(parent), self._common.texts.get(parent)
             if hazard is not None:
-                self._add(Node(HAZARD, parent), digest(_normal(asdict(hazard))))
+                self._hazards[parent] = texts.hazard_texts(hazard)
+                self._add(Node(HAZARD, parent), print_of_hazard(hazard))
                 self._link(Node(HAZARD, parent), text)
             elif parent in self._project.parents:
                 outside = self._project.parents[parent]
-                content = _normal([outside.title, outside.text])
-                self._add(Node(PARENT, parent), digest(content))
+                self._elsewhere[parent] = texts.elsewhere(outside)
+                self._add(Node(PARENT, parent), print_of_words([outside.title, outside.text]))
                 self._link(Node(PARENT, parent), text)
             elif above is not None and parent not in visited:
                 visited.add(parent)
+                self._above[parent] = texts.above(above)
                 self._add_parents(above, visited)
                 self._link(Node(TEXT, parent), text)
 
@@ -281,8 +332,8 @@ class _ChainBuilder:
         """Add each proof, with the texts and assumptions that it is about."""
         now = self._common.shared
         for proof in proofs:
-            node = Node(PROOF, f"{rule.id} {proof.layer}: {proof.claim}")
-            self._add(node, digest([proof.result, sorted(proof.assumptions)]))
+            node = Node(PROOF, f"{rule.id} {_claim(proof)}")
+            self._add(node, print_of_proof(proof.result, proof.assumptions))
             self._link(Node(FORMULAS, rule.id), node)
             for name, fingerprint in proof.artefacts.items():
                 source = Node(SHARED, name) if name in now else Node(ARTEFACT, name)
@@ -306,6 +357,11 @@ class _ChainBuilder:
 _VERSION = "version"
 IN_FORCE = digest("in force")
 """The fingerprint of the status of a requirement that is claimed, as a draft or approved."""
+
+
+def print_of_status(status: str) -> str:
+    """Whether it is claimed: a draft and an approved one are."""
+    return digest("retired") if status == "retired" else IN_FORCE
 
 
 def in_force(requirement: str) -> Node:
@@ -332,10 +388,29 @@ def _topics(rule: Formalized | None, project: Project) -> set[str]:
     return {signal.path.topic for signal in read.signals.values()}
 
 
-def _wording(requirement: Requirement) -> dict[str, Any]:
+def print_of_header(header: texts.Above) -> str:
     """The texts and parents of a requirement, without status and planned methods."""
-    texts = (requirement.title, requirement.text, requirement.rationale)
-    return {"texts": _normal(list(texts)), "parents": sorted(requirement.parents)}
+    words = [header.title, header.text, header.rationale]
+    return digest({"texts": _normal(words), "parents": sorted(header.parents)})
+
+
+def print_of_hazard(hazard: Hazard) -> str:
+    """Its texts and its id."""
+    return print_of_words(asdict(hazard))
+
+
+def print_of_words(value: Any) -> str:
+    """Texts, whatever their white space."""
+    return digest(_normal(value))
+
+
+def print_of_proof(result: str, assumptions: Iterable[str]) -> str:
+    """What was proved of a claim, and under which assumptions."""
+    return digest([result, sorted(assumptions)])
+
+
+def _claim(proof: Proof) -> str:
+    return f"{proof.layer}: {proof.claim}"
 
 
 def _judgement(result: Result) -> dict[str, Any]:
@@ -396,9 +471,9 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
         locked: the fingerprints in the review.
     """
     changed_nodes = {
-        node for node in changed(chain.prints, locked) if node in locked or node.kind not in _ADDED
+        node for node in changed(chain.prints, locked) if node in locked or node.kind not in ADDED
     }
-    upstream = _upstream(chain)
+    upstream = upstream_of(chain)
     causes_of: dict[Link, set[Node]] = {}
     for link in chain.links:
         above = {link.source, *upstream[link.source]}
@@ -424,7 +499,7 @@ def _first(causes: set[Node], upstream: Mapping[Node, frozenset[Node]]) -> Itera
     return (cause for cause in causes if not upstream.get(cause, frozenset()) & causes)
 
 
-def _upstream(chain: Chain) -> dict[Node, frozenset[Node]]:
+def upstream_of(chain: Chain) -> dict[Node, frozenset[Node]]:
     """Each node → all nodes that lead to it."""
     above: dict[Node, set[Node]] = {node: set() for link in chain.links for node in _ends(link)}
     above |= {node: set() for node in chain.prints if node not in above}

@@ -1,16 +1,23 @@
-"""The difference between a project and its lock: nodes, links, verdicts."""
+"""The difference between a project and its lock: changes, verdicts, contradictions, links."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from fretc.report.traceability.chain import Node, Suspect
-from fretc.report.traceability.lock import Lock, Standing
+from compiler.project.folder import Project
+from compiler.project.stated_numbers import drifted
+from fretc.audit.evidence.verdicts import VERDICTS, severity
+from fretc.report.traceability.chain import VERDICT, Suspect
+from fretc.report.traceability.changes import Change
+from fretc.report.traceability.lock import Lock, Review, Standing
+from fretish.diagnostics.diagnostic import Code
+from monitors import kernel
 
 _MOST = 6
-"""The most suspect links of one requirement that `text` prints."""
+"""The most runs of one requirement with other verdicts that `text` names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,46 +27,142 @@ class Difference:
     requirement: str
     state: str
     """`same`, `changed`, `new` (only now) or `gone` (only in the baseline)."""
-    changes: tuple[tuple[Node, str], ...]
-    """Each thing with `changed`, `new` or `gone`."""
-    suspects: tuple[Suspect, ...]
+    review: Review | None
+    changes: tuple[Change, ...]
+    contradictions: tuple[str, ...]
+    """What beside the changes has stayed as it was, and says something else."""
     verdicts: tuple[tuple[str, str, str], ...]
-    """Run, verdict in the baseline, verdict now; an empty word: none."""
+    """Run, verdict in the baseline, verdict now; an empty word: none. The worst now comes first."""
+    outdated: int
+    """Verdicts on what it was before a change."""
+    suspects: tuple[Suspect, ...]
+    has_other_texts: bool = False
+    """The texts of the review are not those of its fingerprints."""
+
+    @property
+    def consequences(self) -> tuple[str, ...]:
+        """`14 verdicts became violated`, `2 became satisfied`, and so on."""
+        both = [(then, now) for _, then, now in self.verdicts if then and now]
+        new = [now for _, then, now in self.verdicts if not then]
+        gone = [then for _, then, now in self.verdicts if not now]
+        became = _counts([now for _, now in both])
+        lines = [f"{_verdicts(count)} became {word}" for word, count in became]
+        lines += [f"{_runs(len(new))} new: {_in_words(new)}"] if new and self.state != "new" else []
+        lines += [f"{_runs(len(gone))} gone: {_in_words(gone)}"] if gone else []
+        if self.outdated:
+            verb = "is" if self.outdated == 1 else "are"
+            lines.append(f"{_verdicts(self.outdated)} {verb} of before the change: audit again")
+        return tuple(lines)
+
+    @property
+    def suspicion(self) -> str:
+        """`5 links are suspect`; empty where there is none."""
+        count = len(self.suspects)
+        return f"{count} {'link is' if count == 1 else 'links are'} suspect" if count else ""
 
 
-def differences(standings: tuple[Standing, ...], baseline: Lock) -> tuple[Difference, ...]:
+def _counts(words: Sequence[str]) -> list[tuple[str, int]]:
+    return sorted(Counter(words).items(), key=lambda pair: _severity(pair[0]))
+
+
+def _severity(word: str) -> tuple[int, bool]:
+    """By which words are sorted, the worst first; a lock may have one that is no verdict."""
+    return severity(word) if word in VERDICTS else (len(VERDICTS), False)
+
+
+def _in_words(words: Sequence[str]) -> str:
+    return ", ".join(f"{count} {word}" for word, count in _counts(words))
+
+
+def _verdicts(count: int) -> str:
+    return f"{count} verdict{'' if count == 1 else 's'}"
+
+
+def _runs(count: int) -> str:
+    return "1 run is" if count == 1 else f"{count} runs are"
+
+
+def differences(
+    standings: tuple[Standing, ...], baseline: Lock, project: Project | None = None
+) -> tuple[Difference, ...]:
     """Every requirement of either state, in the order of the project, then those that are gone."""
-    now = tuple(difference(standing) for standing in standings)
+    now = tuple(difference(standing, project) for standing in standings)
     ids = {standing.chain.requirement for standing in standings}
     return (*now, *(_removed(id, baseline) for id in baseline.reviews if id not in ids))
 
 
-def difference(standing: Standing) -> Difference:
-    """One requirement, against its review; `new` where it has none."""
+def difference(standing: Standing, project: Project | None = None) -> Difference:
+    """One requirement, against its review; `new` where it has none.
+
+    Args:
+        standing: the requirement beside its review.
+        project: whose numbers are compared with its words; None: no contradiction is looked for.
+    """
     chain, review = standing.chain, standing.review
     if review is None:
-        verdicts = _verdicts({}, chain.verdicts)
-        return Difference(chain.requirement, "new", (), (), verdicts)
-    changes = tuple((node, _how(node, chain.prints, review.prints)) for node in standing.changes)
-    verdicts = _verdicts(review.verdicts, chain.verdicts)
-    state = "changed" if changes or verdicts or standing.suspects else "same"
-    return Difference(chain.requirement, state, changes, standing.suspects, verdicts)
+        verdicts = _different({}, chain.verdicts)
+        return Difference(chain.requirement, "new", None, (), (), verdicts, 0, ())
+    verdicts = _different(review.verdicts, chain.verdicts)
+    is_changed = bool(standing.changes or verdicts or standing.suspects)
+    return Difference(
+        chain.requirement,
+        "changed" if is_changed else "same",
+        review,
+        standing.changes,
+        contradictions(standing, project) if standing.changes and project else (),
+        verdicts,
+        sum(node.kind == VERDICT for node in chain.outdated) if standing.changes else 0,
+        standing.suspects,
+        standing.has_other_texts,
+    )
 
 
 def _removed(id: str, baseline: Lock) -> Difference:
-    return Difference(id, "gone", (), (), _verdicts(baseline.reviews[id].verdicts, {}))
+    review = baseline.reviews[id]
+    return Difference(id, "gone", review, (), (), _different(review.verdicts, {}), 0, ())
 
 
-def _how(node: Node, now: Mapping[Node, str], before: Mapping[Node, str]) -> str:
-    return "changed" if node in now and node in before else "new" if node in now else "gone"
-
-
-def _verdicts(
+def _different(
     before: Mapping[str, str], now: Mapping[str, str]
 ) -> tuple[tuple[str, str, str], ...]:
-    runs = sorted({*before, *now})
-    pairs = [(run, before.get(run, ""), now.get(run, "")) for run in runs]
-    return tuple(pair for pair in pairs if pair[1] != pair[2])
+    pairs = [(run, before.get(run, ""), now.get(run, "")) for run in {*before, *now}]
+    return tuple(sorted((pair for pair in pairs if pair[1] != pair[2]), key=_worst_first))
+
+
+def _worst_first(pair: tuple[str, str, str]) -> tuple[bool, tuple[int, bool], str]:
+    """Runs that are gone come after what is known now."""
+    return not pair[2], _severity(pair[2] or pair[1]), pair[0]
+
+
+# Contradictions --------------------------------------------------------------------------------
+
+
+def contradictions(standing: Standing, project: Project) -> tuple[str, ...]:
+    """The words of a requirement that state another number than what is judged.
+
+    One that has stood there since the review `still` does.
+    """
+    id = standing.chain.requirement
+    then = standing.review.texts if standing.review else None
+    now = standing.chain.texts
+    found = []
+    for rule in project.rules:
+        if rule.id != id or rule.declarations is None:
+            continue
+        for field, words in drifted(rule, rule.declarations):
+            same = then is not None and getattr(then, field) == getattr(now, field, None)
+            verb = "state" if field == "params" else "say"
+            still = "still " if same else ""
+            subject = "`params`" if field == "params" else f"its {field}"
+            found.append(f"{subject} {still}{verb}{'' if field == 'params' else 's'} {words}")
+    for failed in project.failed:
+        if failed.requirement.id == id:
+            drifts = (each for each in failed.diagnostics if each.code is Code.NUMBER_DRIFT)
+            found.extend(each.message for each in drifts)
+    return tuple(dict.fromkeys(found))
+
+
+# Plain values and text -------------------------------------------------------------------------
 
 
 def as_record(difference: Difference) -> dict[str, Any]:
@@ -67,7 +170,11 @@ def as_record(difference: Difference) -> dict[str, Any]:
     return {
         "requirement": difference.requirement,
         "state": difference.state,
-        "changes": [{"thing": str(node), "how": how} for node, how in difference.changes],
+        "reviewed": difference.review.date if difference.review else None,
+        "changes": [change.as_record for change in difference.changes],
+        "contradictions": list(difference.contradictions),
+        "consequences": list(difference.consequences),
+        "texts_of_the_review": "not its own" if difference.has_other_texts else "its own",
         "suspect_links": [
             {
                 "from": str(suspect.link.source),
@@ -83,21 +190,50 @@ def as_record(difference: Difference) -> dict[str, Any]:
     }
 
 
-def text(difference: Difference) -> Iterator[str]:
-    """Lines for a person."""
-    states = {"same": "as it was reviewed", "new": "not reviewed", "gone": "not there any more"}
-    yield f"{difference.requirement}  {states.get(difference.state, difference.state)}"
-    for node, how in difference.changes:
-        yield f"  {how:<8} {node.kind} {node.name}"
-    for run, before, now in difference.verdicts:
-        yield f"  verdict  {run}: {before or 'none'} → {now or 'none'}"
-    links = difference.suspects
-    for suspect in links[:_MOST]:
-        causes = ", ".join(f"{cause.kind} {cause.name}" for cause in suspect.causes)
-        yield f"  suspect  {_named(suspect.link.source)} → {_named(suspect.link.target)} ({causes})"
-    if len(links) > _MOST:
-        yield f"  suspect  and {len(links) - _MOST} more links"
+def text(differences: Sequence[Difference]) -> Iterator[str]:
+    """Lines for a person: each requirement that is not as it was, then how many are."""
+    same = [each.requirement for each in differences if each.state == "same"]
+    for each in differences:
+        if each.state != "same":
+            yield from _text(each)
+    if same:
+        named = ", ".join(same[:_MOST])
+        more = f" and {len(same) - _MOST} more" if len(same) > _MOST else ""
+        yield f"{named}{more}  as {'it was' if len(same) == 1 else 'they were'} reviewed"
 
 
-def _named(node: Node) -> str:
-    return f"{node.kind} {node.name}"
+def _text(difference: Difference) -> Iterator[str]:
+    review = difference.review
+    by = f"the review of {review.date} by {review.reviewer}" if review else ""
+    states = {
+        "changed": f"changed since {by}",
+        "new": "not reviewed",
+        "gone": f"not there any more; there is {by}",
+    }
+    yield f"{difference.requirement}  {states[difference.state]}"
+    for change in difference.changes:
+        yield f"  {change.text}"
+    if difference.has_other_texts:
+        yield f"  {OTHER_TEXTS}"
+    for line in difference.contradictions:
+        yield f"  {line}"
+    yield from _verdict_lines(difference)
+    if difference.suspicion:
+        yield f"  {difference.suspicion}"
+
+
+OTHER_TEXTS = "the texts in its review are not those of its fingerprints, and do not count"
+
+
+def _verdict_lines(difference: Difference) -> Iterator[str]:
+    """What became of verdicts; then runs by name, no violated one without being counted."""
+    for line in difference.consequences:
+        yield f"  {line}"
+    for run, before, now in difference.verdicts[:_MOST]:
+        yield f"    {run}: {before or 'none'} → {now or 'none'}"
+    left = difference.verdicts[_MOST:]
+    if left:
+        violated = sum(now == kernel.VIOLATED for _, _, now in left)
+        yield f"    and {_runs(len(left)).removesuffix(' is').removesuffix(' are')} more" + (
+            f", {violated} of them violated" if violated else ""
+        )

@@ -144,7 +144,10 @@ def test_a_waiver_covers_a_verdict_and_does_not_hide_it(tmp_path: Path) -> None:
     assert view["waiver"]["covers"]["word"] == "violated"
     assert view["waiver"]["by"] == "A. Meier, safety engineer, 2026-01-01"
     assert report["waivers"] == [view["waiver"]]
-    assert "R1 (violated) is waived, and not shown." in report["overall"]["sentences"]
+    assert (
+        "1 requirement is waived, and not shown: Stop when something is near (R1): violated."
+        in report["overall"]["sentences"]
+    )
     assert report["overall"]["mark"]["word"] == "nothing shown"
 
 
