@@ -16,6 +16,7 @@ from compiler.files.records import (
     UNSET,
     Count,
     Distance,
+    Duration,
     Meta,
     Name,
     Number,
@@ -168,9 +169,9 @@ class Topic(Record, frozen=True):
     count: Count
     first_ns: Annotated[Whole | None, about("null: the topic has no message")]
     last_ns: Whole | None
-    longest_gap_ns: Count | None
+    longest_gap_ns: Duration | None
     median_period_ns: Annotated[
-        Count | None, about("from a message to the next; null: there are less than two")
+        Duration | None, about("from a message to the next; null: there are less than two")
     ]
     out_of_order: Annotated[Count | None, about("messages that are earlier than one before them")]
     equal_stamps: Annotated[Count | None, about("messages with the time of another")]
