@@ -142,6 +142,8 @@ class Code(Enum):
     CHANGED_SINCE_REVIEW = ("F512", "something has changed since it was reviewed")
     BAD_WAIVER = ("F513", "the waivers cannot be read")
     EXPIRED_WAIVER = ("F514", "a waiver has expired")
+    BAD_STORE = ("F516", "a store of evidence cannot be read")
+    TWO_EVIDENCES = ("F517", "evidence is in a file and in a store")
     BAD_SETTINGS = ("F520", "the settings of the project cannot be read")
     BAD_PARENTS = ("F521", "a document with parents of requirements cannot be read")
     UNCOVERED_HAZARD = ("F522", "no requirement is there for a hazard")
