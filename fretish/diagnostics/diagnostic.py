@@ -162,6 +162,7 @@ class Code(Enum):
     BAD_ACCEPTANCE = ("F549", "an acceptance can answer no warning")
     IDLE_ACCEPTANCE = ("F550", "an acceptance answers no warning that is there")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
+    OTHER_TEXTS = ("F546", "the texts of a review are not those of its fingerprints")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")
     BAD_SIGNATURES = ("F556", "signatures cannot be read")
     BROKEN_SIGNATURE = ("F557", "a signature does not verify")

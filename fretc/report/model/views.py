@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from fretc.audit.evidence.verdicts import SUSPECT, VERDICTS, severity, shows
+from fretc.report.model.changes import Change, ChangeGroup
 from fretc.report.model.pictures import Histogram, Timeline
 from fretc.report.traceability.artefacts import Product
 from fretish.diagnostics.signs import Sign
@@ -196,19 +197,6 @@ class Orphans:
     requirements: tuple[str, ...]
     parents: tuple[str, ...]
     evidence: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """The changes of a requirement since its review; `verdicts` are run, then and now."""
-
-    requirement: str
-    anchor: str
-    state: str
-    lines: tuple[str, ...]
-    links: Listing
-    """The links that the changes make suspect."""
-    verdicts: tuple[tuple[str, str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -538,3 +526,5 @@ class Report:
     assumptions: tuple[str, ...]
     commands: tuple[Command, ...]
     manifest: tuple[Hash, ...]
+    change_groups: tuple[ChangeGroup, ...]
+    """Each change since the review once, with the requirements that it touches."""

@@ -20,6 +20,8 @@ from fretc.report.pictures.plots import drawing, histogram
 from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
 
+_MOST_CHANGES = 100
+"""The most changes, and the most runs with another verdict, in one list."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
@@ -43,6 +45,8 @@ def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
         scales=_visible(_scales(page)),
         diagrams=_diagrams(page, rules),
         argument=_visible(_argument(report)),
+        changes=_visible({each.anchor: asdict(each) for each in page.changes if each.anchor}),
+        most=_MOST_CHANGES,
         script_hash=_hash(script),
         style_hash=_hash(style),
     )
