@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from fretc.report.model.across import Across
+from fretc.report.model.changes import Change, ChangeGroup
 from fretc.report.model.marks import Mark as Mark
 from fretc.report.model.marks import sign_mark as sign_mark
 from fretc.report.model.marks import verdict_mark as verdict_mark
@@ -169,19 +170,6 @@ class Orphans:
     requirements: tuple[str, ...]
     parents: tuple[str, ...]
     evidence: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """The changes of a requirement since its review; `verdicts` are run, then and now."""
-
-    requirement: str
-    anchor: str
-    state: str
-    lines: tuple[str, ...]
-    links: Listing
-    """The links that the changes make suspect."""
-    verdicts: tuple[tuple[str, str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -548,3 +536,5 @@ class Report:
     manifest: tuple[Hash, ...]
     across: Across
     """All runs in one picture each: their violations, and what they used of the bounds."""
+    change_groups: tuple[ChangeGroup, ...]
+    """Each change since the review once, with the requirements that it touches."""

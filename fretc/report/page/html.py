@@ -24,6 +24,8 @@ from fretc.report.sections.details import Details
 
 _ACROSS = 16
 """The most requirements with pictures of all their runs; `--json` has those of all."""
+_MOST_CHANGES = 100
+"""The most changes, and the most runs with another verdict, in one list."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
@@ -49,6 +51,8 @@ def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> 
         diagrams=_diagrams(page, rules),
         argument=_visible(_argument(report)),
         across=_visible(_across(report, choice, _links(choice))),
+        changes=_visible({each.anchor: asdict(each) for each in page.changes if each.anchor}),
+        most=_MOST_CHANGES,
         script_hash=_hash(script),
         style_hash=_hash(style),
     )
