@@ -326,6 +326,8 @@ class ViolationView:
     deadline: str
     missing: str
     values: tuple[tuple[str, str], ...]
+    causes: tuple[str, ...]
+    """Why the response was not as demanded; empty where the evidence leaves it open."""
 
 
 @dataclass(frozen=True, slots=True)
