@@ -20,6 +20,7 @@ from lark.visitors import Transformer_NonRecursive
 from fretish import expressions as e
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.source import Span
+from fretish.reading.memory import remembered
 from fretish.units import (
     DIMENSIONLESS,
     Dimension,
@@ -309,6 +310,7 @@ MOST_TICKS_BACK = 16
 _PRE = frozenset({"pre", "preReal", "preInt"})
 
 
+@remembered
 def ticks_back(expression: e.Expression) -> int:
     """By how many ticks its value looks back: calls of `pre` within each other.
 

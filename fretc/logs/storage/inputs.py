@@ -22,6 +22,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, cast
 from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
@@ -39,6 +40,8 @@ _SMALL_BLOCK = 2**14
 _SLOW = "the server sends next to nothing"
 _HASHED = 2**18
 """Bytes of one step of hashing."""
+_SMALL = 2**20
+"""Bytes of a file that is read at once, and hashed by no thread of its own."""
 _URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
 _SECRET = re.compile(r"sig|token|key|cred|secret|passw|auth", re.IGNORECASE)
 
@@ -116,6 +119,7 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         return storage_diagnostics.not_a_file(Source(path, "").span())
     stream = stack.enter_context(Path(path).open("rb"))  # noqa: SIM115
     before = os.fstat(stream.fileno())
+    content = stream.read(before.st_size) if before.st_size <= _SMALL else None
 
     def changed() -> bool:
         try:
@@ -124,9 +128,20 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
             return True
         return any(_mark(now) != _mark(before) for now in statuses)
 
-    digest = _Digest(stream.fileno(), before.st_size)
     same = f"/proc/self/fd/{stream.fileno()}"
+    if content is not None:
+        held = cast("io.BufferedReader", io.BytesIO(content))
+        return Input(held, len(content), partial(_sha256, content), _nothing, path, same, changed)
+    digest = _Digest(stream.fileno(), before.st_size)
     return Input(stream, before.st_size, digest.result, digest.begin, path, same, changed)
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _nothing() -> None:
+    """What need not be done."""
 
 
 def _mark(status: os.stat_result) -> tuple[int, ...]:
