@@ -32,6 +32,12 @@ def part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Di
     return log_diagnostics.changed(place) if log.changed() else found
 
 
+def only_grows(log: Input) -> bool:
+    """Whether the file is of a kind that is written from its beginning to its end."""
+    log.stream.seek(0)
+    return log.stream.read(len(MAGIC)) == MAGIC
+
+
 def _read(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
     log.stream.seek(0)
     start = log.stream.read(_BEGINNING)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial, reduce
 from operator import add
 
@@ -169,7 +169,14 @@ def _opened(
         with opened(path, whole=integrity is not Integrity.INDEX) as log:
             if isinstance(log, Diagnostic):
                 return log
-            return _tried(partial(_file, path, log), place, new, integrity, vocabulary)
+            found = _tried(partial(_file, path, log), place, new, integrity, vocabulary)
+            if not (isinstance(found, Diagnostic) and log.changed() and containers.only_grows(log)):
+                return found
+            held = log.beginning()
+            if held is None:
+                return found
+            begun = partial(_beginning, path, held)
+            return _tried(begun, place, new, integrity, vocabulary)
     except OSError as error:
         return storage_diagnostics.unreadable(error, place)
 
@@ -203,6 +210,16 @@ def _file(
         return log_diagnostics.empty(place)
     damages, notes = [(place, *one) for one in part.damages], (*part.notes, *_alone(path, place))
     return _Run(part.sha256, part.size, (part.span,), damages, notes, part.checked)
+
+
+def _beginning(
+    path: str, log: Input, sink: Sink, integrity: Integrity, place: Span
+) -> _Run | Diagnostic:
+    """What there was of a file that has become longer since."""
+    run = _file(path, log, sink, integrity, place)
+    if isinstance(run, Diagnostic):
+        return run
+    return replace(run, notes=(*run.notes, storage_diagnostics.grown(log.size, place)))
 
 
 def _alone(path: str, place: Span) -> Iterator[Diagnostic]:

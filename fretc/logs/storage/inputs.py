@@ -62,6 +62,9 @@ class Input:
     """Another path of the open file itself, even if its name now belongs to another file."""
     changed: Callable[[], bool] = lambda: False
     """Whether it was written to since it was opened, or its name now belongs to another file."""
+    beginning: Callable[[], Input | None] = lambda: None
+    """A copy of the bytes that were there when it was opened, where it has only become longer since;
+    None where that is not so."""
 
 
 def is_url(path: str) -> bool:
@@ -128,12 +131,23 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
             return True
         return any(_mark(now) != _mark(before) for now in statuses)
 
-    same = f"/proc/self/fd/{stream.fileno()}"
+    def beginning() -> Input | None:
+        now = os.stat(path)
+        if _mark(now)[:2] != _mark(before)[:2] or now.st_size <= size:
+            return None
+        stream.seek(0)
+        copy = _copy(_copied(stream, stack, size))
+        return copy if (copy.size, copy.sha256()) == (size, sha256()) else None
+
+    file, size = stream.fileno(), before.st_size
+    same = f"/proc/self/fd/{file}"
     if content is not None:
         held = cast("io.BufferedReader", io.BytesIO(content))
-        return Input(held, len(content), partial(_sha256, content), _nothing, path, same, changed)
-    digest = _Digest(stream.fileno(), before.st_size)
-    return Input(stream, before.st_size, digest.result, digest.begin, path, same, changed)
+        size, sha256 = len(content), partial(_sha256, content)
+        return Input(held, size, sha256, _nothing, path, same, changed, beginning)
+    digest = _Digest(file, size)
+    sha256 = digest.result
+    return Input(stream, size, sha256, digest.begin, path, same, changed, beginning)
 
 
 def _sha256(content: bytes) -> str:
@@ -216,11 +230,13 @@ def _stdin(stack: ExitStack) -> Input | Diagnostic:
     return _copy(_copied(stdin, stack))
 
 
-def _copied(source: BinaryIO, stack: ExitStack) -> io.BufferedReader:
-    """The rest of a stream, in a file without a name."""
+def _copied(source: BinaryIO, stack: ExitStack, most: int | None = None) -> io.BufferedReader:
+    """The rest of a stream, or at most so many bytes of it, in a file without a name."""
     copy = stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
-    while block := source.read(web.BLOCK):
+    left = sys.maxsize if most is None else most
+    while block := source.read(min(web.BLOCK, left)):
         copy.write(block)
+        left -= len(block)
         grant(len(block))
     copy.flush()
     copy.seek(0)
