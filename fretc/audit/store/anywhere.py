@@ -6,7 +6,7 @@ import os
 from dataclasses import replace
 
 from fretc.audit.evidence import reader as files
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.reader import Evidence
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
 

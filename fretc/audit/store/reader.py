@@ -22,7 +22,8 @@ from compiler.files.text_files import sha256
 from fretc.audit.evidence.briefs import Brief, RunFacts, brief
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
-from fretc.audit.evidence.schema import Bindings, Document, Evidence, Requirement, Result, Threshold
+from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.schema import Bindings, Document, Requirement, Result, Threshold
 from fretc.audit.store import files, tables
 from fretc.audit.store.manifest import FILE, Manifest, Part, place
 from fretc.audit.store.tables import EVENTS, EXACT, RESULTS, RUNS, TABLES, TableName

@@ -8,7 +8,8 @@ from pathlib import Path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.schema import Evidence, Result
+from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.schema import Result
 from fretc.trends.changes import RED, Change
 from fretc.trends.comparisons import Finding
 from fretc.trends.sources import InMemory
