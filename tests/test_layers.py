@@ -89,7 +89,7 @@ DOORS = {
         "fretc/logs/storage/bags.py",
         "simulation/recording.py",
     },
-    "fsspec": {"fretc/logs/storage/inputs.py"},
+    "fsspec": {"fretc/logs/storage/inputs.py", "fretc/logs/storage/listings.py"},
     "aiohttp": {"fretc/logs/storage/web.py"},
     "z3": {"fretc/verification/loop/bounds.py"},
     "reqif": {"compiler/project/parents.py", "fretc/report/forms/reqif.py"},

@@ -102,6 +102,9 @@ def report(
         *(line for view in sections for line in _reservations(view, longest)),
         *(line for assessment in assessed for line in reviews.reservations(assessment)),
     )
+    changes = reviews.changes(assessed, project)
+    groups = reviews.change_groups(assessed, changes)
+    changed = tuple(reviews.change_sentences(changes, groups))
     signature_list = signatures(book, assessed, evidence, proofs)
     checked = _checks(project, assessed, lock, evidence)
     whole = Report(
@@ -112,7 +115,7 @@ def report(
         evidence=phrases.place(path) if evidence else "",
         audited_by=evidence.fretc if evidence else "",
         overall=overall(
-            project, assessed, sections, all_runs, reservations, withdrawn, signature_list
+            project, assessed, sections, all_runs, reservations, withdrawn, signature_list, changed
         ),
         runs=run_summaries(all_runs, project),
         claims=_claims(assessed, len(all_runs)),
@@ -127,7 +130,7 @@ def report(
         matrix=matrix(project, assessed, sections, runs_by_key),
         orphans=orphans(project, assessed, briefs),
         reviewed=reviews.summary(assessed, book),
-        changes=(*reviews.changes(assessed), *reviews.withdrawals(withdrawn)),
+        changes=(*changes, *reviews.withdrawals(withdrawn)),
         withdrawn=tuple(Withdrawal(one.review.requirement, one.text) for one in withdrawn),
         waivers=tuple(view.waiver for view in sections if view.waiver),
         signatures=signature_list,
@@ -136,6 +139,7 @@ def report(
         commands=commands(project, sections, all_runs, path, proofs, _confidence(evidence)),
         manifest=manifest(project, sections, all_runs, evidence, proofs, book.signers),
         across=across(assessed, runs_by_key, evidence, project.declarations),
+        change_groups=groups,
     )
     diagnostics = (
         *(each for each in checked if each.accepted),

@@ -168,6 +168,7 @@ class Code(Enum):
     NO_LABEL = ("F553", "a run has no value of a label")
     NOT_COMPARABLE = ("F560", "audits cannot be compared")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
+    OTHER_TEXTS = ("F546", "the texts of a review are not those of its fingerprints")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")
     BAD_SIGNATURES = ("F556", "signatures cannot be read")
     BROKEN_SIGNATURE = ("F557", "a signature does not verify")

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from fretc.report.model.across import Across
+from fretc.report.model.changes import Change, ChangeGroup
 from fretc.report.model.marks import Mark as Mark
 from fretc.report.model.marks import sign_mark as sign_mark
 from fretc.report.model.marks import verdict_mark as verdict_mark
@@ -172,19 +173,6 @@ class Orphans:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
-    """The changes of a requirement since its review; `verdicts` are run, then and now."""
-
-    requirement: str
-    anchor: str
-    state: str
-    lines: tuple[str, ...]
-    links: Listing
-    """The links that the changes make suspect."""
-    verdicts: tuple[tuple[str, str, str], ...]
-
-
-@dataclass(frozen=True, slots=True)
 class Withdrawal:
     """A requirement that was reviewed and is claimed no more; `text` says how."""
 
@@ -338,6 +326,8 @@ class ViolationView:
     deadline: str
     missing: str
     values: tuple[tuple[str, str], ...]
+    causes: tuple[str, ...]
+    """Why the response was not as demanded; empty where the evidence leaves it open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -548,3 +538,5 @@ class Report:
     manifest: tuple[Hash, ...]
     across: Across
     """All runs in one picture each: their violations, and what they used of the bounds."""
+    change_groups: tuple[ChangeGroup, ...]
+    """Each change since the review once, with the requirements that it touches."""
