@@ -19,13 +19,13 @@ from compiler.files.checked_json import plain as parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, RunFacts, brief
+from fretc.audit.evidence.briefs import Brief, RunFacts, Stretches, brief, stretches
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import Bindings, Document, Evidence, Requirement, Result, Threshold
 from fretc.audit.store import files, tables
 from fretc.audit.store.manifest import FILE, Manifest, Part, place
-from fretc.audit.store.tables import EVENTS, EXACT, RESULTS, RUNS, TABLES, TableName
+from fretc.audit.store.tables import EVENTS, EXACT, RESULTS, RUNS, SAMPLES, TABLES, TableName
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
@@ -144,6 +144,18 @@ class Store:
                 yield at, decoded(value, list[Threshold])
             except MisshapenError as error:
                 raise self._error(f"cannot be read: {error}") from None
+
+    def stretches(self, requirement: str) -> Iterator[tuple[int, Stretches]]:
+        """The stretches of each result of a requirement, with its place, in order."""
+        for start, part in self._parts():
+            of_part = {name: self._table(part, name) for name in TABLES if name != SAMPLES}
+            of_part[SAMPLES] = tables.schema(SAMPLES).empty_table()
+            rows = tables.rows_of(of_part[RESULTS], requirement)
+            try:
+                found = tables.results(of_part, rows)
+            except MisshapenError as error:
+                raise self._error(f"cannot be read: {error}") from None
+            yield from ((start + row, stretches(one)) for row, one in zip(rows, found, strict=True))
 
     def _nested(self, requirement: str, column: str) -> Iterator[tuple[int, Any]]:
         for start, part in self._parts():

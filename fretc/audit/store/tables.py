@@ -22,6 +22,7 @@ from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
 from fretc.audit.evidence.reader import VERDICTS
 from fretc.audit.evidence.samples import Surroundings
 from fretc.audit.evidence.schema import Hashes, Health, Result, Violation
+from fretc.audit.evidence.writer import unjudged
 from fretc.audit.store.columns import (
     Column,
     Field,
@@ -98,13 +99,13 @@ def _below(path: str, fields: Iterable[Field]) -> Iterator[Field]:
     return (each.below(path) for each in fields)
 
 
-_SHARED = ("health", "labels")
+_SHARED = ("health", "labels", "course")
 """What all results of a run share."""
 _FLAT = "run requirement verdict finite reason clock ticks start_ns end_ns trials".split()
 _ELSEWHERE = ("violations", "hashes", *_SHARED, *_FLAT)
 _MAIN = tuple(each for each in fields_of(Result) if each.name in _FLAT)
 _NESTED = tuple(each for each in fields_of(Result) if each.name not in _ELSEWHERE)
-_LABELS = tuple(each for each in fields_of(Result) if each.name in _SHARED[1:])
+_OF_RUN = tuple(each for each in fields_of(Result) if each.name in _SHARED[1:])
 _COUNTS = tuple(e for e in fields_of(Brief) if e.name not in (*_FLAT, "fingerprints"))
 _FACTS = tuple(e for e in fields_of(RunFacts) if e.name not in _SHARED)
 _HASHES = fields_of(Hashes)
@@ -140,7 +141,7 @@ TABLES: Mapping[TableName, tuple[Field, ...]] = {
         *_below("facts", _FACTS),
         *_of("results", Whole()),
         *_below("facts.health", _HEALTH),
-        *_below("first", _LABELS),
+        *_below("first", _OF_RUN),
         *_of(EXACT, Text()),
     ),
 }
@@ -227,7 +228,7 @@ def runs_of(results: Iterable[Result]) -> list[list[Result]]:
 
 
 def _shared(result: Result) -> tuple[object, ...]:
-    return (result.run, result.health, *(getattr(result, each.attribute) for each in _LABELS))
+    return (result.run, result.health, *(getattr(result, each.attribute) for each in _OF_RUN))
 
 
 # Read --------------------------------------------------------------------------------------------
@@ -267,7 +268,6 @@ def _held(tables: Tables, rows: Sequence[int]) -> list[Result]:
     main, events = (_taken(tables[name], rows) for name in (RESULTS, EVENTS))
     run_rows = main["run_row"].to_pylist()
     shared = _of_runs(tables[RUNS], run_rows)
-    blank = plain(_BLANK)
     parts = zip(
         _objects(main, _MAIN),
         _objects(events, _NESTED),
@@ -276,15 +276,18 @@ def _held(tables: Tables, rows: Sequence[int]) -> list[Result]:
         strict=True,
     )
     records = [
-        {**flat, **nested, "hashes": hashes, "violations": violations, "health": blank}
+        {**flat, **nested, "hashes": hashes, "violations": violations, "health": _NO_HEALTH}
         for flat, nested, hashes, violations in parts
     ]
     found = decoded(records, list[Result])
     return [replace(each, **shared[n]) for each, n in zip(found, run_rows, strict=True)]
 
 
-_BLANK = Health(False, None, None, (), (), {})
+_NO_HEALTH = plain(Health(False, None, None, (), (), {}))
 """In place of that of the run, which is made once and not with each result."""
+_NO_HASHES = dict.fromkeys(("sentence", "bindings", "monitor"), "0" * 64)
+_BLANK = plain(unjudged("", "none", "", _NO_HASHES, decoded(_NO_HEALTH, Health)))
+"""A result of which only what the run has counts."""
 
 
 def _objects(table: pa.Table, fields: Sequence[Field], suffix: str = "") -> list[Any]:
@@ -309,10 +312,12 @@ def _of_runs(table: pa.Table, run_rows: Sequence[int]) -> dict[int, dict[str, An
     if len(known) != len({*run_rows}):
         raise MisshapenError("`results` names a row that `runs` does not have")
     some = _taken(table, known)
-    health = decoded(_objects(some, _HEALTH), list[Health])
-    labels = _objects(some, _LABELS)
+    parts = zip(_objects(some, _HEALTH), _objects(some, _OF_RUN), strict=True)
+    found = decoded([{**_BLANK, "health": health, **more} for health, more in parts], list[Result])
+    names = ("health", *(each.attribute for each in _OF_RUN))
     return {
-        row: {"health": one, **more} for row, one, more in zip(known, health, labels, strict=True)
+        row: {name: getattr(one, name) for name in names}
+        for row, one in zip(known, found, strict=True)
     }
 
 
@@ -385,12 +390,10 @@ def facts(table: pa.Table) -> list[RunFacts]:
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
     some = _taken(table, held)
-    rows = zip(
-        _objects(some, _FACTS), _objects(some, _HEALTH), _objects(some, _LABELS), strict=True
-    )
-    found = decoded(
-        [{**row, "health": health, **labels} for row, health, labels in rows], list[RunFacts]
-    )
+    labels = tuple(each for each in _OF_RUN if each.name == "labels")
+    rows = zip(*(_objects(some, fields) for fields in (_FACTS, _HEALTH, labels)), strict=True)
+    records = [{**facts, "health": health, **labels} for facts, health, labels in rows]
+    found = decoded(records, list[RunFacts])
     whole = dict(zip(held, found, strict=True))
     return [
         whole[n] if text is None else decoded(parsed(text), RunFacts)
@@ -412,7 +415,7 @@ def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]
     main, events = tables[RESULTS], tables[EVENTS]
     if main.num_rows != events.num_rows:
         raise MisshapenError("`events` does not have the rows of `results`")
-    rows = pc.equal(main["requirement"], requirement).to_numpy(zero_copy_only=False).nonzero()[0]
+    rows = rows_of(main, requirement)
     (column,) = (each.column for each in _NESTED if each.name == name)
     values = column.values(_whole(_taken(events, rows), name))
     texts = _taken(main[EXACT], rows).to_pylist()
@@ -420,4 +423,11 @@ def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]
         value if text is None else plain(decoded(parsed(text), Result))[name]
         for value, text in zip(values, texts, strict=True)
     ]
-    return [*zip(rows.tolist(), whole, strict=True)]
+    return [*zip(rows, whole, strict=True)]
+
+
+def rows_of(results: pa.Table, requirement: str) -> list[int]:
+    """The rows of a requirement in `results`."""
+    is_there = pc.equal(results["requirement"], requirement).to_numpy(zero_copy_only=False)
+    rows: list[int] = np.flatnonzero(is_there).tolist()
+    return rows
