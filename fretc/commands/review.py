@@ -169,6 +169,7 @@ def _chains(
     requirements: str, evidence: str, verification: str | None
 ) -> tuple[Project, Sequence[Chain]]:
     from compiler.project.folder import whole
+    from fretc.audit.evidence.briefs import Briefs
     from fretc.audit.evidence.reader import read
     from fretc.report.traceability.chain import chains
     from fretc.verification.reader import known
@@ -186,7 +187,7 @@ def _chains(
             raise SystemExit(BAD)
         return project, chains(project, None, proofs=proofs)
     say_briefly(project.diagnostics, requirements)
-    return project, chains(project, audited, proofs=proofs)
+    return project, chains(project, Briefs.of(audited), proofs=proofs)
 
 
 def _chosen(

@@ -12,10 +12,15 @@ from dataclasses import dataclass, field
 from statistics import median
 from typing import Protocol
 
+from compiler.files.records import UnsetType
+from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Bindings, Hashes, Health, Requirement, Result, Threshold
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
+
+Recorded = tuple[str | UnsetType, ...]
+"""SHA-256 of each of `fretc.audit.evidence.basis.KINDS`; unset where it was not known then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +54,21 @@ class Brief:
     """SHA-256 of the verdict and the ticks that it is about, as a review accepts it."""
     trials: Trials | None
     """Of a requirement with a probability, where the log could be read."""
+
+    @property
+    def log(self) -> str:
+        """SHA-256 of the log; empty where it was not read whole, or could not be read."""
+        return self.fingerprints.log or ""
+
+    @property
+    def rests_on(self) -> Recorded:
+        """The fingerprints of what the verdict rests on beside the log."""
+        return tuple(getattr(self.fingerprints, kind) for kind in KINDS)
+
+    @property
+    def content(self) -> str:
+        """What tells its log from another one: copies have the same."""
+        return self.log or self.fingerprints.log_summary or self.run
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +154,23 @@ class EvidenceSource(Protocol):
 
     def stretches(self, requirement: str) -> Iterator[tuple[int, Stretches]]:
         """The stretches of each result of a requirement, with its place, in order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Briefs:
+    """All results of some evidence in brief, and the evidence, which has the rest."""
+
+    source: EvidenceSource
+    by_requirement: Mapping[str, Sequence[tuple[int, Brief]]]
+    """Those of each requirement that has any, with their places, in order."""
+
+    @classmethod
+    def of(cls, source: EvidenceSource) -> Briefs:
+        """Those of the evidence, read once."""
+        groups: dict[str, list[tuple[int, Brief]]] = {}
+        for placed in source.briefs():
+            groups.setdefault(placed[1].requirement, []).append(placed)
+        return cls(source, groups)
 
 
 def brief(result: Result) -> Brief:

@@ -8,8 +8,7 @@ intervals include both ends.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Annotated, Any, Final, Literal
 
@@ -31,7 +30,6 @@ from compiler.files.records import (
     field,
     json_schema,
     plain,
-    replace,
 )
 from fretc.audit.evidence.probabilities import Estimated, Outcomes
 from fretc.audit.evidence.samples import (
@@ -499,34 +497,6 @@ class Document(Record, frozen=True):
             "none"
         ),
     ] = UNSET
-
-
-@dataclass(frozen=True, slots=True)
-class Evidence:
-    """A file of evidence, with its name and its SHA-256."""
-
-    file: str
-    sha256: str
-    document: Document
-
-    @property
-    def fretc(self) -> str:
-        """Version of the tool that audited."""
-        return self.document.fretc
-
-    @property
-    def results(self) -> tuple[Result, ...]:
-        """Each of a run and a requirement."""
-        return self.document.results
-
-    @property
-    def probabilities(self) -> tuple[Estimated, ...]:
-        """What all runs say of each requirement with a probability."""
-        return self.document.probabilities or ()
-
-    def with_results(self, results: Sequence[Result]) -> Evidence:
-        """The same with other results."""
-        return Evidence(self.file, self.sha256, replace(self.document, results=tuple(results)))
 
 
 def schema() -> dict[str, Any]:

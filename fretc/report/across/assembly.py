@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from math import inf
 
-from fretc.audit.evidence.briefs import stretches
-from fretc.audit.evidence.schema import Result
-from fretc.report.across.lanes import RunStretches, lanes, with_marks
+from fretc.audit.evidence.briefs import EvidenceSource, stretches
+from fretc.audit.evidence.declared_units import thresholds_in_declared_units
+from fretc.audit.evidence.schema import Result, Threshold
+from fretc.report.across.lanes import RunStretches, Words, lanes, with_marks
 from fretc.report.across.uses import RunNumbers, uses
 from fretc.report.model import phrases
 from fretc.report.model.across import Across, Lanes, RequirementAcross
@@ -17,6 +18,7 @@ from fretc.report.model.pictures import WordLane
 from fretc.report.pictures.histograms import is_answered, seconds_allowed
 from fretc.report.sections.results import result_anchor
 from fretc.report.sections.runs import Run, RunKey, run_key
+from fretish.bindings.declarations import Declarations
 
 _ROWS, _MARKS = 180, 1_500
 """Of the pictures of all requirements together."""
@@ -24,34 +26,49 @@ _FEWEST, _MOST = 3, 20
 """Rows of one picture of a requirement."""
 
 
-def across(assessed: Sequence[Assessment], runs: Mapping[RunKey, Run]) -> Across:
+def across(
+    assessed: Sequence[Assessment],
+    runs: Mapping[RunKey, Run],
+    evidence: EvidenceSource | None,
+    declared: Declarations | None,
+) -> Across:
     """The lanes of all requirements, and the lanes and the used bounds of each.
 
     Args:
         assessed: all requirements; those that are retired have no lanes.
         runs: all runs.
+        evidence: None where no run was audited.
+        declared: the bindings.
     """
     active = [each for each in assessed if each.requirement.status != "retired"]
     most = max(_FEWEST, min(_MOST, _ROWS // max(1, len(active))))
     marks = max(10 * _FEWEST, _MARKS // max(1, len(active)))
-    of_each = {each.anchor: _results(each, runs) for each in active}
+    of_each = {each.anchor: _results(each, runs, evidence) for each in active}
     of_all = _in_order([one for of in of_each.values() for one in of], runs)
-    words = _words(active, runs)
+    words = _words(active, runs, evidence)
     return Across(
         lanes("All requirements, a lane for each run", of_all, words=words),
-        tuple(_requirement(each, of_each[each.anchor], most, marks) for each in active),
+        tuple(
+            _requirement(each, of_each[each.anchor], most, marks, evidence, declared)
+            for each in active
+        ),
     )
 
 
 def _requirement(
-    assessment: Assessment, of: Sequence[RunStretches], most: int, marks: int
+    assessment: Assessment,
+    of: Sequence[RunStretches],
+    most: int,
+    marks: int,
+    evidence: EvidenceSource | None,
+    declared: Declarations | None,
 ) -> RequirementAcross:
     several = len(of) > 1
     return RequirementAcross(
         assessment.id,
         assessment.anchor,
         _lanes(assessment.id, of, most, marks) if several else None,
-        uses(*_numbers(assessment, of, most)) if several else None,
+        uses(*_numbers(assessment, of, most, evidence, declared)) if several else None,
     )
 
 
@@ -74,7 +91,10 @@ def _in_order(
 # What the evidence says ------------------------------------------------------------------------
 
 
-def _results(assessment: Assessment, runs: Mapping[RunKey, Run]) -> list[RunStretches]:
+def _results(
+    assessment: Assessment, runs: Mapping[RunKey, Run], evidence: EvidenceSource | None
+) -> list[RunStretches]:
+    stretches_at = dict(evidence.stretches(assessment.id)) if evidence else {}
     return [
         RunStretches(
             run.anchor,
@@ -84,7 +104,7 @@ def _results(assessment: Assessment, runs: Mapping[RunKey, Run]) -> list[RunStre
             assessment.anchor,
             result_anchor(assessment, number),
             audit.mark,
-            stretches(audit.result),
+            stretches_at[audit.place],
         )
         for number, audit in enumerate(assessment.reviewed_audits, 1)
         for run in [runs[run_key(audit.result)]]
@@ -92,11 +112,19 @@ def _results(assessment: Assessment, runs: Mapping[RunKey, Run]) -> list[RunStre
 
 
 def _numbers(
-    assessment: Assessment, of: Sequence[RunStretches], most: int
+    assessment: Assessment,
+    of: Sequence[RunStretches],
+    most: int,
+    evidence: EvidenceSource | None,
+    declared: Declarations | None,
 ) -> tuple[list[RunNumbers], float | None, int, int]:
     """The runs whose results are current, the time allowed, the rows, and the other runs."""
+    thresholds_at = {
+        place: thresholds_in_declared_units(thresholds, declared)
+        for place, thresholds in (evidence.thresholds(assessment.id) if evidence else ())
+    }
     current = [
-        _run_numbers(audit, each)
+        _run_numbers(audit, each, thresholds_at[audit.place])
         for audit, each in zip(assessment.audits, of, strict=True)
         if not audit.is_stale
     ]
@@ -104,7 +132,9 @@ def _numbers(
     return current, allowed, most, len(of) - len(current)
 
 
-def _run_numbers(audit: SingleAudit, each: RunStretches) -> RunNumbers:
+def _run_numbers(
+    audit: SingleAudit, each: RunStretches, thresholds: tuple[Threshold, ...]
+) -> RunNumbers:
     result = audit.result
     return RunNumbers(
         each.label,
@@ -112,10 +142,10 @@ def _run_numbers(audit: SingleAudit, each: RunStretches) -> RunNumbers:
         each.section,
         each.anchor,
         audit.mark,
-        len(result.triggers),
-        len(result.violations),
-        max(result.latencies, default=None),
-        result.thresholds,
+        result.triggers,
+        result.violations,
+        result.latency_max_s,
+        thresholds,
     )
 
 
@@ -123,16 +153,21 @@ def _run_numbers(audit: SingleAudit, each: RunStretches) -> RunNumbers:
 
 
 def _words(
-    assessed: Sequence[Assessment], runs: Mapping[RunKey, Run]
-) -> dict[str, tuple[WordLane, ...]]:
-    """The signals of words of each run, by its anchor."""
-    lanes: dict[str, tuple[WordLane, ...]] = {}
+    assessed: Sequence[Assessment], runs: Mapping[RunKey, Run], evidence: EvidenceSource | None
+) -> Words:
+    """Reads the signals of words of some runs, by their anchors: each from one of its results."""
+    places: dict[str, int] = {}
     for assessment in assessed:
         for audit in assessment.audits:
-            anchor = runs[run_key(audit.result)].anchor
-            if anchor not in lanes and audit.result.course:
-                lanes[anchor] = word_lanes(audit.result)
-    return lanes
+            if audit.result.ticks:
+                places.setdefault(runs[run_key(audit.result)].anchor, audit.place)
+
+    def words(anchors: Collection[str]) -> Mapping[str, tuple[WordLane, ...]]:
+        run_at = {places[anchor]: anchor for anchor in anchors if anchor in places}
+        results = evidence.details(run_at) if evidence else ()
+        return {run_at[place]: word_lanes(result) for place, result in results}
+
+    return words
 
 
 def word_lanes(result: Result) -> tuple[WordLane, ...]:

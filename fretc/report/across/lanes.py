@@ -6,10 +6,9 @@ without a lane are counted, and none of them is worse than one with a lane.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
-from types import MappingProxyType
 
 from fretc.audit.evidence.briefs import Stretches
 from fretc.report.model import phrases
@@ -25,6 +24,10 @@ _MOST_MARKS = 1_200
 """Of one picture, unless so many runs have one each."""
 _NAMED = 3
 """The most runs that the text names."""
+
+
+Words = Callable[[Collection[str]], Mapping[str, tuple[WordLane, ...]]]
+"""Anchors of runs → the signals of words of each that has any."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +52,6 @@ class _Lane:
     """A run before its marks are made."""
 
     results: tuple[RunStretches, ...]
-    words: tuple[WordLane, ...]
 
     @property
     def first(self) -> RunStretches:
@@ -89,7 +91,7 @@ def lanes(
     results: Sequence[RunStretches],
     most: int = MOST_LANES,
     marks: int = _MOST_MARKS,
-    words: Mapping[str, tuple[WordLane, ...]] = MappingProxyType({}),
+    words: Words | None = None,
     note: str = "",
 ) -> Lanes | None:
     """The lanes of some results; None where there is no time to show.
@@ -99,19 +101,22 @@ def lanes(
         results: in the order of their runs.
         most: lanes; of more runs, the worst come first.
         marks: about how many marks there may be.
-        words: of each run, by its anchor.
+        words: reads the signals of words of the runs that have lanes.
         note: what else to say of runs without a lane.
     """
     grouped: dict[str, list[RunStretches]] = {}
     for each in results:
         grouped.setdefault(each.run, []).append(each)
-    every = [_Lane(tuple(of), words.get(run, ())) for run, of in grouped.items()]
+    every = [_Lane(tuple(of)) for of in grouped.values()]
     ranked = every if len(every) <= most else sorted(every, key=_worst_first)
     chosen, left = ranked[:most], ranked[most:]
     end = max((lane.length for lane in chosen), default=0.0)
     if not end:
         return None
     drawn = _drawn(chosen, end, marks)
+    if words is not None:
+        words_of = words([lane.anchor for lane in drawn])
+        drawn = tuple(replace(lane, words=words_of.get(lane.anchor, ())) for lane in drawn)
     left_out = " ".join(filter(None, [_left_out(left), note.strip()]))
     text = " ".join(filter(None, [_in_words(chosen), left_out]))
     return Lanes(title, round(end, 6), drawn, left_out, text)
@@ -152,9 +157,7 @@ def _lane(lane: _Lane, nearest: float) -> RunLane:
         for mark in _merged([mark for mark in of if mark.kind == kind], nearest)
     ]
     first = lane.first
-    return RunLane(
-        first.run, first.label, first.file, lane.mark, lane.length, tuple(merged), lane.words
-    )
+    return RunLane(first.run, first.label, first.file, lane.mark, lane.length, tuple(merged), ())
 
 
 def _marks(each: RunStretches) -> Iterable[LaneMark]:

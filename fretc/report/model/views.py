@@ -59,8 +59,8 @@ class TopicView:
 
 
 @dataclass(frozen=True, slots=True)
-class RunView:
-    """One recorded run and whether it can be trusted."""
+class RunSummary:
+    """One recorded run and whether it can be trusted, without its topics."""
 
     anchor: str
     label: str
@@ -76,6 +76,12 @@ class RunView:
     checked: str
     gaps: tuple[str, ...]
     findings: tuple[Remark, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RunView(RunSummary):
+    """One recorded run with its topics."""
+
     topics: tuple[TopicView, ...]
 
 
@@ -354,6 +360,33 @@ class Listing:
 
 
 @dataclass(frozen=True, slots=True)
+class ResultRow:
+    """The result of one run in numbers; `fretc.report.sections.details` reads the rest of it."""
+
+    place: int
+    """Of the result in the evidence, from 0."""
+    number: int
+    """Among those of its requirement, from 1."""
+    requirement: str
+    """The anchor of its requirement."""
+    anchor: str
+    run: str
+    run_label: str
+    run_file: str
+    mark: Mark
+    suspicions: tuple[str, ...]
+    reason: str
+    triggers: int
+    answers: int
+    at_once: int
+    """Of the answers, those at the tick of their trigger."""
+    open: int
+    violations_total: int
+    latency_median_s: float | None
+    latency_max_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class ResultView:
     """The result of one run; with suspicions it is evidence of something else."""
 
@@ -434,7 +467,8 @@ class RequirementView:
     histograms: tuple[Histogram, ...]
     probability: ProbabilityView | None
     """None where the sentence has no probability, or the evidence has no estimation."""
-    results: tuple[ResultView, ...]
+    results: tuple[ResultRow, ...]
+    """Of all runs, in rows; the JSON form has each in full, as a `ResultView`."""
     reasons: tuple[str, ...]
     """Why it is not shown; empty where it is."""
     limit: str
@@ -486,7 +520,8 @@ class Report:
     evidence: str
     audited_by: str
     overall: Overall
-    runs: tuple[RunView, ...]
+    runs: tuple[RunSummary, ...]
+    """Runs with errors first; the JSON form has each with its topics, as a `RunView`."""
     claims: str
     counts: tuple[Count, ...]
     not_shown: tuple[NotShown, ...]

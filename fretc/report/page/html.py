@@ -20,20 +20,22 @@ from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, plac
 from fretc.report.pictures.plots import drawing, histogram
 from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
+from fretc.report.sections.details import Details
 
 _ACROSS = 16
 """The most requirements with pictures of all their runs; `--json` has those of all."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
-def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
+def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> str:
     """The whole file.
 
     Args:
         report: all parts.
+        details: the evidence behind its rows.
         rules: formalized requirements; the page draws what they mean.
     """
-    choice = selection(report)
+    choice = selection(report, details)
     page = slimmed(report, choice)
     script, style = render(_SCRIPT), render(_STYLE)
     return render(

@@ -111,7 +111,9 @@ class _Comparison:
         texts: Texts | None,
     ) -> None:
         self._chain, self._prints, self._verdicts = chain, prints, verdicts
-        self._nodes = frozenset(changed(chain.prints, prints))
+        self._now = chain.prints
+        self._verdicts_now = chain.verdicts
+        self._nodes = frozenset(changed(self._now, prints))
         self._texts = texts
         self._explained: set[Node] = set()
 
@@ -147,10 +149,10 @@ class _Comparison:
 
     def of_nodes(self) -> Iterator[Change]:
         """Each thing that has changed, whose texts do not show it, and that follows from none."""
-        above = upstream_of(self._chain) if self._nodes - self._explained else {}
+        above = upstream_of(self._now, self._chain.links) if self._nodes - self._explained else {}
         for node in sorted(self._nodes - self._explained):
             is_new = node not in self._prints and node.kind in ADDED
-            is_gone = node not in self._chain.prints and node.kind in _ONLY_OF_EVIDENCE
+            is_gone = node not in self._now and node.kind in _ONLY_OF_EVIDENCE
             derived = node.kind in _DERIVED and above.get(node, frozenset()) & self._nodes
             if not (is_new or is_gone or derived or self._follows(node)):
                 yield self._named(node)
@@ -160,7 +162,7 @@ class _Comparison:
         id = self._chain.requirement
         kinds = {each.kind for each in self._nodes if each.kind != TEXT or each.name == id}
         if node.kind == basis.FRETC:  # it has no version where it has no formulas
-            is_other = node in self._prints and node in self._chain.prints
+            is_other = node in self._prints and node in self._now
             return not is_other and basis.SENTENCE in kinds
         sources = _SOURCES if self._texts is None else _SOURCES | _SOURCES_OF_TEXTS
         return bool(kinds & sources.get(node.kind, frozenset()))
@@ -168,11 +170,11 @@ class _Comparison:
     def _named(self, node: Node) -> Change:
         """The change of a thing that is known by its fingerprint."""
         run = node.name.removeprefix(f"{self._chain.requirement} ")
-        before, after = self._prints.get(node, ""), self._chain.prints.get(node, "")
-        if node.kind == LOG and node not in self._chain.prints:
+        before, after = self._prints.get(node, ""), self._now.get(node, "")
+        if node.kind == LOG and node not in self._now:
             return Change(node, f"verdict of {run}", self._verdicts.get(run, ""), "")
         if node.kind == VERDICT:
-            then, now = self._verdicts.get(run, ""), self._chain.verdicts.get(run, "")
+            then, now = self._verdicts.get(run, ""), self._verdicts_now.get(run, "")
             if then != now:
                 return Change(node, f"verdict of {run}", then, now)
             return Change(node, f"what was found in {run}", None, None)

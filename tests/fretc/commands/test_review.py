@@ -284,7 +284,7 @@ def test_of_many_violated_runs_some_are_named(fretc: Fretc, folder: Path) -> Non
 
 
 def test_what_all_runs_refute_is_accepted_by_name_only() -> None:
-    chain = Chain("R1", {}, (), {"a.mcap": "no data"})
+    chain = Chain("R1", {}, ())
     (wrong,) = unnamed_violations([chain], {"R1"})
     assert wrong.message == "R1 is refuted by all runs"
     assert unnamed_violations([chain], {"R2"}) == ()

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.reader import read
-from fretc.audit.evidence.schema import Evidence, Moment
+from fretc.audit.evidence.reader import Evidence, read
+from fretc.audit.evidence.schema import Moment
 from fretc.report.make import make
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from tests.fretc.report.cases import evidence, moment, project, result, violation

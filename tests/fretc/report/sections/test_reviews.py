@@ -8,6 +8,7 @@ import pytest
 
 from compiler.project.folder import Project
 from fretc.audit.evidence import reader as reading
+from fretc.audit.evidence.briefs import Briefs
 from fretc.report.make import make
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, accepted, text
@@ -44,7 +45,8 @@ def lock(known: Project, folder: Path) -> None:
     audited = reading.read(str(folder / "evidence.json"))
     assert not isinstance(audited, Diagnostic)
     reviews = {
-        c.requirement: accepted(c, "A", "B", "2026-09-01", "c") for c in chains(known, audited)
+        c.requirement: accepted(c, "A", "B", "2026-09-01", "c")
+        for c in chains(known, Briefs.of(audited))
     }
     (folder / "fretc.lock").write_text(text(Lock(reviews)), encoding="utf-8")
 
