@@ -401,6 +401,13 @@ def facts(table: pa.Table) -> list[RunFacts]:
     ]
 
 
+def rows_of(table: pa.Table, requirement: str) -> list[int]:
+    """The rows of a requirement."""
+    equal = pc.equal(table["requirement"], requirement).to_numpy(zero_copy_only=False)
+    rows: list[int] = np.flatnonzero(equal).tolist()
+    return rows
+
+
 def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]:
     """One column of `events` for each row of a requirement, with its row, as plain values.
 
@@ -424,10 +431,3 @@ def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]
         for value, text in zip(values, texts, strict=True)
     ]
     return [*zip(rows, whole, strict=True)]
-
-
-def rows_of(results: pa.Table, requirement: str) -> list[int]:
-    """The rows of a requirement in `results`."""
-    is_there = pc.equal(results["requirement"], requirement).to_numpy(zero_copy_only=False)
-    rows: list[int] = np.flatnonzero(is_there).tolist()
-    return rows
