@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -23,6 +24,7 @@ from fretc.audit.evidence.reader import VERDICTS
 from fretc.audit.evidence.samples import Surroundings
 from fretc.audit.evidence.schema import Hashes, Health, Result, Violation
 from fretc.audit.evidence.writer import unjudged
+from fretc.audit.measurements.tallies import Tally
 from fretc.audit.store.columns import (
     Column,
     Field,
@@ -431,3 +433,54 @@ def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]
         for value, text in zip(values, texts, strict=True)
     ]
     return [*zip(rows, whole, strict=True)]
+
+
+def joined(groups: Sequence[Tables]) -> Tables:
+    """The tables of several groups of runs as those of all of them, in their order."""
+    if len(groups) == 1:
+        return groups[0]
+    return {name: _joined(groups, name) for name in TABLES}
+
+
+_KEYS: Mapping[TableName, tuple[str, TableName]] = {
+    RESULTS: ("run_row", RUNS),
+    VIOLATIONS: ("result_row", RESULTS),
+    SAMPLES: ("violation_row", VIOLATIONS),
+}
+"""Table → its column with rows of another table."""
+
+
+def _joined(groups: Sequence[Tables], name: TableName) -> pa.Table:
+    key, other = _KEYS.get(name, ("", name))
+    starts = accumulate((len(group[other]) for group in groups), initial=0)
+    parts = []
+    for group, start in zip(groups, starts, strict=False):
+        part = group[name]
+        if key:
+            place = part.schema.get_field_index(key)
+            part = part.set_column(place, key, pc.add(part[key], pa.scalar(start, pa.int64())))
+        parts.append(part)
+    return pa.concat_tables(parts)
+
+
+def tallies(tables: Tables) -> list[dict[str, Tally]]:
+    """The tally of each proposition in each run.
+
+    Args:
+        tables: `results` with `run_row`, `events` with `propositions`, `runs`.
+
+    Raises:
+        MisshapenError: they cannot be read.
+    """
+    (column,) = (each.column for each in _NESTED if each.name == "propositions")
+    found: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]
+    rows = tables[RESULTS]["run_row"].to_pylist()
+    values = column.values(_whole(tables[EVENTS], "propositions"))
+    known: dict[tuple[int, ...], Tally] = {}
+    for row, propositions in zip(rows, values, strict=True):
+        for name, counts in propositions.items():
+            numbers = tuple(counts.values())
+            if numbers not in known:
+                known[numbers] = decoded(counts, Tally)
+            found[row][name] = known[numbers]
+    return found
