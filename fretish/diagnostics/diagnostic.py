@@ -130,6 +130,7 @@ class Code(Enum):
     PHASE_DEPENDENT = ("F425", "a verdict depends on where the grid of ticks begins")
     PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")
     PHASE_PROPOSED = ("F427", "another phase of the ticks keeps its verdicts more firmly")
+    GROWN = ("F431", "a log grew while it was read")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")
@@ -168,6 +169,7 @@ class Code(Enum):
     NO_LABEL = ("F553", "a run has no value of a label")
     NOT_COMPARABLE = ("F560", "audits cannot be compared")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
+    OTHER_TEXTS = ("F546", "the texts of a review are not those of its fingerprints")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")
     BAD_SIGNATURES = ("F556", "signatures cannot be read")
     BROKEN_SIGNATURE = ("F557", "a signature does not verify")

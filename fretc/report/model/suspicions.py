@@ -12,9 +12,9 @@ from fretc.audit.evidence.briefs import Brief, Recorded
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.measurements.trials import Trials
-from fretc.report.model import phrases
 from fretc.report.traceability.chain import outdated
-from fretc.report.traceability.lock import Standing
+from fretc.report.traceability.changes import in_words
+from fretc.report.traceability.lock import Review, Standing
 from fretish import syntax
 from monitors import kernel
 
@@ -83,5 +83,9 @@ def since_review(standing: Standing) -> tuple[str, ...]:
     """What has changed since the review, in one phrase; empty where the review stands."""
     if standing.review is None or not standing.is_suspect:
         return ()
-    names = phrases.some([phrases.thing(cause) for cause in standing.causes])
-    return (f"{names} changed since the review of {standing.review.date}",)
+    return (f"{changed_since(standing.review)}: {in_words(standing.changes)}",)
+
+
+def changed_since(review: Review) -> str:
+    """That something has changed since a review, without what it is."""
+    return f"something has changed since the review of {review.date}"

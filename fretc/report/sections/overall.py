@@ -33,6 +33,7 @@ def overall(
     reservations: Sequence[str],
     withdrawn: Sequence[WithdrawnRequirement],
     signatures: Signatures,
+    changed: Sequence[str] = (),
 ) -> Overall:
     """Mark, headline and sentences.
 
@@ -44,6 +45,7 @@ def overall(
         reservations: about requirements that are shown.
         withdrawn: requirements that were reviewed and are claimed no more.
         signatures: all of them.
+        changed: what has changed since the review, in sentences.
     """
     active = [one for one in assessments if one.verdict != RETIRED]
     active_views = [view for view in sections if view.status != RETIRED]
@@ -59,6 +61,7 @@ def overall(
             None,
             (
                 *((stale,) if red else ()),
+                *changed,
                 *_held(active, good, len(runs)),
                 *(f"{one.text}." for one in withdrawn),
                 _refuted(refuted),

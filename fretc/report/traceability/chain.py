@@ -278,6 +278,7 @@ class _ChainBuilder:
             proofs={_claim(each): (each.result, *each.assumptions) for each in proofs}
             if rule
             else {},
+            loop=texts.loop(written) if proofs and declarations else {},
             fretc=__version__ if rule else "",
         )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,6 +25,7 @@ from fretc.report.traceability.chain import (
     WORDS,
     Chain,
     Node,
+    Suspect,
     changed,
     upstream_of,
 )
@@ -52,20 +53,41 @@ class Change:
     def text(self) -> str:
         """`speed: vx <= 0.40 m/s → 0.35 m/s`: only what differs, where that is one word."""
         if self.is_of_evidence:
-            return f"{self.what}: the evidence is about another one"
+            known = self.node.kind in (*basis.KINDS, basis.FRETC)
+            about = f"what was audited or proved is about another {self.what}"
+            return basis.why(self.node.kind) if known else about
         if self.before is None:
             now = f" is {self.after} now" if self.after else " changed"
             return f"{self.what}{now}; what it was is not in the lock"
         if self.after is None:
             return f"{self.what} changed"
-        return f"{self.what}: {word_diff.short(self.before, self.after)}"
+        return f"{self.what}: {word_diff.short(*self._texts)}"
+
+    @property
+    def _absent(self) -> str:
+        """What stands for a text that is not there: a field that is left out has a default."""
+        return "not stated" if self.node.kind in _WITH_DEFAULTS else "none"
+
+    @property
+    def brief(self) -> str:
+        """The same in a sentence: of a long one the beginning."""
+        return self.text if len(self.text) <= _BRIEF else f"{self.text[: _BRIEF - 2]} …"
 
     @property
     def segments(self) -> tuple[Segment, ...]:
         """Both texts as one, word by word; none where one of them is not known."""
         if self.before is None or self.after is None:
             return ()
-        return word_diff.segments(self.before, self.after)
+        return word_diff.segments(*self._texts)
+
+    @property
+    def _texts(self) -> tuple[str, str]:
+        return self.before or self._absent, self.after or self._absent
+
+    def makes_suspect(self, link: Suspect) -> bool:
+        """Whether a link is suspect because of it."""
+        kind = self.node.kind
+        return any(c == self.node or (c.kind == kind and kind in _MANY) for c in link.causes)
 
     @property
     def as_record(self) -> dict[str, Any]:
@@ -77,6 +99,11 @@ class Change:
             "after": self.after,
             "text": self.text,
         }
+
+
+_BRIEF = 120
+"""Characters of a change within a sentence."""
+_WITH_DEFAULTS = (basis.BINDINGS, basis.CLOCK, WORDS, FORMULAS, ARTEFACT)
 
 
 def changes(
@@ -98,6 +125,18 @@ def changes(
     comparison = _Comparison(chain, prints, verdicts, texts)
     found = [*comparison.of_texts(), *comparison.of_nodes()]
     return (*found, *comparison.of_causes(causes, found))
+
+
+def in_words(changes: Sequence[Change]) -> str:
+    """The first changes in one sentence, those of requirements before those of evidence."""
+    own = [each.brief for each in changes if not each.is_of_evidence]
+    named = own or [each.brief for each in changes]
+    left = len(named) - _IN_A_SENTENCE
+    more = [f"and {left} more"] if left > 0 else []
+    return "; ".join([*named[:_IN_A_SENTENCE], *more])
+
+
+_IN_A_SENTENCE = 3
 
 
 class _Comparison:
@@ -130,8 +169,9 @@ class _Comparison:
         keys = dict.fromkeys((*before, *after))
         pairs = {key: (before.get(key), after.get(key)) for key in keys}
         different = {key: pair for key, pair in pairs.items() if self._differs(*pair)}
-        for pair in different.values():
-            self._explained |= {leaf.node for leaf in pair if leaf is not None}
+        texts = [leaf.node for pair in different.values() for leaf in pair if leaf is not None]
+        kinds = {node.kind for node in texts if node.kind in _MANY}
+        self._explained |= {*texts, *(node for node in self._nodes if node.kind in kinds)}
         yield from _merged(different, before, after)
 
     def _differs(self, before: Leaf | None, after: Leaf | None) -> bool:
@@ -202,14 +242,14 @@ def _digest(sha256: str) -> str:
     return f"SHA-256 {sha256[:12]}" if sha256 else ""
 
 
-_MANY = (ARTEFACT, FORMULAS, PLAN)
+_MANY = (ARTEFACT, FORMULAS, PLAN, SHARED)
 """Kinds of which a requirement has several, and a text is about all of them."""
 _DERIVED = (FORMULAS, ARTEFACT, VERDICT, PROOF)
 """Kinds of things that are made of what the links come from."""
 _ONLY_OF_EVIDENCE = (VERDICT, basis.TOPICS)
 """Kinds of things that are there where runs are: their log says that it is gone."""
 _SOURCES: Mapping[str, frozenset[str]] = {
-    ARTEFACT: frozenset({TEXT, basis.PARAMS, basis.BINDINGS, WORDS, PLAN, *_MANY[1:]}),
+    ARTEFACT: frozenset({TEXT, basis.PARAMS, basis.BINDINGS, WORDS, FORMULAS, PLAN}),
     FORMULAS: frozenset({basis.BINDINGS}),
     SHARED: frozenset({PROOF}),
 }
@@ -258,8 +298,16 @@ def _merged(
         if leaf.owner in lone:
             if key[2] == _FACE.get(key[0]) and not _comes_with(key[0], different, lone):
                 yield _change(_name(key, leaf), then, now)
-        elif key != _WORDING or _SENTENCE not in different:
+        elif not _is_repetition(key, different):
             yield _change(leaf.what, then, now)
+
+
+def _is_repetition(key: Key, different: _Pairs) -> bool:
+    """Whether another text that differs says as much."""
+    if key == _WORDING:
+        return _SENTENCE in different
+    own = _SENTENCE in different or any(field == "path" for _, _, field in different)
+    return key == ("", "", "topics") and own
 
 
 def _change(what: str, then: Leaf | None, now: Leaf | None) -> Change:

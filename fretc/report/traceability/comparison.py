@@ -18,6 +18,8 @@ from monitors import kernel
 
 _MOST = 6
 """The most runs of one requirement with other verdicts that `text` names."""
+_NAMED = 3
+"""The most changes that are named as the cause of suspect links."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +58,24 @@ class Difference:
 
     @property
     def suspicion(self) -> str:
-        """`5 links are suspect`; empty where there is none."""
-        count = len(self.suspects)
-        return f"{count} {'link is' if count == 1 else 'links are'} suspect" if count else ""
+        """`5 links are suspect: max_age of x changed`; empty where there is none."""
+        return suspicion_of([self])
+
+
+def suspicion_of(differences: Sequence[Difference]) -> str:
+    """The number of suspect links of all these requirements, and why they are."""
+    suspects = [suspect for each in differences for suspect in each.suspects]
+    reasons = (
+        change.what
+        for each in differences
+        for change in each.changes
+        if any(map(change.makes_suspect, each.suspects))
+    )
+    named = [*dict.fromkeys(reasons)]
+    names = [*named[:_NAMED], *([f"{len(named) - _NAMED} more"] if len(named) > _NAMED else [])]
+    why = f": {', '.join(names)} changed" if names else ""
+    count = len(suspects)
+    return f"{count} {'link is' if count == 1 else 'links are'} suspect{why}" if count else ""
 
 
 def _counts(words: Sequence[str]) -> list[tuple[str, int]]:
@@ -145,21 +162,28 @@ def contradictions(standing: Standing, project: Project) -> tuple[str, ...]:
     id = standing.chain.requirement
     then = standing.review.texts if standing.review else None
     now = standing.chain.texts
-    found = []
+    fields: dict[tuple[str, bool], list[str]] = {}
     for rule in project.rules:
-        if rule.id != id or rule.declarations is None:
-            continue
-        for field, words in drifted(rule, rule.declarations):
-            same = then is not None and getattr(then, field) == getattr(now, field, None)
-            verb = "state" if field == "params" else "say"
-            still = "still " if same else ""
-            subject = "`params`" if field == "params" else f"its {field}"
-            found.append(f"{subject} {still}{verb}{'' if field == 'params' else 's'} {words}")
+        if rule.id == id and rule.declarations is not None:
+            for field, words in drifted(rule, rule.declarations):
+                same = then is not None and getattr(then, field) == getattr(now, field)
+                fields.setdefault((words, same), []).append(_FIELDS[field])
+    found = [_statement(names, words, same) for (words, same), names in fields.items()]
     for failed in project.failed:
         if failed.requirement.id == id:
             drifts = (each for each in failed.diagnostics if each.code is Code.NUMBER_DRIFT)
             found.extend(each.message for each in drifts)
     return tuple(dict.fromkeys(found))
+
+
+_FIELDS = {"title": "its title", "text": "its text", "params": "its `params`"}
+
+
+def _statement(fields: Sequence[str], words: str, still: bool) -> str:
+    *first, last = dict.fromkeys(fields)
+    named = f"{', '.join(first)} and {last}" if first else last
+    verb = "say" if first or last == _FIELDS["params"] else "says"
+    return f"{named} {'still ' if still else ''}{verb} {words}"
 
 
 # Plain values and text -------------------------------------------------------------------------
@@ -191,35 +215,50 @@ def as_record(difference: Difference) -> dict[str, Any]:
 
 
 def text(differences: Sequence[Difference]) -> Iterator[str]:
-    """Lines for a person: each requirement that is not as it was, then how many are."""
-    same = [each.requirement for each in differences if each.state == "same"]
+    """Lines for a person: what is not as it was, each change once, then what is as it was."""
+    alike: dict[object, list[Difference]] = {}
     for each in differences:
-        if each.state != "same":
-            yield from _text(each)
-    if same:
-        named = ", ".join(same[:_MOST])
-        more = f" and {len(same) - _MOST} more" if len(same) > _MOST else ""
-        yield f"{named}{more}  as {'it was' if len(same) == 1 else 'they were'} reviewed"
+        alike.setdefault(_likeness(each), []).append(each)
+    for group in sorted(alike.values(), key=lambda group: group[0].state == "same"):
+        yield from _text(group)
 
 
-def _text(difference: Difference) -> Iterator[str]:
-    review = difference.review
+def _likeness(difference: Difference) -> object:
+    """Equal where two requirements differ alike, and no verdict of theirs is another one."""
+    if difference.state == "same":
+        return "same"
+    if difference.verdicts or difference.state != "changed" or difference.review is None:
+        return difference.requirement
+    by = (difference.review.date, difference.review.reviewer)
+    changes = tuple(change.text for change in difference.changes)
+    others = (difference.contradictions, difference.outdated, difference.has_other_texts)
+    return (by, changes, *others)
+
+
+def _text(group: Sequence[Difference]) -> Iterator[str]:
+    first, review = group[0], group[0].review
     by = f"the review of {review.date} by {review.reviewer}" if review else ""
     states = {
+        "same": f"as {'it was' if len(group) == 1 else 'they were'} reviewed",
         "changed": f"changed since {by}",
         "new": "not reviewed",
         "gone": f"not there any more; there is {by}",
     }
-    yield f"{difference.requirement}  {states[difference.state]}"
-    for change in difference.changes:
+    named = ", ".join(each.requirement for each in group[:_MOST])
+    more = f" and {len(group) - _MOST} more" if len(group) > _MOST else ""
+    yield f"{named}{more}  {states[first.state]}"
+    if first.state == "same":
+        return
+    for change in first.changes:
         yield f"  {change.text}"
-    if difference.has_other_texts:
+    if first.has_other_texts:
         yield f"  {OTHER_TEXTS}"
-    for line in difference.contradictions:
+    for line in first.contradictions:
         yield f"  {line}"
-    yield from _verdict_lines(difference)
-    if difference.suspicion:
-        yield f"  {difference.suspicion}"
+    yield from _verdict_lines(first)
+    suspicion = suspicion_of(group)
+    if suspicion:
+        yield f"  {suspicion}"
 
 
 OTHER_TEXTS = "the texts in its review are not those of its fingerprints, and do not count"

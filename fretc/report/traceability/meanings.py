@@ -22,6 +22,7 @@ from fretc.report.traceability.chain import (
     PARENT,
     PLAN,
     PROOF,
+    SHARED,
     STATUS,
     TEXT,
     WORDS,
@@ -133,6 +134,13 @@ def _of_audit(id: str, texts: Texts) -> Iterator[tuple[Key, Leaf]]:
         text = "; ".join(assumptions)
         leaf = Leaf(node, f"assumptions of the proof of {claim}", text, under, owner)
         yield (PROOF, claim, "assumptions"), leaf
+    for table, fields in texts.loop.items():
+        for name, value in fields.items():
+            text = _in_toml(value)
+            leaf = Leaf(
+                Node(SHARED, table), f"{name} of [{table}]", text, canonical.parameter(text)
+            )
+            yield (SHARED, table, name), leaf
     if texts.fretc:
         node = Node(basis.FRETC, "version")
         yield ("", "", "fretc"), Leaf(node, "version of fretc", texts.fretc, texts.fretc)

@@ -82,6 +82,8 @@ class Texts(Record, frozen=True, omit_defaults=True):
     """Those that the audit of the whole project reads; None: there was none."""
     proofs: dict[str, tuple[str, ...]] = field(default_factory=dict)
     """Each claim that was examined → its result, then its assumptions."""
+    loop: dict[str, Table] = field(default_factory=dict)
+    """`[interceptor]` and `[assume]`, where something was proved."""
     fretc: str = ""
     """The version that took the fingerprints."""
 
@@ -154,6 +156,11 @@ def bindings(
         _chosen(written, "proposition", own),
         _chosen(written, "variable", names | {*named}),
     )
+
+
+def loop(written: Mapping[str, Any]) -> dict[str, Table]:
+    """The tables on which proofs about the closed loop rest."""
+    return {name: dict(written[name]) for name in ("interceptor", "assume") if name in written}
 
 
 def _chosen(written: Mapping[str, Any], kind: str, names: Iterable[str]) -> dict[str, Table]:

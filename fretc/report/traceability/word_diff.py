@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from difflib import SequenceMatcher
+from functools import lru_cache
+from os.path import commonprefix
 from typing import Literal
 
 from fretish import units
@@ -14,74 +15,90 @@ SAME, BEFORE, AFTER = "same", "before", "after"
 Kind = Literal["same", "before", "after"]
 Segment = tuple[Kind, str]
 """A stretch of both texts, of the one before, or of the one after."""
-_WORD = re.compile(
-    r"(?P<number>[+-]?[0-9][0-9.]*)[ \u00a0\u202f](?P<unit>%|[A-Za-z]\w*(?:/[A-Za-z]\w*)*)"
-    r"|[()\[\]{},;]|[^\s()\[\]{},;]+"
+_TOKEN = re.compile(
+    r"(?P<number>[+-]?[0-9][0-9.]*)[ \u00a0\u202f](?P<unit>%|[A-Za-z]\w{0,12}(?:/[A-Za-z]\w{0,3})?)(?!\w)"
+    r"|[()\[\]{},;]|[^\s()\[\]{},;]+|\s+"
 )
-_MOST_WORDS = 300
+_MOST_TOKENS = 300
 """Longer texts are compared as wholes: the time grows with the square."""
+_CACHED = 2**12
+"""The same change is shown at each of its requirements, and at each of their runs."""
 _LEAD, _WHOLE, _LONGEST = 40, 240, 2000
 """Characters: beside a difference, of a text on a line, and of a stretch of segments."""
 
 
+@lru_cache(maxsize=_CACHED)
 def segments(before: str, after: str) -> tuple[Segment, ...]:
     """Both texts as one: what they share, what one has, what the other has."""
     found: list[Segment] = []
-    for same, i, j, k, m in _differences(before, after):
+    for same, old, new, _ in _stretches(before, after):
         if same:
-            found.append((SAME, _middle(before[i:j])))
+            found.append((SAME, _middle(old)))
             continue
-        found.extend([(BEFORE, _start(before[i:j]))] if j > i else [])
-        found.extend([(AFTER, _start(after[k:m]))] if m > k else [])
+        found.extend([(BEFORE, _start(old))] if old else [])
+        found.extend([(AFTER, _start(new))] if new else [])
     return tuple(found)
 
 
+@lru_cache(maxsize=_CACHED)
 def short(before: str, after: str) -> str:
     """`x < 0.40 m/s → 0.35 m/s` where one word differs, else `the one → the other`."""
-    parts = _differences(before, after)
-    different = [part for part in parts if not part[0]]
+    different = [stretch for stretch in _stretches(before, after) if not stretch[0]]
     if len(different) == 1:
-        _, i, j, k, m = different[0]
-        old, new = before[i:j].strip(), after[k:m].strip()
+        _, old, new, (at, _) = different[0]
         if _is_word(old) and _is_word(new):
-            rest = " …" if before[j:].strip() else ""
-            return f"{_lead(before[:i])}{old} → {new}{rest}"
-    first = different[0][1] if different else 0
-    at = different[0][3] if different else 0
-    return f"{_window(before, first)} → {_window(after, at)}"
+            rest = " …" if before[at + len(old) :].strip() else ""
+            return f"{_lead(before[:at])}{old} → {new}{rest}"
+    first = different[0][3] if different else (0, 0)
+    return f"{_window(before, first[0])} → {_window(after, first[1])}"
 
 
-def _differences(before: str, after: str) -> list[tuple[bool, int, int, int, int]]:
-    """Stretches of characters of both texts, in their order, with whether they are the same."""
-    left, right = _words(before), _words(after)
-    if max(len(left), len(right)) > _MOST_WORDS:
-        return [(before == after, 0, len(before), 0, len(after))]
-    matcher = SequenceMatcher(None, [w for w, _ in left], [w for w, _ in right], autojunk=False)
-    return [
-        (
-            op == "equal",
-            _offset(left, i, before),
-            _offset(left, j, before),
-            _offset(right, k, after),
-            _offset(right, m, after),
-        )
-        for op, i, j, k, m in matcher.get_opcodes()
-    ]
+_Stretch = tuple[bool, str, str, tuple[int, int]]
+"""Whether both texts have it, what each has, and where in each it begins."""
 
 
-def _offset(words: Sequence[tuple[str, int]], index: int, text: str) -> int:
-    """Where a word begins; white space goes with the word before it."""
-    return 0 if index == 0 else words[index][1] if index < len(words) else len(text)
+def _stretches(before: str, after: str) -> list[_Stretch]:
+    """Both texts in stretches; white space alone between two differences is none of its own."""
+    left, right = _tokens(before), _tokens(after)
+    if max(len(left), len(right)) > _MOST_TOKENS:
+        return _around(before, after)
+    found: list[_Stretch] = []
+    matcher = SequenceMatcher(None, left, right, autojunk=False)
+    for op, i, j, k, m in matcher.get_opcodes():
+        old, new = "".join(left[i:j]), "".join(right[k:m])
+        same = op == "equal"
+        if found and not found[-1][0] and (not same or (old.isspace() and j < len(left))):
+            _, older, newer, place = found.pop()
+            found.append((False, older + old, newer + new, place))
+        else:
+            places = (sum(map(len, left[:i])), sum(map(len, right[:k])))
+            found.append((same, old, new, places))
+    return found
 
 
-def _words(text: str) -> list[tuple[str, int]]:
-    """Each word, and where it begins."""
-    found: list[tuple[str, int]] = []
+def _around(before: str, after: str) -> list[_Stretch]:
+    """Long texts: what they begin with alike, what differs, what they end with alike."""
+    start = len(commonprefix([before, after]))
+    rest = min(len(before), len(after)) - start
+    end = min(rest, len(commonprefix([before[::-1], after[::-1]])))
+    old, new = before[start : len(before) - end], after[start : len(after) - end]
+    tail = before[len(before) - end :]
+    found: list[_Stretch] = [(True, before[:start], before[:start], (0, 0))] if start else []
+    found += [(False, old, new, (start, start))] if old or new else []
+    return [*found, *([(True, tail, tail, (start + len(old), start + len(new)))] if end else [])]
+
+
+def _tokens(text: str) -> list[str]:
+    """Words, and the white space between them: together the whole text."""
+    found: list[str] = []
     place = 0
-    while len(found) <= _MOST_WORDS and (match := _WORD.search(text, place)):
-        whole = match["number"] is None or _is_unit(match["unit"])
-        place = match.end() if whole else match.end("number")
-        found.append((text[match.start() : place], match.start()))
+    while place < len(text) and len(found) <= _MOST_TOKENS:
+        match = _TOKEN.match(text, place)
+        assert match is not None, "a character is white space, a sign, or part of a word"
+        known = match["number"] is None or _is_unit(match["unit"])
+        end = match.end() if known else match.end("number")
+        found.append(text[place:end])
+        place = end
     return found
 
 
@@ -90,8 +107,8 @@ def _is_unit(word: str) -> bool:
 
 
 def _is_word(text: str) -> bool:
-    words = _words(text)
-    return len(words) == 1 and words[0][0] == text
+    """Whether it is one word that can stand alone, and no sign."""
+    return len(_tokens(text)) == 1 and any(map(str.isalnum, text))
 
 
 def _lead(text: str) -> str:
@@ -103,9 +120,9 @@ def _lead(text: str) -> str:
 
 
 def _window(text: str, start: int) -> str:
-    """The text, or what stands around a place in it where it is long; `none` for no text."""
+    """The text, or what stands around a place in it where it is long."""
     if len(text) <= _WHOLE:
-        return text or "none"
+        return text
     begin = max(0, start - _LEAD)
     before = "… " if begin else ""
     after = " …" if begin + _WHOLE < len(text) else ""
