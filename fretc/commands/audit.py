@@ -249,7 +249,7 @@ def _text(result: Audit, project: Project, refusals: Sequence[Diagnostic], form:
         return result.as_json
     results = without_samples(result.results, project.declarations)
     if form == "junit":
-        return junit(results, result.estimates)
+        return junit(results, result.estimates, project.requirements)
     if form == "github":
         return github(results, project.requirements, result.estimates)
     assert form == "sarif", "a choice of --format"

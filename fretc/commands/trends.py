@@ -50,13 +50,13 @@ def trends(
     something that was known before is not known now, or nothing can be compared, 2 bad use or
     bad input.
     """
-    from fretc.trends.sources import source
+    from fretc.audit.evidence.reader import required
     from fretc.trends.trends import Trends
     from fretc.trends.trends import trends as trends_of
 
     if html is not None:
         protect([Path(html)], evidence)
-    sources = [source(path) for path in dict.fromkeys(evidence)]
+    sources = [required(path) for path in dict.fromkeys(evidence)]
     wrong = [each for each in sources if isinstance(each, Diagnostic)]
     if wrong:
         stop(*wrong)
