@@ -79,14 +79,15 @@ def _kept(kept: int, count: int) -> str:
 def _shown(logs: Sequence[str]) -> Iterator[Callable[[str], None]]:
     """Show how many bytes of these logs are done; gives what is to be called with each of them."""
     sizes = {log: _size(log) for log in logs}
-    done: list[int] = []
+    logs_done = bytes_done = 0
     total = sum(sizes.values())
     with progress(total if len(logs) > 1 else 0, "auditing") as show:
 
         def tell(log: str) -> None:
-            done.append(sizes[log])
-            words = f"{len(done)}/{len(logs)} logs, {sum(done) / 1e6:.0f}/{total / 1e6:.0f} MB"
-            show(sum(done), words)
+            nonlocal logs_done, bytes_done
+            logs_done, bytes_done = logs_done + 1, bytes_done + sizes[log]
+            megabytes = f"{bytes_done / 1e6:.0f}/{total / 1e6:.0f} MB"
+            show(bytes_done, f"{logs_done}/{len(logs)} logs, {megabytes}")
 
         yield tell
 

@@ -41,6 +41,12 @@ def part(
     return log_diagnostics.changed(place) if log.changed() else found
 
 
+def only_grows(log: Input) -> bool:
+    """Whether the file is of a kind that is written from its beginning to its end."""
+    log.stream.seek(0)
+    return log.stream.read(len(MAGIC)) == MAGIC
+
+
 def _read(
     log: Input, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str]
 ) -> Part | Diagnostic:

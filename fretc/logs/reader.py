@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial, reduce
 from operator import add
 
@@ -176,7 +176,14 @@ def _opened(
         with opened(path, whole=integrity is not Integrity.INDEX) as log:
             if isinstance(log, Diagnostic):
                 return log
-            return _tried(partial(_file, path, log, asked), place, new, integrity, vocabulary)
+            found = _tried(partial(_file, path, log, asked), place, new, integrity, vocabulary)
+            if not (isinstance(found, Diagnostic) and log.changed() and containers.only_grows(log)):
+                return found
+            held = log.beginning()
+            if held is None:
+                return found
+            begun = partial(_beginning, path, held, asked)
+            return _tried(begun, place, new, integrity, vocabulary)
     except OSError as error:
         return storage_diagnostics.unreadable(error, place)
 
@@ -226,6 +233,21 @@ def _of_folder(path: str, asked: Collection[str]) -> Iterator[Described]:
 
 _CUSTOM = "custom_data"
 """What stands for the record in the description of a folder, as rosbag2 calls it."""
+
+
+def _beginning(
+    path: str,
+    log: Input,
+    asked: Collection[str],
+    sink: Sink,
+    integrity: Integrity,
+    place: Span,
+) -> _Run | Diagnostic:
+    """What there was of a file that has become longer since."""
+    run = _file(path, log, asked, sink, integrity, place)
+    if isinstance(run, Diagnostic):
+        return run
+    return replace(run, notes=(*run.notes, storage_diagnostics.grown(log.size, place)))
 
 
 def _alone(path: str, place: Span) -> Iterator[Diagnostic]:

@@ -17,6 +17,7 @@ from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.expressions import Expression, names
+from fretish.reading.memory import remembered
 from fretish.units import Unit
 
 
@@ -185,7 +186,12 @@ class Proposition:
     @property
     def signals(self) -> tuple[str, ...]:
         """The names of the signals that it reads, in the order of their first use."""
-        return tuple(dict.fromkeys(name.id for name in names(self.expression)))
+        return _named(self.expression)
+
+
+@remembered
+def _named(expression: Expression) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name.id for name in names(expression)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ from fretish import expressions as e
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.source import Span
 from fretish.reading.grammars import Grammar
+from fretish.reading.memory import remembered
 from fretish.units import (
     DIMENSIONLESS,
     Dimension,
@@ -313,6 +314,7 @@ MOST_TICKS_BACK = 16
 _PRE = frozenset({"pre", "preReal", "preInt"})
 
 
+@remembered
 def ticks_back(expression: e.Expression) -> int:
     """By how many ticks its value looks back: calls of `pre` within each other.
 
