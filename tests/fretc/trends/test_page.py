@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.reader import Evidence
 from fretc.trends.changes import Tone
 from fretc.trends.charts import strip
 from fretc.trends.page import html
-from fretc.trends.sources import InMemory
 from fretc.trends.trends import Trends
 from fretc.trends.trends import trends as trends_of
 from tests.fretc.audit.results import SHA
@@ -49,7 +48,7 @@ def nights(scenario: str = "door") -> Trends:
                 ("R4", "no data" if night == 5 else "satisfied"),
             )
         ]
-        sources.append(InMemory(Evidence(f"{night}.json", SHA, document(results))))
+        sources.append(Evidence(f"{night}.json", SHA, document(results)))
     found = trends_of(sources)
     assert isinstance(found, Trends)
     return found
