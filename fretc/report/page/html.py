@@ -15,6 +15,7 @@ from compiler.formalization.formalized import Formalized
 from fretc.report.across.layout import drawn_lanes, drawn_uses
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Report, worst_first
+from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import Selection, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram
@@ -39,6 +40,7 @@ def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> 
     """
     choice = selection(report, details)
     page = slimmed(report, choice)
+    matrix = picture(report, choice.anchors)
     script, style = render(_SCRIPT), render(_STYLE)
     return render(
         "report/report.html.j2",
@@ -49,6 +51,8 @@ def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> 
         histograms=visible_texts(_histograms(page)),
         scales=visible_texts(_scales(page)),
         diagrams=_diagrams(page, rules),
+        matrix=visible_texts(asdict(matrix)),
+        rows=_rows(matrix),
         argument=visible_texts(_argument(report)),
         across=visible_texts(_across(report, choice, _links(choice))),
         changes=visible_texts({each.anchor: asdict(each) for each in page.changes if each.anchor}),
@@ -114,6 +118,12 @@ def _histograms(page: Report) -> dict[str, list[dict[str, Any]]]:
         ]
         for view in page.requirements
     }
+
+
+def _rows(matrix: Picture) -> dict[str, str]:
+    """The first row of each requirement in the matrix, where it has rows of requirements."""
+    lines = (line for block in matrix.blocks for line in block.lines if line.id)
+    return {line.row.anchor: line.id for line in lines}
 
 
 def _diagrams(page: Report, rules: Sequence[Formalized]) -> Mapping[str, dict[str, Any]]:

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.audit.evidence.declared_units import in_declared_units
-from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Evidence, Result
+from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Result
 from fretc.audit.evidence.writer import as_record
 from fretc.audit.one_log import audit
 from fretc.audit.plan import monitored_requirements, planned
