@@ -6,8 +6,10 @@ import json
 import shutil
 from pathlib import Path
 
+from fretc.audit.store.writer import write_document
+from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, Run
-from tests.fretc.trends.nights import evidence, judged
+from tests.fretc.trends.nights import document, evidence, judged
 
 ROOT = Path(__file__).parents[3]
 MISSION = ROOT / "traces/mission-seed15.mcap"
@@ -73,6 +75,26 @@ def test_bad_input_is_one_diagnostic_each_and_writes_nothing(fretc: Fretc) -> No
     before = Path("1.json").read_bytes()
     assert fretc("trends", "1.json", "--html", "1.json").status == 2
     assert Path("1.json").read_bytes() == before
+
+
+def test_a_store_says_what_a_file_says_and_a_broken_one_says_nothing(fretc: Fretc) -> None:
+    nights = [
+        [judged(f"{run}.mcap", night=night, late=[0.1], margin=0.2, v="1") for run in range(3)]
+        for night in range(2)
+    ]
+    for night, results in enumerate(nights):
+        evidence(Path(f"{night}.json"), *results)
+        assert not isinstance(write_document(Path(f"{night}"), document(results)), Diagnostic)
+    files = fretc("trends", "0.json", "1.json", "--format", "json", "--html", "files.html")
+    stores = fretc("trends", "0", "1", "--format", "json", "--html", "stores.html")
+    assert json.loads(stores.out)["items"] == json.loads(files.out)["items"]
+    assert json.loads(stores.out)["comparisons"] == json.loads(files.out)["comparisons"]
+    table = next(Path("1").rglob("*.parquet"))
+    table.write_bytes(table.read_bytes()[:-1])
+    broken = fretc("trends", "0", "1", "--html", "broken.html")
+    assert broken.status == 2
+    assert broken.err.startswith("F516 ")
+    assert not Path("broken.html").exists()
 
 
 def test_many_changes_fit_one_screen_and_what_is_left_out_is_counted(fretc: Fretc) -> None:
