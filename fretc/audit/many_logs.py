@@ -252,7 +252,7 @@ def labelled(plan: Plan, one: LogAudit) -> LogAudit:
     if not plan.labels:
         return one
     first = one.results[0]
-    found, notes = over(first.labels or {}, plan.labels, first.run)
+    found, notes = over(first.labels or {}, plan.labels)
     return _with_labels(one, found, notes)
 
 

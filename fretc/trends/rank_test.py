@@ -76,7 +76,8 @@ def _sums(ranks: Sequence[int], chosen: int) -> _Shares:
     ways[0, 0] = 1.0
     for rank in ranks:
         ways[1:, rank:] = ways[1:, rank:] + ways[:-1, : size - rank]
-    return ways[chosen] / ways[chosen].sum()
+    shares: _Shares = ways[chosen] / ways[chosen].sum()
+    return shares
 
 
 def fewer(strata: Sequence[Stratum]) -> list[Stratum]:
