@@ -5,15 +5,13 @@ from __future__ import annotations
 import re
 from difflib import SequenceMatcher
 from functools import lru_cache
-from typing import Literal
 
 from fretish import units
 from fretish.clock import NANOSECONDS
 
 SAME, BEFORE, AFTER = "same", "before", "after"
-Kind = Literal["same", "before", "after"]
-Segment = tuple[Kind, str]
-"""A stretch of both texts, of the one before, or of the one after."""
+Segment = tuple[str, str]
+"""`SAME`, `BEFORE` or `AFTER`, and a stretch of both texts or of one of them."""
 _TOKEN = re.compile(
     r"(?P<number>[+-]?[0-9][0-9.]*)[ \u00a0\u202f]"
     r"(?P<unit>%|[A-Za-z]\w{0,12}(?:/[A-Za-z]\w{0,3})?)(?!\w)"
