@@ -13,6 +13,7 @@ from fretc.report.traceability.chain import (
     ACCEPTANCE,
     ADDED,
     ARTEFACT,
+    DERIVED,
     FORMULAS,
     HAZARD,
     LOG,
@@ -71,6 +72,8 @@ class Change:
     @property
     def brief(self) -> str:
         """The same in a sentence: of a long one the beginning."""
+        if not self.is_of_evidence and (self.before is None or self.after is None):
+            return f"{self.what} changed"
         return self.text if len(self.text) <= _BRIEF else f"{self.text[: _BRIEF - 2]} …"
 
     @property
@@ -193,7 +196,7 @@ class _Comparison:
         for node in sorted(self._nodes - self._explained):
             is_new = node not in self._prints and node.kind in ADDED
             is_gone = node not in self._now and node.kind in _ONLY_OF_EVIDENCE
-            derived = node.kind in _DERIVED and above.get(node, frozenset()) & self._nodes
+            derived = node.kind in DERIVED and above.get(node, frozenset()) & self._nodes
             if not (is_new or is_gone or derived or self._follows(node)):
                 yield self._named(node)
 
@@ -204,7 +207,7 @@ class _Comparison:
         if node.kind == basis.FRETC:  # it has no version where it has no formulas
             is_other = node in self._prints and node in self._now
             return not is_other and basis.SENTENCE in kinds
-        sources = _SOURCES if self._texts is None else _SOURCES | _SOURCES_OF_TEXTS
+        sources = _SOURCES if self._texts is None else {**_SOURCES, **_SOURCES_OF_TEXTS}
         return bool(kinds & sources.get(node.kind, frozenset()))
 
     def _named(self, node: Node) -> Change:
@@ -244,8 +247,6 @@ def _digest(sha256: str) -> str:
 
 _MANY = (ARTEFACT, FORMULAS, PLAN, SHARED)
 """Kinds of which a requirement has several, and a text is about all of them."""
-_DERIVED = (FORMULAS, ARTEFACT, VERDICT, PROOF)
-"""Kinds of things that are made of what the links come from."""
 _ONLY_OF_EVIDENCE = (VERDICT, basis.TOPICS)
 """Kinds of things that are there where runs are: their log says that it is gone."""
 _SOURCES: Mapping[str, frozenset[str]] = {

@@ -108,9 +108,8 @@ def _of_parents(texts: Texts) -> Iterator[tuple[Key, Leaf]]:
     """Of hazards, and of the requirements between."""
     tables: list[tuple[str, str, Mapping[str, str]]] = []
     for id, header in texts.above.items():
-        words = _fields(header)
-        del words["parents"]
-        tables.append((TEXT, id, words))
+        texts_of = {name: text for name, text in _fields(header).items() if name != "parents"}
+        tables.append((TEXT, id, texts_of))
         node, parents = Node(TEXT, id), header.parents
         leaf = Leaf(node, f"parents of {id}", ", ".join(parents), {*parents}, f"text {id}")
         yield (TEXT, id, "parents"), leaf

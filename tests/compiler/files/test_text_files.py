@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from compiler.files.text_files import write
-from fretish.diagnostics.diagnostic import Code
+from compiler.files.text_files import read, write
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
 
 
