@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 from functools import cache
 from importlib.resources import files
+from json.encoder import encode_basestring_ascii
 from pathlib import Path
 from typing import Any
 
@@ -114,14 +115,24 @@ def to_json(value: object, indent: str = "") -> str:
     Raises:
         ValueError: a number is infinite or not a number.
     """
-    line = _encode(value)
-    if len(line) + len(indent) <= _WIDTH or not isinstance(value, dict | list | tuple):
-        return line
+    if not isinstance(value, dict | list | tuple):
+        return _scalar(value)
     inner = f"{indent}  "
     if isinstance(value, dict):
-        parts = [f"{_encode(str(k))}: {to_json(v, inner)}" for k, v in value.items()]
+        parts = [f"{_scalar(str(k))}: {to_json(v, inner)}" for k, v in value.items()]
     else:
         parts = [to_json(part, inner) for part in value]
     opening, closing = "{}" if isinstance(value, dict) else "[]"
+    length = len(indent) + len(opening) + len(closing)
+    length += sum(map(len, parts)) + 2 * max(0, len(parts) - 1)
+    if length <= _WIDTH and not any("\n" in part for part in parts):  # texts have none in JSON
+        return f"{opening}{', '.join(parts)}{closing}"
     separator = f",\n{inner}"
     return f"{opening}\n{inner}{separator.join(parts)}\n{indent}{closing}"
+
+
+def _scalar(value: object) -> str:
+    """JSON of what has no parts; most of it is of three kinds."""
+    if type(value) is str:
+        return encode_basestring_ascii(value)
+    return repr(value) if type(value) is int else _encode(value)

@@ -13,7 +13,7 @@ from fretc.audit.evidence.verdicts import (
 )
 from fretc.report.model import phrases
 from fretc.report.model.front import FigureLine, Link
-from fretc.report.model.views import Mark, RequirementView, RunView
+from fretc.report.model.views import Mark, RequirementView, RunSummary
 from monitors import kernel
 
 _NAMED = 8
@@ -46,7 +46,9 @@ def line(text: str, names: Sequence[Link]) -> FigureLine:
 
 
 def causes(
-    active: Sequence[RequirementView], unshown: Sequence[RequirementView], runs: Sequence[RunView]
+    active: Sequence[RequirementView],
+    unshown: Sequence[RequirementView],
+    runs: Sequence[RunSummary],
 ) -> tuple[FigureLine, ...]:
     """A line for each cause, with the requirements that are not shown for it.
 
@@ -66,7 +68,7 @@ def causes(
     return (*([_damage(damaged, len(hurt))] if hurt else []), *lines)
 
 
-def _damage(runs: Sequence[RunView], requirements: int) -> FigureLine:
+def _damage(runs: Sequence[RunSummary], requirements: int) -> FigureLine:
     counts = f"{phrases.times(len(runs), 'run')}, {phrases.times(requirements, 'requirement')}"
     return FigureLine(f"{_DAMAGED}: {counts}", (), 0)
 

@@ -18,13 +18,16 @@ from fretc.report.front.groups import run_groups
 from fretc.report.front.speech import capital, day, days, duration
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.front import Figure, FigureLine, Front, Link
-from fretc.report.model.views import Change, Overall, RequirementView, Row, RunView
+from fretc.report.model.changes import Change
+from fretc.report.model.front import Figure, FigureLine, Front
+from fretc.report.model.views import Overall, RequirementView, Row, RunSummary
 from fretc.report.sections.proofs import is_proved_layer, is_refuted
 from fretc.report.sections.runs import Run
-from fretc.report.traceability.comparison import difference
 from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Severity
+
+_CHANGES = 3
+"""The most changes that a figure names."""
 
 
 def front(
@@ -34,7 +37,7 @@ def front(
     rows: Sequence[Row],
     assessed: Sequence[Assessment],
     runs: Sequence[Run],
-    views: Sequence[RunView],
+    views: Sequence[RunSummary],
     changes: Sequence[Change],
     notes: Sequence[str],
 ) -> Front:
@@ -66,7 +69,7 @@ def front(
             _shown(active),
             _violated(active, red),
             _not_shown(active, views),
-            _changed(active, assessed, changes),
+            _changed(active, changes),
         ),
         trust=tuple(_trust(views, names)),
         notes=tuple(notes),
@@ -91,7 +94,7 @@ def _date(text: str) -> date | None:
 
 def _runs(runs: Sequence[Run]) -> str:
     """`16 runs of 21 November 2026, 58 min`."""
-    results = [run.result for run in runs]
+    results = [run.facts for run in runs]
     dates = [each for result in results if (each := day(result.start_ns))]
     when = f" of {days(min(dates), max(dates))}" if dates else ""
     seconds = sum(
@@ -153,49 +156,38 @@ def _violated(active: Sequence[RequirementView], red: Sequence[RequirementView])
     return Figure("violated", len(red), "violated", kind, "not-shown", tuple(lines))
 
 
-def _not_shown(active: Sequence[RequirementView], runs: Sequence[RunView]) -> Figure:
+def _not_shown(active: Sequence[RequirementView], runs: Sequence[RunSummary]) -> Figure:
     unshown = [view for view in active if not view.mark.shows and not violations.is_red(view)]
     kind = signs.OPEN.kind if unshown else ""
     lines = causes(active, unshown, runs)
     return Figure("not shown", len(unshown), "not shown", kind, "not-shown", lines)
 
 
-def _changed(
-    active: Sequence[RequirementView], assessed: Sequence[Assessment], changes: Sequence[Change]
-) -> Figure:
+def _changed(active: Sequence[RequirementView], changes: Sequence[Change]) -> Figure:
     words = "changed since the review"
     unreviewed = [link(view) for view in active if view.review.signature is None]
     if active and len(unreviewed) == len(active) and not changes:
         nothing = FigureLine("nothing has been reviewed", (), 0)
-        return Figure("changed", None, words, "", "reviews", (nothing,))
-    lines = [line(kind, names) for kind, names in _kinds(assessed, changes).items()]
+        return Figure("changed", None, words, "", "changes", (nothing,))
+    lines = [
+        FigureLine(f"{change.requirement}: {'; '.join(change.lines[:2]) or 'verdicts'}", (), 0)
+        for change in changes[:_CHANGES]
+    ]
+    more = len(changes) - _CHANGES
+    lines += [FigureLine(f"and {phrases.times(more, 'more requirement')}", (), 0)] * (more > 0)
     verdicts = [(then, now) for change in changes for _, then, now in change.verdicts]
     worse = sum(now in BROKEN and then not in BROKEN for then, now in verdicts)
     became = f"{phrases.times(worse, 'verdict')} became violated"
     lines += [FigureLine(became, (), 0)] * (worse > 0)
     lines += [line("not reviewed", unreviewed)] if unreviewed else []
     kind = signs.OPEN.kind if changes else ""
-    return Figure("changed", len(changes), words, kind, "reviews", tuple(lines))
-
-
-def _kinds(assessed: Sequence[Assessment], changes: Sequence[Change]) -> dict[str, list[Link]]:
-    """The requirements of which each kind of thing has changed; verdicts are what comes of it."""
-    kinds: dict[str, list[Link]] = {}
-    for one in assessed:
-        if one.standing.review is None:
-            continue
-        for kind in dict.fromkeys(node.kind for node, _ in difference(one.standing).changes):
-            if kind != "verdict":
-                name = Link(one.id, one.requirement.title, one.anchor)
-                kinds.setdefault(f"{kind} changed", []).append(name)
-    gone = [Link(each.requirement, "", "reviews") for each in changes if each.state == "gone"]
-    return {"gone": gone, **kinds} if gone else kinds
+    return Figure("changed", len(changes), words, kind, "changes", tuple(lines))
 
 
 # Trust -----------------------------------------------------------------------------------------
 
 
-def _trust(runs: Sequence[RunView], names: Mapping[str, str]) -> Iterator[str]:
+def _trust(runs: Sequence[RunSummary], names: Mapping[str, str]) -> Iterator[str]:
     """Two lines: damage and errors; hashes and findings."""
     if not runs:
         return
@@ -220,11 +212,11 @@ def _trust(runs: Sequence[RunView], names: Mapping[str, str]) -> Iterator[str]:
     yield f"{hashes}; {more}."
 
 
-def _wrong(run: RunView, names: Mapping[str, str]) -> str:
+def _wrong(run: RunSummary, names: Mapping[str, str]) -> str:
     return f"{names[run.anchor]} ({', '.join(_errors(run))})"
 
 
-def _errors(run: RunView) -> list[str]:
+def _errors(run: RunSummary) -> list[str]:
     """The codes of its errors, each once."""
     errors = (each.code for each in run.findings if each.severity == Severity.ERROR.value)
     return list(dict.fromkeys(errors))

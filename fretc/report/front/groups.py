@@ -21,7 +21,7 @@ def run_groups(runs: Sequence[Run]) -> tuple[RunGroup, ...]:
     Args:
         runs: in the order of the evidence.
     """
-    paths = _inner([_SEPARATOR.split(run.result.run) for run in runs])
+    paths = _inner([_SEPARATOR.split(run.facts.run) for run in runs])
     names = _names(paths)
     groups = _groups(runs, paths, names)
     members: dict[str, list[ColumnRun]] = {}
@@ -48,8 +48,8 @@ def _groups(
 
 
 def _scenario(run: Run) -> str:
-    labels = getattr(run.result, "labels", None) or {}
-    return str(labels.get("scenario", ""))
+    labels = run.facts.labels
+    return labels.get("scenario", "")
 
 
 def _inner(paths: Sequence[list[str]]) -> list[list[str]]:

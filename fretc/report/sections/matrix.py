@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from compiler.logic.claims import Layer
 from compiler.project.ancestry import without_hazard
 from compiler.project.folder import Project
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -123,9 +123,7 @@ def _review(assessment: Assessment) -> Mark:
 # Orphans ---------------------------------------------------------------------------------------
 
 
-def orphans(
-    project: Project, assessments: Sequence[Assessment], evidence: Evidence | None
-) -> Orphans:
+def orphans(project: Project, assessments: Sequence[Assessment], briefs: Briefs | None) -> Orphans:
     """Every place where the chain from hazard to verdict ends too early."""
     return Orphans(
         hazards=tuple(_uncovered(project, assessments)),
@@ -136,7 +134,7 @@ def orphans(
         parents=tuple(_undeclared(project, assessments)),
         evidence=tuple(
             f"{id} has evidence, but is not among the requirements"
-            for id in unknown_ids(assessments, evidence)
+            for id in unknown_ids(assessments, briefs)
         ),
     )
 
@@ -173,8 +171,8 @@ def _undeclared(project: Project, assessments: Sequence[Assessment]) -> Iterable
                 yield f"{assessment.id} names {parent}, which is not declared"
 
 
-def unknown_ids(assessments: Sequence[Assessment], evidence: Evidence | None) -> tuple[str, ...]:
+def unknown_ids(assessments: Sequence[Assessment], briefs: Briefs | None) -> tuple[str, ...]:
     """The ids in the evidence that are not ids of the project."""
     ids = {assessment.id for assessment in assessments}
-    results = evidence.results if evidence else ()
-    return tuple(sorted({result.requirement for result in results} - ids, key=natural))
+    audited = briefs.by_requirement.keys() if briefs else ()
+    return tuple(sorted({*audited} - ids, key=natural))
