@@ -50,7 +50,7 @@ def trends(
     something that was known before is not known now, or nothing can be compared, 2 bad use or
     bad input.
     """
-    from fretc.audit.evidence.reader import required
+    from fretc.audit.store.anywhere import required_source as required
     from fretc.trends.trends import Trends
     from fretc.trends.trends import trends as trends_of
 
