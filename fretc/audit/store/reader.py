@@ -185,6 +185,11 @@ class Store:
             except (MisshapenError, IndexError) as error:
                 raise self._error(f"cannot be read: {error}") from None
 
+    def whole(self, name: TableName) -> pa.Table:
+        """All rows of a table."""
+        found = [self._table(part, name) for _, part in self._parts()]
+        return pa.concat_tables([tables.schema(name).empty_table(), *found])
+
     def counts(self) -> Iterator[int]:
         """How many results each run has."""
         for _, part in self._parts():
