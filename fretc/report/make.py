@@ -12,7 +12,7 @@ from compiler.files.dates import today
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.attestation.signatures import read_signatures
-from fretc.audit.store.anywhere import source
+from fretc.audit.store.anywhere import StoreError, source
 from fretc.report.assembly import report
 from fretc.report.forms.json_text import json_pieces
 from fretc.report.model.views import Report
@@ -71,7 +71,7 @@ def make(
 
     Args:
         project: with or without errors; the report shows what could not be formalized as such.
-        evidence: path of an evidence file or of a store; where there is none, nothing has been exercised.
+        evidence: path of a file or of a store; where there is none, nothing has been exercised.
         lock: path of a lock; None: nothing has been reviewed.
         waivers: path of a file of waivers; None: nothing is waived.
         verification: path of a file that `fretc verify` wrote; None: nothing was proved.

@@ -287,7 +287,7 @@ def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
     kept = replace(view, results=(), reasons=reasons)
     if not chosen.by_anchor[view.anchor].is_short:
         return kept
-    return replace(kept, formulas=(), propositions=(), artefacts=(), histograms=(), diagram="")
+    return replace(kept, formulas=(), propositions=(), artefacts=(), diagram="")
 
 
 def _few(reasons: Sequence[str]) -> tuple[str, ...]:
