@@ -272,7 +272,7 @@ def _margins(
     known = {one.run: one for one in same}
     found: dict[Measure, dict[int, float]] = defaultdict(dict)
     for source, places in zip(histories.sources, histories.places, strict=True):
-        for place, thresholds in source.thresholds(requirement):
+        for place, thresholds in source.thresholds([requirement]):
             run = places[place]
             for each in thresholds if run in known else ():
                 margin = _margin(each)
