@@ -16,7 +16,7 @@ from statistics import median
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.model.phrases import some, value
 from fretc.trends.histories import Histories, Judged, Run, Scenario
-from fretc.trends.rank_test import Tail, fewer, holm, larger, decidable
+from fretc.trends.rank_test import Tail, decidable, fewer, holm, larger
 
 LEVEL = 0.05
 """The chance of even one regression that is none, of all that are found together."""

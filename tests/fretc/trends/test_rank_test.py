@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fretc.trends.rank_test import MOST, Stratum, doubled_ranks, fewer, holm, larger, decidable
+from fretc.trends.rank_test import MOST, Stratum, decidable, doubled_ranks, fewer, holm, larger
 
 NUMBERS = st.sampled_from([0.0, 1.0, 1.5, 2.0, 7.0, inf])
 SIDES = st.lists(NUMBERS, max_size=4)
