@@ -39,7 +39,7 @@ _VIOLATIONS, _FEW_VIOLATIONS = 12, 6
 _WHOLE = 200
 """Above this number of requirements, a compact page has no formulas, artefacts and pictures."""
 _REASONS = 3
-"""The most reasons of a requirement in a compact page."""
+"""The most reasons of a requirement in the list of what is not shown, and in a compact page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +213,8 @@ def _section_runs(
     compact: bool,
     requirements: int,
 ) -> SectionRuns:
-    details = [r for r in view.results if r.anchor in detailed]
+    worst_first = sorted(view.results, key=lambda result: result.mark.severity)
+    details = [r for r in worst_first if r.anchor in detailed]
     folded = [r for r in view.results if r.anchor in foldable]
     rows: Sequence[ResultRow] = view.results if len(view.results) > 1 else ()
     if compact:
@@ -281,15 +282,15 @@ def slimmed(report: Report, chosen: Selection) -> Report:
     """The report without what the page leaves out."""
     views = tuple(_slim(view, chosen) for view in report.requirements)
     not_shown = tuple(
-        replace(each, reasons=_few(each.reasons)) if chosen.is_compact else each
-        for each in report.not_shown
+        replace(each, reasons=_few(each.reasons, "in its section")) for each in report.not_shown
     )
     return replace(report, requirements=views, not_shown=not_shown, runs=chosen.runs)
 
 
 def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
     """A section without its results: the template takes those from the selection."""
-    reasons = _few(view.reasons) if chosen.is_compact else view.reasons
+    where = "in the table of its runs"
+    reasons = _few(view.reasons, where) if chosen.is_compact else view.reasons
     kept = replace(view, results=(), reasons=reasons)
     if chosen.is_compact:
         kept = replace(kept, diagram="")
@@ -298,8 +299,8 @@ def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
     return replace(kept, formulas=(), propositions=(), artefacts=())
 
 
-def _few(reasons: Sequence[str]) -> tuple[str, ...]:
+def _few(reasons: Sequence[str], where: str) -> tuple[str, ...]:
     left = len(reasons) - _REASONS
     if left <= 1:
         return tuple(reasons)
-    return (*reasons[:_REASONS], "and more, in the table of its runs")
+    return (*reasons[:_REASONS], f"and {left} more, {where}")

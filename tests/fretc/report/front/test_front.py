@@ -15,8 +15,8 @@ from tests.fretc.report.cases import as_json, project, report_of, requirement, r
 
 ALWAYS = "the robot shall always satisfy stopped"
 VERDICTS = ("satisfied", "violated", "inconclusive", "vacuous", "no data")
-DAMAGED = {"health": {"intact": False}}
-OLD = {"hashes": {"sentence": "0" * 64}}
+DAMAGED: dict[str, Any] = {"health": {"intact": False}}
+OLD: dict[str, Any] = {"hashes": {"sentence": "0" * 64}}
 
 
 @pytest.fixture(scope="module")
