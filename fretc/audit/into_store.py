@@ -240,12 +240,13 @@ class Session:
     def __exit__(self, *_: object) -> None:
         """Remove what no manifest names, and let another audit have the folder."""
         try:
-            found = [manifest(self.folder, name) for name in (FILE, UNFINISHED)]
+            names = [name for name in (FILE, UNFINISHED) if (self.folder / name).exists()]
+            found = [manifest(self.folder, name) for name in names]
             kept = [each for each in found if each is not None]
-            if kept:
-                remove_others(self.folder, *kept)
-            else:
+            if not any(each is None or each.parts for each in found):
                 remove(self.folder)
+            elif len(kept) == len(found):  # what a damaged one names is not known
+                remove_others(self.folder, *kept)
         finally:
             os.close(self._lock)
 

@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
-    "Printed and written": ("form", "verbose", "output", "annotate", "annotations"),
+    "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
     "Many logs": ("labels", "jobs", "engine", "rehash"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
@@ -124,6 +124,7 @@ _AUDIT = {
 @click.option(
     "--rehash", is_flag=True, help="Know a log by its SHA-256, not by its size and times."
 )
+@path_option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
 @click.option("--resume", is_flag=True, hidden=True)
 @click.option(
     "--summary", is_flag=True, help="How many of which verdict, worst runs, slowest answers."
@@ -149,6 +150,7 @@ def audit(
     jobs: int,
     engine: str,
     rehash: bool,
+    parquet: str | None,
     resume: bool,
     summary: bool,
     query: str | None,
@@ -185,12 +187,12 @@ def audit(
     if isinstance(logs, Diagnostic):
         stop(logs)
     target = outputs.target(output, len(logs))
-    outputs.check(target)
+    outputs.check(target, parquet)
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
-    protect([target.path], inputs)
+    protect([target.path, *([Path(parquet)] if parquet else [])], inputs)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
     say_briefly(project.diagnostics, requirements)
     if has_errors(project.general):
@@ -212,6 +214,8 @@ def audit(
         if result.read:  # a mistyped name must not cost the evidence of the last audit
             wanted = annotate or annotations is not None
             made = outputs.annotation_files(result, project, annotations) if wanted else {}
+            if parquet is not None:
+                made[Path(parquet)] = outputs.table(result)
             _deliver(result, target, made, inputs)
         source, refused = result.source, {one.id for one in plan.refused}
         marks = Marks.of((each for _, each in source.briefs()), result.estimates, refused)
@@ -254,7 +258,7 @@ def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> 
 
 
 def _deliver(
-    result: Outcome, target: Target, annotations: Mapping[Path, bytes], inputs: Sequence[str]
+    result: Outcome, target: Target, others: Mapping[Path, bytes], inputs: Sequence[str]
 ) -> None:
     """Write everything but a store, which is written."""
     from fretc.audit.many_logs import Audit
@@ -264,9 +268,9 @@ def _deliver(
     if not target.is_store:
         assert isinstance(result, Audit), "what is no store is in memory"
         own = {target.path: result.evidence}
-    if {*map(os.path.realpath, own)} & {*map(os.path.realpath, annotations)}:
+    if {*map(os.path.realpath, own)} & {*map(os.path.realpath, others)}:
         stop(not_written(str(target.path), "two outputs would go there"))
-    deliver({**own, **annotations}, inputs)
+    deliver({**own, **others}, inputs)
     if target.is_store:
         say_line(visible(f"wrote {target.path}"))
     remove_other(target)

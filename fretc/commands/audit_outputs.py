@@ -65,9 +65,11 @@ def target(output: str | None, logs: int) -> Target:
     return Target(Path(output), is_store=output != "-" and not output.endswith(".json"))
 
 
-def check(target: Target) -> None:
-    """Stop where it cannot be written, before hours of audit have gone by."""
+def check(target: Target, parquet: str | None) -> None:
+    """Stop where they cannot be written, before hours of audit have gone by."""
     path = target.path
+    if parquet is not None:
+        _check_table(parquet, path)
     if target.is_printed or not os.path.lexists(path):
         return
     if not target.is_store:
@@ -80,6 +82,22 @@ def check(target: Target) -> None:
 
     if any(path.iterdir()) and not is_store(path):
         stop(_no_store(path))
+
+
+def _check_table(parquet: str, evidence: Path) -> None:
+    if parquet == "-":
+        stop(not_written(parquet, "a table is a file"))
+    if os.path.exists(parquet) and not os.path.isfile(parquet):
+        stop(not_written(parquet, "it is no regular file"))
+    if os.path.realpath(parquet) == os.path.realpath(evidence):
+        stop(not_written(parquet, "two outputs would go there"))
+
+
+def table(outcome: Outcome) -> bytes:
+    """The content of a Parquet file with a row for each result."""
+    from fretc.audit.outputs import table as tables
+
+    return tables.parquet(tables.table(outcome.source))
 
 
 def remove_other(target: Target) -> None:

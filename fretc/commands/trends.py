@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -51,15 +50,15 @@ def trends(
     something that was known before is not known now, or nothing can be compared, 2 bad use or
     bad input.
     """
-    from fretc.audit.store.anywhere import StoreError, source
+    from fretc.audit.store.anywhere import StoreError, required_source
     from fretc.trends.trends import trends as trends_of
 
     if html is not None:
         protect([Path(html)], evidence)
-    sources = [source(path) for path in dict.fromkeys(evidence)]
+    sources = [required_source(path) for path in dict.fromkeys(evidence)]
     wrong = [each for each in sources if isinstance(each, Diagnostic)]
     if wrong:
-        stop(*(replace(each, severity=Severity.ERROR) for each in wrong))
+        stop(*wrong)
     good = [each for each in sources if not isinstance(each, Diagnostic)]
     try:
         known = trends_of(good, by, level)

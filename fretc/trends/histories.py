@@ -277,13 +277,12 @@ class _Reader:
 
     def _run(self, facts: RunFacts, round_: int) -> Run:
         labels = facts.labels
-        version = labels.get(VERSION) or labels.get(COMMIT, "")
         return Run(
             facts.run,
             facts.log or facts.log_summary or facts.run,
             scenario_of(facts),
             round_,
-            version,
+            labels.get(VERSION, ""),
             f"commit {labels[COMMIT]}" if COMMIT in labels else f"round {round_}",
             time_of(facts),
         )

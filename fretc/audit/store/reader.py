@@ -19,7 +19,7 @@ from compiler.files.checked_json import plain as parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, RunFacts, Stretches, brief, stretches
+from fretc.audit.evidence.briefs import Brief, RunFacts, brief
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import Evidence
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
@@ -141,33 +141,28 @@ class Store:
                 raise self._error(f"cannot be read: {error}") from None
             yield from zip((start + row for row in some), found, strict=True)
 
-    def latencies(self, requirement: str) -> Iterator[tuple[int, Sequence[float]]]:
-        """The latencies in seconds of each result of a requirement, with its place, in order."""
-        yield from self._nested(requirement, "latencies_s")
+    def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
+        """Latencies in seconds of each result of some requirements, with its place, in order."""
+        yield from self._nested(requirements, "latencies_s")
 
-    def thresholds(self, requirement: str) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of a requirement, with its place, in order."""
-        for at, value in self._nested(requirement, "thresholds"):
+    def thresholds(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+        """The thresholds of each result of some requirements, with its place, in order."""
+        for at, value in self._nested(requirements, "thresholds"):
             try:
                 yield at, decoded(value, list[Threshold])
             except MisshapenError as error:
                 raise self._error(f"cannot be read: {error}") from None
 
-    def stretches(self, requirement: str) -> Iterator[tuple[int, Stretches]]:
-        """The stretches of each result of a requirement, with its place, in order."""
-        for start, part in self._parts():
-            rows = tables.rows_of(self._table(part, RESULTS, ("requirement",)), requirement)
-            for at, result in self._details(part, start, rows):
-                yield at, stretches(result)
-
-    def _nested(self, requirement: str, column: str) -> Iterator[tuple[int, Any]]:
+    def _nested(self, requirements: Collection[str], column: str) -> Iterator[tuple[int, Any]]:
         for start, part in self._parts():
             some: dict[TableName, pa.Table] = {
                 RESULTS: self._table(part, RESULTS, ("requirement", EXACT)),
                 EVENTS: self._table(part, EVENTS, (column,)),
             }
             try:
-                found = tables.nested(some, column, requirement)
+                found = tables.nested(some, column, requirements)
             except MisshapenError as error:
                 raise self._error(f"cannot be read: {error}") from None
             yield from ((start + row, value) for row, value in found)
@@ -184,6 +179,11 @@ class Store:
                 yield from tables.tallies(some)
             except (MisshapenError, IndexError) as error:
                 raise self._error(f"cannot be read: {error}") from None
+
+    def whole(self, name: TableName) -> pa.Table:
+        """All rows of a table."""
+        found = [self._table(part, name) for _, part in self._parts()]
+        return pa.concat_tables([tables.schema(name).empty_table(), *found])
 
     def counts(self) -> Iterator[int]:
         """How many results each run has."""

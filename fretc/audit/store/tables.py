@@ -6,7 +6,7 @@ hold as it is (`fretc.audit.store.columns`) stands in `exact`, too, as JSON.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from typing import Any, Final, Literal
@@ -403,20 +403,13 @@ def facts(table: pa.Table) -> list[RunFacts]:
     ]
 
 
-def rows_of(table: pa.Table, requirement: str) -> list[int]:
-    """The rows of a requirement."""
-    equal = pc.equal(table["requirement"], requirement).to_numpy(zero_copy_only=False)
-    rows: list[int] = np.flatnonzero(equal).tolist()
-    return rows
-
-
-def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]:
-    """One column of `events` for each row of a requirement, with its row, as plain values.
+def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tuple[int, Any]]:
+    """One column of `events` for each row of some requirements, with its row, as plain values.
 
     Args:
         tables: `results` with `requirement` and `exact`, `events` with the column.
         name: of the column.
-        requirement: whose rows.
+        requirements: whose rows.
 
     Raises:
         MisshapenError: a row cannot be read.
@@ -424,7 +417,9 @@ def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]
     main, events = tables[RESULTS], tables[EVENTS]
     if main.num_rows != events.num_rows:
         raise MisshapenError("`events` does not have the rows of `results`")
-    rows = rows_of(main, requirement)
+    wanted = pa.array([*requirements], pa.string())
+    is_wanted = pc.is_in(main["requirement"], wanted).to_numpy(zero_copy_only=False)
+    rows: list[int] = np.flatnonzero(is_wanted).tolist()
     (column,) = (each.column for each in _NESTED if each.name == name)
     values = column.values(_whole(_taken(events, rows), name))
     texts = _taken(main[EXACT], rows).to_pylist()

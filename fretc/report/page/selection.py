@@ -296,7 +296,7 @@ def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
         kept = replace(kept, diagram="")
     if not chosen.by_anchor[view.anchor].is_short:
         return kept
-    return replace(kept, formulas=(), propositions=(), artefacts=(), histograms=())
+    return replace(kept, formulas=(), propositions=(), artefacts=())
 
 
 def _few(reasons: Sequence[str], where: str) -> tuple[str, ...]:

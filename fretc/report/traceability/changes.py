@@ -49,6 +49,8 @@ class Change:
     """As it is written; empty: it is not there; None: it has no text."""
     is_of_evidence: bool = False
     """The evidence is about another one; since the review it has not changed."""
+    is_table: bool = False
+    """It came or went as a whole: what is not there has no default."""
 
     @property
     def text(self) -> str:
@@ -67,7 +69,8 @@ class Change:
     @property
     def _absent(self) -> str:
         """What stands for a text that is not there: a field that is left out has a default."""
-        return "not stated" if self.node.kind in _WITH_DEFAULTS else "none"
+        has_default = self.node.kind in _WITH_DEFAULTS and not self.is_table
+        return "not stated" if has_default else "none"
 
     @property
     def brief(self) -> str:
@@ -257,7 +260,7 @@ _SOURCES: Mapping[str, frozenset[str]] = {
 """What else a thing may be made of, without a link to it."""
 _SOURCES_OF_TEXTS: Mapping[str, frozenset[str]] = {
     basis.BINDINGS: frozenset({basis.SENTENCE}),
-    WORDS: frozenset({basis.SENTENCE}),
+    WORDS: frozenset({basis.SENTENCE, basis.BINDINGS}),
     basis.TOPICS: frozenset({basis.SENTENCE, basis.BINDINGS}),
     PROOF: frozenset({basis.SENTENCE, basis.BINDINGS}),
 }
@@ -298,7 +301,7 @@ def _merged(
         assert leaf is not None
         if leaf.owner in lone:
             if key[2] == _FACE.get(key[0]) and not _comes_with(key[0], different, lone):
-                yield _change(_name(key, leaf), then, now)
+                yield _change(_name(key, leaf), then, now, is_table=True)
         elif not _is_repetition(key, different):
             yield _change(leaf.what, then, now)
 
@@ -311,10 +314,11 @@ def _is_repetition(key: Key, different: _Pairs) -> bool:
     return key == ("", "", "topics") and own
 
 
-def _change(what: str, then: Leaf | None, now: Leaf | None) -> Change:
+def _change(what: str, then: Leaf | None, now: Leaf | None, *, is_table: bool = False) -> Change:
     leaf = now or then
     assert leaf is not None
-    return Change(leaf.node, what, then.text if then else "", now.text if now else "")
+    before, after = then.text if then else "", now.text if now else ""
+    return Change(leaf.node, what, before, after, is_table=is_table)
 
 
 _SENTENCE, _WORDING = ("", "", "sentence"), ("", "", "wording")

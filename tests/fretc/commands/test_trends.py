@@ -123,6 +123,17 @@ def test_texts_of_a_stranger_do_not_reach_the_terminal(fretc: Fretc) -> None:
     assert max(map(len, run.out.splitlines())) <= 80
 
 
+def test_evidence_with_a_label_that_no_audit_writes_is_refused(fretc: Fretc) -> None:
+    text = Path(evidence(Path("1.json"), judged("a.mcap", scenario="door"))).read_text("utf-8")
+    for label in ('"door"', '"scenario": '):
+        assert label in text
+    for wrong in (f'"{"x" * 10**6}"', '""', "3"):
+        Path("1.json").write_text(text.replace('"door"', wrong), "utf-8")
+        run = fretc("trends", "1.json")
+        assert run.status == 2
+        assert run.err.startswith("F503 ")
+
+
 def test_labels_go_from_the_command_and_the_path_into_the_evidence(fretc: Fretc) -> None:
     shutil.copytree(ROOT / "requirements", "requirements")
     with Path("requirements/bindings.toml").open("a", encoding="utf-8") as file:
