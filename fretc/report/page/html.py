@@ -12,6 +12,7 @@ from compiler.explanation.diagram import diagram
 from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
+from fretc.report.model.changes import Change, follows, new_violations
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Report
 from fretc.report.page.selection import Selection, selection, slimmed
@@ -20,8 +21,8 @@ from fretc.report.pictures.plots import drawing, histogram
 from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
 
-_MOST_CHANGES = 100
-"""The most changes, and the most runs with another verdict, in one list."""
+_MOST_CHANGES, _MOST_RUNS = 100, 20
+"""The most changes in a list, and the most runs of one requirement with another verdict."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
@@ -46,10 +47,22 @@ def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
         diagrams=_diagrams(page, rules),
         argument=_visible(_argument(report)),
         changes=_visible({each.anchor: asdict(each) for each in page.changes if each.anchor}),
+        consequences=_visible(_consequences(page.changes)),
         most=_MOST_CHANGES,
+        most_runs=_MOST_RUNS,
         script_hash=_hash(script),
         style_hash=_hash(style),
     )
+
+
+def _consequences(changes: Sequence[Change]) -> list[dict[str, Any]]:
+    """The requirements of which something follows, those with the most violations first."""
+    found = [
+        {**asdict(each), "new_violations": new_violations(each), "follows": follows(each)}
+        for each in changes
+        if follows(each)
+    ]
+    return sorted(found, key=lambda each: -int(each["new_violations"]))
 
 
 def _hash(text: str) -> str:
