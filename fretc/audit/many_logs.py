@@ -10,6 +10,7 @@ from types import MappingProxyType
 
 from compiler.files.edition import __version__
 from compiler.files.records import UNSET, plain
+from compiler.files.records import replace as record_with
 from compiler.files.templating import to_json
 from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of
@@ -26,6 +27,7 @@ from fretc.audit.one_log import audit, examined, signals_of
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
 from fretc.audit.pool import Killed, each, was_killed
+from fretc.logs.labels import NO_METADATA, labels, over
 from fretc.logs.reader import read
 from fretc.logs.storage.inputs import STDIN
 from fretc.logs.storage.inputs import shown as called
@@ -180,7 +182,7 @@ def audit_logs(
             assert log not in done
             done[log] = one
             tell(log, one)
-    return gathered(plan, [done[log] for log in logs])
+    return gathered(plan, [labelled(plan, done[log]) for log in logs])
 
 
 def gathered(plan: Plan, audits: Sequence[LogAudit]) -> Audit:
@@ -227,11 +229,41 @@ def audited(plan: Plan, log: str) -> LogAudit:
     evidence = audit(recording, declarations, requirements, EVALUATIONS[plan.evaluation])
     phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
     records = [as_record(e) for e in evidence]
-    return LogAudit(
+    own = LogAudit(
         (*records, *_refused_results(plan, records[0])),
         (*recording.findings, *findings(phased, declarations)),
         read=True,
         stamp=before if before == stamp(log) else None,
+    )
+    return _with_own_labels(plan, own, recording.described)
+
+
+def _with_own_labels(
+    plan: Plan, one: LogAudit, described: Mapping[str, tuple[str, ...]] = NO_METADATA
+) -> LogAudit:
+    """The audit of a log with the labels that the bindings ask for."""
+    declared = plan.declarations.labels
+    if not declared:
+        return one
+    found, notes = labels(declared, one.results[0].run, described)
+    return _with_labels(one, found, notes)
+
+
+def labelled(plan: Plan, one: LogAudit) -> LogAudit:
+    """The audit of a log with the labels that the command gives all runs."""
+    if not plan.labels:
+        return one
+    first = one.results[0]
+    found, notes = over(first.labels or {}, plan.labels, first.run)
+    return _with_labels(one, found, notes)
+
+
+def _with_labels(one: LogAudit, found: Mapping[str, str], notes: Sequence[Diagnostic]) -> LogAudit:
+    of_run = dict(sorted(found.items())) or UNSET
+    return replace(
+        one,
+        results=tuple(record_with(result, labels=of_run) for result in one.results),
+        diagnostics=(*one.diagnostics, *notes),
     )
 
 
@@ -275,7 +307,7 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogA
     """
     hashes = _hash_of(log, before)
     records = [unread(called(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
-    return LogAudit(tuple(records), (why,), read=False)
+    return _with_own_labels(plan, LogAudit(tuple(records), (why,), read=False))
 
 
 def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:

@@ -25,8 +25,8 @@ from fretc.logs.signals.signals import blind_zones
 from fretc.logs.signals.traces import Timeline, Trace, trace
 from fretc.logs.signals.words import Foreign, shown
 from fretish import expressions as e
+from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
 from fretish.bindings.amounts import margin as margin_text
-from fretish.bindings.amounts import scaled, seconds, shared_unit
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
@@ -307,8 +307,8 @@ def _latency(evidence: Evidence) -> str:
     if not latencies:
         return ""
     if len(latencies) == 1:
-        return f", answered after {seconds(latencies[0])}"
-    middle, longest = seconds(median(latencies)), seconds(max(latencies))
+        return f", answered after {duration(latencies[0])}"
+    middle, longest = duration(median(latencies)), duration(max(latencies))
     return f", answered after {middle} (median), {longest} (longest)"
 
 

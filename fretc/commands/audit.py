@@ -19,6 +19,7 @@ from fretc.terminal.options import (
     bindings_option,
     format_option,
     jobs_option,
+    label_option,
     output_option,
     path_option,
     requirements_option,
@@ -52,7 +53,7 @@ if TYPE_CHECKING:
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
     "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
-    "Many logs": ("jobs", "resume", "engine"),
+    "Many logs": ("labels", "jobs", "resume", "engine"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
         "query",
@@ -111,6 +112,7 @@ _AUDIT = {
     show_default=True,
     help="Of what all logs together say of a requirement with a probability.",
 )
+@label_option
 @jobs_option
 @click.option(
     "--engine",
@@ -136,6 +138,7 @@ def audit(
     evaluation: str,
     integrity: str,
     confidence: float,
+    labels: tuple[str, ...],
     jobs: int,
     engine: str,
     resume: bool,
@@ -162,8 +165,12 @@ def audit(
     from fretc.audit.log_paths import files_of
     from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.plan import Plan, planned
+    from fretc.logs.labels import given
     from fretc.logs.signals.integrity import Integrity
 
+    given_labels = given(labels)
+    if isinstance(given_labels, Diagnostic):
+        stop(given_labels)
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
         stop(logs)
@@ -180,6 +187,7 @@ def audit(
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         stop(*(reason for reason in plan if reason not in project.diagnostics))
+    plan = replace(plan, labels=given_labels)
     journal = _journal(output, plan) if output != "-" and len(logs) > 1 else None
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refusals, project.diagnostics)
@@ -241,7 +249,7 @@ def _text(result: Audit, project: Project, refusals: Sequence[Diagnostic], form:
         return result.as_json
     results = without_samples(result.results, project.declarations)
     if form == "junit":
-        return junit(results, result.estimates)
+        return junit(results, result.estimates, project.requirements)
     if form == "github":
         return github(results, project.requirements, result.estimates)
     assert form == "sarif", "a choice of --format"

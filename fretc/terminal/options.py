@@ -89,6 +89,13 @@ verification_option = path_option(
     "--verification",
     help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
 )
+label_option = click.option(
+    "--label",
+    "labels",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="A label of all these runs, such as version=2.1; it comes before those of [run.label].",
+)
 jobs_option = click.option(
     "--jobs",
     type=click.IntRange(min=1),

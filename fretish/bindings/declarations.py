@@ -288,6 +288,15 @@ class Assumed:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+@dataclass(frozen=True, slots=True)
+class LabelSource:
+    """Where a label of a run comes from: the metadata of its log, or the path of it."""
+
+    is_path: bool
+    text: str
+    """`build.version`: record and key; or a pattern (`fretish.reading.name_patterns`)."""
+
+
 Part = tuple[str, str]
 """`("signal", "vx")`, `("proposition", "near")` or `("clock", "")`."""
 
@@ -317,6 +326,8 @@ class Declarations:
     mistakes: Mapping[Part, tuple[Diagnostic, ...]] = field(default_factory=dict)
     """Each signal and proposition that is declared and cannot be used, and why; the mistakes of a
     signal are those of the propositions that read it, too."""
+    labels: Mapping[str, tuple[LabelSource, ...]] = field(default_factory=dict)
+    """`[run.label]`: each label of runs, with its sources; the first that says something counts."""
 
     @property
     def signal_names(self) -> tuple[str, ...]:

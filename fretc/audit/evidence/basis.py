@@ -62,7 +62,7 @@ def basis(
     }
 
 
-def outdated(recorded: Mapping[str, str], now: Basis) -> tuple[str, ...]:
+def outdated(recorded: Mapping[str, object], now: Basis) -> tuple[str, ...]:
     """The kinds that are not as they were recorded, without what only follows from another one.
 
     Args:

@@ -29,7 +29,7 @@ from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENC
 from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import ANNOTATIONS
 from fretc.audit.outputs.violated_values import values
-from fretish.bindings.amounts import seconds
+from fretish.bindings.amounts import duration, seconds
 from monitors import kernel
 
 VERDICTS = "/fretc/verdicts"
@@ -137,7 +137,7 @@ def _events(result: Result, rules: Mapping[str, Formalized]) -> Iterator[_Event]
     for trigger in triggers.values():
         yield event(trigger.ns, _INFO, f"{id}: triggered")
     for answer in result.answers:
-        waited = seconds((answer.ns - triggers[answer.trigger].ns) / _SECOND)
+        waited = duration((answer.ns - triggers[answer.trigger].ns) / _SECOND)
         yield event(answer.ns, _INFO, f"{id}: answered after {waited}")
     for violation in result.violations:
         cause = violation.trigger

@@ -9,12 +9,15 @@ import re
 from collections.abc import Iterator
 
 from fretc.audit.evidence.verdicts import SUSPECT
-from fretc.report.model.phrases import visible
+from fretc.report.model.changes import Change, follows, only_change
+from fretc.report.model.phrases import times, visible
 from fretc.report.model.views import Mark, Report, RequirementView, worst_first
 from fretish.diagnostics import signs
 
 _MARKUP = re.compile(r"([\\`*_{}\[\]()<>#+!|~&:@-])")
 _LISTED = 50
+_MOST_CHANGES, _NAMED, _RUNS = 20, 6, 3
+"""The most changes, requirements of one change, and runs with another verdict."""
 
 
 def markdown(report: Report) -> str:
@@ -63,15 +66,38 @@ def _verdict(mark: Mark) -> str:
 
 
 def _changes(report: Report) -> Iterator[str]:
+    """Each change once; then what follows from it, requirement by requirement."""
     if not report.changes:
         return
     yield ""
     yield "### Changed since the review"
     yield ""
-    for change in report.changes:
-        yield f"- **{_plain(change.requirement)}**: {_plain('; '.join(change.lines))}"
-        for run, then, now in change.verdicts:
-            yield f"  - {_plain(run)}: {then} → {now}"
+    shown: list[Change] = []
+    for group in report.change_groups[:_MOST_CHANGES]:
+        only = only_change(group, report.changes)
+        shown += [only] if only else []
+        ids = [_plain(id) for id, _ in group.requirements[:_NAMED]]
+        left = len(group.requirements) - _NAMED
+        named = f"**{', '.join(ids)}**{f' and {left} more' if left > 0 else ''}"
+        more = follows(only) if only else ()
+        yield f"- {named}: {_plain('; '.join([group.change.text, *more]))}"
+        yield from _verdicts(only) if only else ()
+    if len(report.change_groups) > _MOST_CHANGES:
+        yield f"- … and {len(report.change_groups) - _MOST_CHANGES} more changes"
+    others = [change for change in report.changes if follows(change) and change not in shown]
+    for change in others[:_MOST_CHANGES]:
+        yield f"- **{_plain(change.requirement)}**: {_plain('; '.join(follows(change)))}"
+        yield from _verdicts(change)
+    if len(others) > _MOST_CHANGES:
+        yield f"- … and {len(others) - _MOST_CHANGES} more requirements"
+
+
+def _verdicts(change: Change) -> Iterator[str]:
+    """The first runs with another verdict, the worst first."""
+    for run, then, now in change.verdicts[:_RUNS]:
+        yield f"  - {_plain(run)}: {_plain(then)} → {_plain(now)}"
+    if len(change.verdicts) > _RUNS:
+        yield f"  - … and {times(len(change.verdicts) - _RUNS, 'more run')}"
 
 
 def _accepted(report: Report) -> Iterator[str]:

@@ -12,25 +12,32 @@ from compiler.explanation.diagram import diagram
 from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
+from fretc.report.across.layout import drawn_lanes, drawn_uses
 from fretc.report.model.phrases import visible
-from fretc.report.model.views import Report
+from fretc.report.model.views import Report, worst_first
 from fretc.report.page.selection import Selection, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram
 from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
+from fretc.report.sections.details import Details
 
+_ACROSS = 16
+"""The most requirements with pictures of all their runs; `--json` has those of all."""
+_MOST_CHANGES = 100
+"""The most changes, and the most runs with another verdict, in one list."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
-def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
+def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> str:
     """The whole file.
 
     Args:
         report: all parts.
+        details: the evidence behind its rows.
         rules: formalized requirements; the page draws what they mean.
     """
-    choice = selection(report)
+    choice = selection(report, details)
     page = slimmed(report, choice)
     script, style = render(_SCRIPT), render(_STYLE)
     return render(
@@ -43,6 +50,9 @@ def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
         scales=_visible(_scales(page)),
         diagrams=_diagrams(page, rules),
         argument=_visible(_argument(report)),
+        across=_visible(_across(report, choice, _links(choice))),
+        changes=_visible({each.anchor: asdict(each) for each in page.changes if each.anchor}),
+        most=_MOST_CHANGES,
         script_hash=_hash(script),
         style_hash=_hash(style),
     )
@@ -65,6 +75,34 @@ def _pictures(choice: Selection) -> dict[str, list[dict[str, Any]]]:
         ]
         for section in choice.by_anchor.values()
         for result in (*section.details, *section.folded)
+    }
+
+
+def _links(choice: Selection) -> frozenset[str]:
+    """Where links of pictures can lead: to what the page has of pictures, results and runs."""
+    return choice.anchors | {
+        f"picture-{result.anchor}.{number}"
+        for section in choice.by_anchor.values()
+        for result in (*section.details, *section.folded)
+        for number, _ in enumerate(result.timelines, 1)
+    }
+
+
+def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[str, Any]:
+    """The pictures of all runs; those of some requirements, the worst first, by their anchors."""
+    everything = report.across.lanes
+    worst = {view.anchor for view in worst_first(report.requirements)[:_ACROSS]}
+    return {
+        "lanes": everything and asdict(drawn_lanes(everything, "across-lanes", links)),
+        "requirements": {
+            each.anchor: {
+                "lanes": each.lanes
+                and asdict(drawn_lanes(each.lanes, f"lanes-{each.anchor}", links)),
+                "uses": each.uses and asdict(drawn_uses(each.uses, f"uses-{each.anchor}", links)),
+            }
+            for each in report.across.requirements
+            if each.anchor in worst and not choice.by_anchor[each.anchor].is_short
+        },
     }
 
 

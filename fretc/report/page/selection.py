@@ -7,11 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import zip_longest
+from itertools import islice, zip_longest
 
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
-from fretc.report.model.views import Mark, Report, RequirementView, ResultView, RunView
+from fretc.report.model.views import (
+    Mark,
+    Report,
+    RequirementView,
+    ResultRow,
+    ResultView,
+    RunSummary,
+    RunView,
+)
+from fretc.report.sections.details import Details
 
 COMPACT = 5_000
 """Above this number of results, only runs that are not satisfied have a row."""
@@ -70,7 +79,7 @@ class Selection:
     by_anchor: Mapping[str, SectionRuns]
     runs: tuple[RunView, ...]
     """Runs with a section of their own."""
-    run_rows: tuple[RunView, ...]
+    run_rows: tuple[RunSummary, ...]
     """Runs in a table; empty where each run has a section."""
     runs_left_out: str
     notes: tuple[str, ...]
@@ -79,19 +88,30 @@ class Selection:
     """The anchors of all results and runs in the page."""
 
 
-def selection(report: Report) -> Selection:
-    """The selection for a report."""
+def selection(report: Report, details: Details) -> Selection:
+    """The selection for a report, from its rows; the details of no others are read."""
     total = sum(len(view.results) for view in report.requirements)
     compact = total > COMPACT
-    detailed = _detailed(report.requirements, None if total <= _FOLDED else _VIOLATIONS)
+    detailed = _detailed(report.requirements)
+    rest = [
+        row
+        for view in report.requirements
+        for row in view.results
+        if total <= _FOLDED and row.anchor not in detailed and _is_good(row)
+    ]
+    views = {row.anchor: view for row, view in details.results((*detailed.values(), *rest))}
+    open_ = _shortened([views[anchor] for anchor in detailed], total)
+    folded = {row.anchor: views[row.anchor] for row in rest}
     by_anchor = {
-        view.anchor: _section_runs(view, detailed, compact, total, len(report.requirements))
+        view.anchor: _section_runs(view, open_, folded, compact, len(report.requirements))
         for view in report.requirements
     }
     many = len(report.runs) > _RUNS
-    run_rows = report.runs[:_RUN_ROWS] if many else ()  # runs with errors and damage come first
     alone = [run for run in report.runs if run.findings or run.gaps or not run.intact]
-    sections = tuple(alone[:_RUNS]) if many else report.runs
+    sections = details.run_views(alone[:_RUNS] if many else report.runs)
+    own = {run.anchor: run for run in sections}
+    rows = report.runs[:_RUN_ROWS] if many else ()  # runs with errors and damage come first
+    run_rows = tuple(own.get(run.anchor, run) for run in rows)
     left = len(report.runs) - len(run_rows) if many else 0
     anchors = {
         *(row.anchor for each in by_anchor.values() for row in each.rows),
@@ -137,17 +157,12 @@ def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
 # The results of a requirement ------------------------------------------------------------------
 
 
-def _is_good(result: ResultView) -> bool:
+def _is_good(result: ResultRow) -> bool:
     return result.mark.shows
 
 
-def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[str, ResultView]:
-    """The results with all details: the worst of each requirement, then the next of each, ...
-
-    Args:
-        views: the requirements with all their results.
-        listed: the most violations of one result; None: all that the report lists.
-    """
+def _detailed(views: Sequence[RequirementView]) -> Mapping[str, ResultRow]:
+    """The results with all details: the worst of each requirement, then the next of each, ..."""
     wanted = [
         sorted(
             (r for r in view.results if not _is_good(r) or len(view.results) == 1),
@@ -155,29 +170,33 @@ def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[s
         )[:DETAILED]
         for view in views
     ]
-    details: dict[str, ResultView] = {}
+    in_turn = (r for turn in zip_longest(*wanted) for r in turn if r is not None)
+    return {row.anchor: row for row in islice(in_turn, DETAILED)}
+
+
+def _shortened(results: Sequence[ResultView], total: int) -> Mapping[str, ResultView]:
+    """The results in their order, with the pictures and violations that the page has room for."""
+    listed = None if total <= _FOLDED else _VIOLATIONS
+    short: dict[str, ResultView] = {}
     pictures = PICTURES
-    for result in (r for turn in zip_longest(*wanted) for r in turn if r is not None):
-        if len(details) == DETAILED:
-            break
+    for result in results:
         kept = result.timelines[:pictures]
         pictures -= len(kept)
         violations = result.violations[:listed]
-        details[result.anchor] = replace(result, timelines=kept, violations=violations)
-    return details
+        short[result.anchor] = replace(result, timelines=kept, violations=violations)
+    return short
 
 
 def _section_runs(
     view: RequirementView,
     detailed: Mapping[str, ResultView],
+    foldable: Mapping[str, ResultView],
     compact: bool,
-    total: int,
     requirements: int,
 ) -> SectionRuns:
-    details = tuple(detailed[r.anchor] for r in view.results if r.anchor in detailed)
-    rest = [result for result in view.results if result.anchor not in detailed]
-    folded = tuple(filter(_is_good, rest)) if total <= _FOLDED else ()
-    rows: Sequence[ResultView] = view.results if len(view.results) > 1 else ()
+    details = [r for r in view.results if r.anchor in detailed]
+    folded = [r for r in view.results if r.anchor in foldable]
+    rows: Sequence[ResultRow] = view.results if len(view.results) > 1 else ()
     if compact:
         bad = [result for result in rows if not _is_good(result)]
         rows = sorted(bad, key=lambda result: result.mark.severity)[:_ROWS]
@@ -186,15 +205,15 @@ def _section_runs(
     open_ = {result.anchor for result in (*details, *folded)}
     return SectionRuns(
         rows=tuple(_row(result, result.anchor in open_) for result in rows),
-        details=details,
-        folded=folded,
+        details=tuple(detailed[result.anchor] for result in details),
+        folded=tuple(foldable[result.anchor] for result in folded),
         left_out=tuple(_left_out(view, rows, details, folded)),
         is_short=compact and requirements > _WHOLE,
     )
 
 
-def _row(result: ResultView, has_details: bool) -> RunRow:
-    latency = result.latency
+def _row(result: ResultRow, has_details: bool) -> RunRow:
+    longest = result.latency_max_s
     why = f"; {SUSPECT}, because {'; '.join(result.suspicions)}" if result.suspicions else ""
     return RunRow(
         anchor=result.anchor,
@@ -204,8 +223,8 @@ def _row(result: ResultView, has_details: bool) -> RunRow:
         mark=result.mark,
         triggers=result.triggers,
         violations=result.violations_total,
-        longest=phrases.seconds(latency.longest_s) if latency else "\N{EN DASH}",
-        longest_s=latency.longest_s if latency else -1.0,
+        longest="\N{EN DASH}" if longest is None else phrases.duration(longest),
+        longest_s=-1.0 if longest is None else longest,
         reason=f"{result.reason}{why}",
         has_details=has_details,
     )
@@ -213,9 +232,9 @@ def _row(result: ResultView, has_details: bool) -> RunRow:
 
 def _left_out(
     view: RequirementView,
-    rows: Sequence[ResultView],
-    details: Sequence[ResultView],
-    folded: Sequence[ResultView],
+    rows: Sequence[ResultRow],
+    details: Sequence[ResultRow],
+    folded: Sequence[ResultRow],
 ) -> Iterator[str]:
     bad = sum(not _is_good(result) for result in view.results)
     good = len(view.results) - bad

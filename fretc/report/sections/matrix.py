@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from compiler.project.ancestry import without_hazard
 from compiler.project.folder import Project
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.verdicts import RETIRED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -32,7 +32,7 @@ def matrix(
     project: Project,
     assessments: Sequence[Assessment],
     sections: Sequence[RequirementView],
-    runs: dict[RunKey, Run],
+    runs: Mapping[RunKey, Run],
 ) -> tuple[Row, ...]:
     """A row for each hazard and requirement below it; then the requirements below none."""
     parents = {assessment.id: assessment.requirement.parents for assessment in assessments}
@@ -75,7 +75,7 @@ def _row(
     assessment: Assessment,
     section: RequirementView,
     project: Project,
-    runs: dict[RunKey, Run],
+    runs: Mapping[RunKey, Run],
 ) -> Row:
     return Row(
         hazard=hazard,
@@ -92,7 +92,7 @@ def _row(
     )
 
 
-def _cells(assessment: Assessment, runs: dict[RunKey, Run]) -> tuple[Cell, ...]:
+def _cells(assessment: Assessment, runs: Mapping[RunKey, Run]) -> tuple[Cell, ...]:
     """A cell for each run, the worst first; many runs of one verdict share a cell."""
     if not assessment.audits:
         return (Cell(assessment.mark, "", assessment.anchor),)
@@ -113,9 +113,7 @@ def _cells(assessment: Assessment, runs: dict[RunKey, Run]) -> tuple[Cell, ...]:
 # Orphans ---------------------------------------------------------------------------------------
 
 
-def orphans(
-    project: Project, assessments: Sequence[Assessment], evidence: Evidence | None
-) -> Orphans:
+def orphans(project: Project, assessments: Sequence[Assessment], briefs: Briefs | None) -> Orphans:
     """Every place where the chain from hazard to verdict ends too early."""
     return Orphans(
         hazards=tuple(_uncovered(project, assessments)),
@@ -126,7 +124,7 @@ def orphans(
         parents=tuple(_undeclared(project, assessments)),
         evidence=tuple(
             f"{id} has evidence, but is not among the requirements"
-            for id in unknown_ids(assessments, evidence)
+            for id in unknown_ids(assessments, briefs)
         ),
     )
 
@@ -163,8 +161,8 @@ def _undeclared(project: Project, assessments: Sequence[Assessment]) -> Iterable
                 yield f"{assessment.id} names {parent}, which is not declared"
 
 
-def unknown_ids(assessments: Sequence[Assessment], evidence: Evidence | None) -> tuple[str, ...]:
+def unknown_ids(assessments: Sequence[Assessment], briefs: Briefs | None) -> tuple[str, ...]:
     """The ids in the evidence that are not ids of the project."""
     ids = {assessment.id for assessment in assessments}
-    results = evidence.results if evidence else ()
-    return tuple(sorted({result.requirement for result in results} - ids, key=natural))
+    audited = briefs.by_requirement.keys() if briefs else ()
+    return tuple(sorted({*audited} - ids, key=natural))

@@ -14,9 +14,12 @@ from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
+from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.probabilities import shown
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import (
+    BoundsView,
     Formula,
     Parent,
     ProbabilityView,
@@ -24,12 +27,12 @@ from fretc.report.model.views import (
     Remark,
     RequirementView,
     SignalView,
+    verdict_mark,
 )
 from fretc.report.pictures.histograms import exercise, histograms
 from fretc.report.sections.plans import planned
-from fretc.report.sections.probability import probability_view
 from fretc.report.sections.proofs import SHARED, proof_views
-from fretc.report.sections.results import reasons, result_views
+from fretc.report.sections.results import reasons, result_rows
 from fretc.report.sections.reviews import review, waiver
 from fretc.report.sections.runs import Run, RunKey
 from fretc.report.traceability.artefacts import Product
@@ -44,9 +47,9 @@ from fretish.printer import sentence
 def section(
     assessment: Assessment,
     project: Project,
-    runs: dict[RunKey, Run],
+    runs: Mapping[RunKey, Run],
     anchors: Mapping[str, str],
-    audited: bool,
+    evidence: EvidenceSource | None,
     proofs: Sequence[Proof] = (),
     shared_products: Sequence[Product] = (),
     book: SignatureBook = NO_SIGNATURES,
@@ -58,7 +61,7 @@ def section(
         project: with or without errors.
         runs: all runs.
         anchors: of the section of each requirement, by its id.
-        audited: whether there is any evidence.
+        evidence: None where no run has been audited.
         proofs: about all requirements, and about shared parts.
         shared_products: what targets make from the bindings alone.
         book: who signed what.
@@ -94,9 +97,9 @@ def section(
         probability=_probability(assessment),
         proofs=own_proofs,
         exercise=exercise(assessment),
-        histograms=histograms(assessment),
-        results=result_views(assessment, runs, project.declarations),
-        reasons=reasons(assessment, runs, audited=audited),
+        histograms=histograms(assessment, evidence, project.declarations),
+        results=result_rows(assessment, runs),
+        reasons=reasons(assessment, runs, audited=evidence is not None),
         limit=_limit(rule),
         coverage=assessment.coverage,
         review=review(assessment, book),
@@ -112,7 +115,20 @@ def _limit(rule: Formalized | None) -> str:
 def _probability(assessment: Assessment) -> ProbabilityView | None:
     if assessment.probability is None:
         return None
-    return probability_view(assessment.probability.estimation, assessment.probability.suspicions)
+    estimation, suspicions = assessment.probability.estimation, assessment.probability.suspicions
+    share = "not known" if estimation.estimate is None else f"{estimation.estimate:.4f}"
+    return ProbabilityView(
+        mark=verdict_mark(estimation.answer, suspect=bool(suspicions)),
+        suspicions=suspicions,
+        stated=estimation.text,
+        bound=float(estimation.bound),
+        reason=estimation.reason,
+        lines=estimation.lines[1:],
+        estimate=estimation.estimate,
+        bars=(BoundsView("by whole logs", estimation.bounds.low, estimation.bounds.high),),
+        text=f"Estimate {share}; bounds, by whole logs, {shown(estimation.bounds)}; "
+        f"the bound of the sentence is {estimation.bound}.",
+    )
 
 
 def remark(diagnostic: Diagnostic) -> Remark:
