@@ -17,18 +17,19 @@ from fretc.audit.constancy import never_changed, tallies_of
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Requirement, Result
+from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Hashes, Requirement, Result
 from fretc.audit.evidence.verdicts import VERDICTS
-from fretc.audit.evidence.writer import as_record, unjudged, unread
+from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged, unread
 from fretc.audit.evidence.writer import text as written
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.audit.measurements.judgement import Engine as Evaluation
-from fretc.audit.one_log import audit, examined, signals_of
+from fretc.audit.one_log import audit, examined, hash_of, hash_of_messages, signals_of
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
 from fretc.audit.pool import Killed, each, was_killed
 from fretc.logs.labels import NO_METADATA, labels, over
 from fretc.logs.reader import read
+from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.inputs import STDIN
 from fretc.logs.storage.inputs import shown as called
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -217,8 +218,16 @@ def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
     return replace(diagnostic, message=f"{diagnostic.message} ({which})")
 
 
-def audited(plan: Plan, log: str) -> LogAudit:
-    """Audit one log; all that is needed for it is in the plan."""
+def audited(plan: Plan, log: str, known: Sequence[Result] = ()) -> LogAudit:
+    """Audit one log; all that is needed for it is in the plan.
+
+    Args:
+        plan: what it is judged by.
+        log: its path.
+        known: results of an earlier audit of it, by claims whose `keys` were what they are now.
+            They are taken over where the log still is what they were found in; what the log shows
+            to all claims alike is found again.
+    """
     declarations, requirements = plan.declarations, monitored_requirements(plan)
     before = stamp(log)
     names = tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
@@ -226,9 +235,12 @@ def audited(plan: Plan, log: str) -> LogAudit:
     if isinstance(recording, Diagnostic):
         return _unread(plan, log, recording, before)
     recording = examined(recording, declarations, names)
-    evidence = audit(recording, declarations, requirements, EVALUATIONS[plan.evaluation])
-    phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
-    records = [as_record(e) for e in evidence]
+    taken = {each.requirement: each for each in _taken_over(known, recording)}
+    new = [each for each in requirements if each.monitor.REQUIREMENTS[0].id not in taken]
+    evidence = audit(recording, declarations, new, EVALUATIONS[plan.evaluation]) if new else ()
+    of_claim = {e.requirement: as_record(e) for e in evidence} | taken
+    records = [of_claim[claim.id] for claim in plan.claims]
+    phased = {each.requirement: phases_of(each.phases) for each in records if each.phases}
     own = LogAudit(
         (*records, *_refused_results(plan, records[0])),
         (*recording.findings, *findings(phased, declarations)),
@@ -236,6 +248,28 @@ def audited(plan: Plan, log: str) -> LogAudit:
         stamp=before if before == stamp(log) else None,
     )
     return _with_own_labels(plan, own, recording.described)
+
+
+def _taken_over(known: Sequence[Result], recording: Recording) -> Iterator[Result]:
+    """The results that an audit of the recording would give again.
+
+    Why there is no data may be the fault of another claim's topic: such a result is taken over only
+    where everything that was found in the log is the same.
+    """
+    if not known:
+        return
+    now, log = health(recording), hash_of(recording)
+    messages = hash_of_messages(recording)
+    for one in known:
+        then, hashes = one.health, {**one.hashes}
+        same_log = one.run == recording.name and log.items() <= hashes.items()
+        same_time = (one.start_ns, one.end_ns) == (recording.start_ns, recording.end_ns)
+        same_loss = (then.intact, then.gaps) == (now.intact, now.gaps)
+        same_cause = one.verdict != kernel.NO_DATA or then == now
+        if same_log and same_time and same_loss and same_cause:
+            if hashes.pop("messages", None) is not None or one.outcomes is not UNSET:
+                hashes |= messages
+            yield record_with(one, health=now, labels=UNSET, fingerprints=Hashes(**hashes))
 
 
 def _with_own_labels(
