@@ -27,6 +27,7 @@ from fretc.audit.one_log import audit, examined, hash_of, hash_of_messages, sign
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
 from fretc.audit.pool import Killed, each, was_killed
+from fretc.audit.store.recordings import Kept
 from fretc.logs.labels import NO_METADATA, labels, over
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
@@ -131,15 +132,20 @@ Engine = Callable[[Plan, Sequence[str]], LogAudits]
 """Where logs are audited. Closing what it gives ends all work at once."""
 
 
-def locally(jobs: int) -> Engine:
-    """On this machine, in some processes."""
+def locally(jobs: int, kept: Kept | None = None) -> Engine:
+    """On this machine, in some processes.
+
+    Args:
+        jobs: how many.
+        kept: where the samples of logs are kept.
+    """
 
     def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
         monitored_requirements(plan)  # before the processes are born: they inherit it
         if STDIN in logs:  # another process does not have it
             yield STDIN, audited(plan, STDIN)
         files = [log for log in logs if log != STDIN]
-        with closing(each(partial(audited, plan), files, jobs)) as done:
+        with closing(each(partial(audited, plan, kept=kept), files, jobs)) as done:
             for place, result in done:
                 log = files[place]
                 if isinstance(result, Killed):
@@ -218,7 +224,9 @@ def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
     return replace(diagnostic, message=f"{diagnostic.message} ({which})")
 
 
-def audited(plan: Plan, log: str, known: Sequence[Result] = ()) -> LogAudit:
+def audited(
+    plan: Plan, log: str, known: Sequence[Result] = (), kept: Kept | None = None
+) -> LogAudit:
     """Audit one log; all that is needed for it is in the plan.
 
     Args:
@@ -227,11 +235,12 @@ def audited(plan: Plan, log: str, known: Sequence[Result] = ()) -> LogAudit:
         known: results of an earlier audit of it, by claims whose `keys` were what they are now.
             They are taken over where the log still is what they were found in; what the log shows
             to all claims alike is found again.
+        kept: where the samples of logs are kept: an unchanged one is not read again.
     """
     declarations, requirements = plan.declarations, monitored_requirements(plan)
     before = stamp(log)
     names = tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
-    recording = read(log, declarations, signals_of(declarations, names), plan.integrity)
+    recording = _read(plan, log, names, kept, before)
     if isinstance(recording, Diagnostic):
         return _unread(plan, log, recording, before)
     recording = examined(recording, declarations, names)
@@ -248,6 +257,21 @@ def audited(plan: Plan, log: str, known: Sequence[Result] = ()) -> LogAudit:
         stamp=before if before == stamp(log) else None,
     )
     return _with_own_labels(plan, own, recording.described)
+
+
+def _read(
+    plan: Plan, log: str, names: Sequence[str], kept: Kept | None, before: Stamp | None
+) -> Recording | Diagnostic:
+    """The recording of a log with all signals of the propositions, read or kept."""
+    declarations, integrity = plan.declarations, plan.integrity
+    signals = signals_of(declarations, names)
+    known = kept.recording(log, declarations, signals, integrity) if kept else None
+    if known is not None:
+        return known
+    recording = read(log, declarations, signals, integrity)
+    if kept is not None and isinstance(recording, Recording) and before == stamp(log):
+        kept.keep(log, before, recording, declarations, signals, integrity)
+    return recording
 
 
 def _taken_over(known: Sequence[Result], recording: Recording) -> Iterator[Result]:
@@ -269,7 +293,8 @@ def _taken_over(known: Sequence[Result], recording: Recording) -> Iterator[Resul
         if same_log and same_time and same_loss and same_cause:
             if hashes.pop("messages", None) is not None or one.outcomes is not UNSET:
                 hashes |= messages
-            yield record_with(one, health=now, labels=UNSET, fingerprints=Hashes(**hashes))
+            alike = {"health": now, "labels": UNSET, "course": UNSET}
+            yield record_with(one, fingerprints=Hashes(**hashes), **alike)
 
 
 def _with_own_labels(
