@@ -24,8 +24,8 @@ fretc.audit.outputs  fretc.audit.bindings
 fretc.verification.engines  fretc.verification.monitor  fretc.verification.interceptor
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.report.traceability  fretc.attestation  fretc.reproduction
-fretc.report.model  fretc.report.pictures  fretc.report.sections  fretc.report.across
-fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
+fretc.report.model  fretc.report.pictures  fretc.report.sections  fretc.report.front
+fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
 simulation.world  simulation.nodes  simulation
 fretc.terminal  fretc.campaigns  fretc.api  fretc.commands  fretc
 """.split()
@@ -89,7 +89,7 @@ DOORS = {
         "fretc/logs/storage/bags.py",
         "simulation/recording.py",
     },
-    "fsspec": {"fretc/logs/storage/inputs.py"},
+    "fsspec": {"fretc/logs/storage/inputs.py", "fretc/logs/storage/listings.py"},
     "aiohttp": {"fretc/logs/storage/web.py"},
     "z3": {"fretc/verification/loop/bounds.py"},
     "reqif": {"compiler/project/parents.py", "fretc/report/forms/reqif.py"},

@@ -9,6 +9,8 @@ from importlib.resources import files
 from pathlib import Path
 
 __version__ = "0.1.0"
+PACKAGE = f"pkg:pypi/fretc@{__version__}"
+"""The address of this version of the tool, as a package URL."""
 _ROOMS = ("fretish", "monitors", "compiler", "fretc")
 _LIBRARIES = ("lz4", "mcap", "mcap-ros1-support", "mcap-ros2-support", "numpy", "zstandard")
 """That have a part in a verdict: they read logs."""

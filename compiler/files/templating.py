@@ -14,6 +14,7 @@ from typing import Any
 
 import tomli_w
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
 
 from fretish.diagnostics import signs
 
@@ -48,6 +49,7 @@ def _environment() -> Environment:
     environment.filters["python"] = python
     environment.filters["comment"] = comment
     environment.filters["json"] = to_json
+    environment.filters["data"] = data
     environment.filters["toml"] = toml
     environment.filters["key"] = key
     environment.filters["hoa"] = quoted
@@ -76,6 +78,12 @@ def quoted(text: str) -> str:
     """The text in double quotes, on one line: a string of HOA, and of DOT where it is no label."""
     escaped = " ".join(text.split()).replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'
+
+
+def data(value: object) -> Markup:
+    """JSON in a `<script>` of data, which no text in it can end."""
+    text = json.dumps(value, separators=(",", ":"))
+    return Markup(text.replace("<", "\\u003c"))
 
 
 def toml(text: str) -> str:

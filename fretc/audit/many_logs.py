@@ -23,7 +23,14 @@ from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged, 
 from fretc.audit.evidence.writer import text as written
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.audit.measurements.judgement import Engine as Evaluation
-from fretc.audit.one_log import audit, examined, hash_of, hash_of_messages, signals_of
+from fretc.audit.one_log import (
+    MonitoredRequirement,
+    audit,
+    examined,
+    hash_of,
+    hash_of_messages,
+    signals_of,
+)
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
 from fretc.audit.pool import Killed, each, was_killed
@@ -35,6 +42,7 @@ from fretc.logs.storage.inputs import STDIN
 from fretc.logs.storage.inputs import shown as called
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import visible
+from fretish.reading.memory import remembered
 from monitors import kernel
 
 
@@ -239,7 +247,7 @@ def audited(
     """
     declarations, requirements = plan.declarations, monitored_requirements(plan)
     before = stamp(log)
-    names = tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
+    names = _propositions(requirements)
     recording = _read(plan, log, names, kept, before)
     if isinstance(recording, Diagnostic):
         return _unread(plan, log, recording, before)
@@ -257,6 +265,11 @@ def audited(
         stamp=before if before == stamp(log) else None,
     )
     return _with_own_labels(plan, own, recording.described)
+
+
+@remembered
+def _propositions(requirements: Sequence[MonitoredRequirement]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
 
 
 def _read(

@@ -48,12 +48,13 @@ if TYPE_CHECKING:
     from fretc.audit.journal import Journal
     from fretc.audit.many_logs import Audit, Engine
     from fretc.audit.plan import Plan
+    from fretc.audit.store.recordings import Kept
 
 
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
     "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
-    "Many logs": ("labels", "jobs", "resume", "engine"),
+    "Many logs": ("labels", "jobs", "resume", "keep_columns", "engine"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
         "query",
@@ -121,6 +122,11 @@ _AUDIT = {
     help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
 )
 @click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
+@click.option(
+    "--keep-columns",
+    is_flag=True,
+    help="Keep samples of all logs beside the evidence; an unchanged log is not read again.",
+)
 @path_option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
 @click.option(
     "--summary", is_flag=True, help="How many of which verdict, worst runs, slowest answers."
@@ -142,6 +148,7 @@ def audit(
     jobs: int,
     engine: str,
     resume: bool,
+    keep_columns: bool,
     parquet: str | None,
     summary: bool,
     query: str | None,
@@ -191,7 +198,8 @@ def audit(
     journal = _journal(output, plan) if output != "-" and len(logs) > 1 else None
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refusals, project.diagnostics)
-    result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
+    kept = _kept(output) if keep_columns else None
+    result = audit_all(plan, logs, _engine(engine, jobs, kept), journal, resume=resume)
     result = replace(result, diagnostics=project.answered(result.diagnostics))
     say_also(result.diagnostics, (*project.diagnostics, *refusals))
     if result.read:  # a mistyped name must not cost the evidence of the last audit
@@ -259,11 +267,33 @@ def _text(result: Audit, project: Project, refusals: Sequence[Diagnostic], form:
     return sarif(each, project.rules, diagnostics, together, project.without_rule)
 
 
-def _engine(name: str, jobs: int) -> Engine:
+def _kept(evidence: str) -> Kept | None:
+    """Where samples are kept; None where there is no key of the user, which says who kept them."""
+    from compiler.files.user_key import user_key
+    from fretc.audit.store.recordings import SUFFIX, Kept
+
+    if evidence == "-":
+        stop(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
+    key = user_key()
+    if isinstance(key, Diagnostic):
+        say([key])
+        return None
+    return Kept(Path(f"{evidence.rstrip('/')}{SUFFIX}"), key)
+
+
+def _no_place_for_columns(why: str, mend: str) -> Diagnostic:
+    message = f"`--keep-columns` keeps samples beside the evidence of this machine, and {why}"
+    return Diagnostic(Code.BAD_USAGE, message, help=mend)
+
+
+def _engine(name: str, jobs: int, kept: Kept | None) -> Engine:
     if name == "local":
         from fretc.audit.many_logs import locally
 
-        return locally(jobs)
+        return locally(jobs, kept)
+    if kept is not None:
+        why = f"`--engine {name}` reads the logs elsewhere"
+        stop(_no_place_for_columns(why, "leave out one of the two"))
     from fretc.audit import fleet
 
     engine = fleet.engine(name, jobs)

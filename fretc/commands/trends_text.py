@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from textwrap import wrap
 
+from fretc.audit.evidence.verdicts import VERDICTS, severity
 from fretc.report.model import phrases
 from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded
 from fretc.trends.changes import Change, Tone
-from fretc.trends.comparisons import Comparison, Finding
-from fretc.trends.trends import Item, Trends, gone
+from fretc.trends.comparisons import Finding
+from fretc.trends.trends import Group, Item, Trends, arrived, gone
 from fretish.diagnostics import signs
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.signs import Sign
@@ -21,7 +23,6 @@ _MARKS = 12
 """Rounds whose marks are shown, the newest ones."""
 _NAME, _ID = 22, 12
 """The widest column of scenarios, and of ids."""
-_TONES = {Tone.VIOLATED: signs.BAD, Tone.SHOWN: signs.GOOD, Tone.OPEN: signs.UNKNOWN}
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,14 +42,20 @@ _SECTIONS = (
     _Section("still violated", (Change.STILL,), signs.BAD, 6),
     _Section("known before, open now", (Change.LOST,), signs.UNKNOWN, 5),
     _Section("fixed", (Change.FIXED,), signs.GOOD, 4),
-    _Section("never judged before", (Change.FIRST,), signs.UNUSED, 3),
 )
 
 
 def lines(trends: Trends, screen: Screen) -> Iterator[Line]:
     """All lines; none is wider than the screen."""
     for line in _all(trends, screen):
-        yield _narrow(line, screen.width)
+        (text, colour), *others = line
+        plain = screen.text(text)
+        if others or len(plain) <= screen.width:
+            yield _narrow(line, screen.width)
+            continue
+        margin = " " * (len(plain) - len(plain.lstrip()))
+        for part in wrap(plain, screen.width, subsequent_indent=f"{margin}  "):
+            yield ((part, colour),)
 
 
 def _narrow(line: Line, most: int) -> Line:
@@ -70,9 +77,9 @@ def _all(trends: Trends, screen: Screen) -> Iterator[Line]:
     yield from _section(trends, _SECTIONS[2], screen)
     yield from _flaky(trends, screen)
     yield from _section(trends, _SECTIONS[3], screen)
-    yield from _gone(trends)
-    for section in _SECTIONS[4:]:
-        yield from _section(trends, section, screen)
+    yield from _groups(gone(trends), signs.UNKNOWN, "gone: judged before, not in the newest round")
+    yield from _section(trends, _SECTIONS[4], screen)
+    yield from _groups(arrived(trends), signs.UNUSED, "never judged before")
     yield from _rest(trends)
 
 
@@ -116,16 +123,23 @@ def _more(items: Sequence[Item]) -> Iterator[Line]:
 
 
 def _line(item: Item, screen: Screen) -> Line:
-    marks: list[Piece] = [
-        (" ", None) if tone is None else (_TONES[tone].glyph, _TONES[tone].colour)
-        for tone in item.tones[-_MARKS:]
-    ]
+    rounds = zip(item.tones[-_MARKS:], item.rounds[-_MARKS:], strict=True)
+    marks = [_mark(tone, verdicts) for tone, verdicts in rounds]
     return (
         (f"    {_column(item.requirement, _ID, screen)}  ", None),
         (f"{_column(str(item.scenario), _NAME, screen)}  ", None),
         *marks,
         (f"  {_words(item)}", None),
     )
+
+
+def _mark(tone: Tone | None, verdicts: Sequence[str]) -> Piece:
+    """The sign of a round: of an open one that of its worst verdict."""
+    if tone is None:
+        return " ", None
+    word = min(verdicts, key=severity)
+    sign = signs.GOOD if tone is Tone.SHOWN else VERDICTS[word].sign
+    return sign.glyph, sign.colour
 
 
 def _column(text: str, columns: int, screen: Screen) -> str:
@@ -146,27 +160,23 @@ def _flaky(trends: Trends, screen: Screen) -> Iterator[Line]:
     """Those that no other list has."""
     listed = {Change.NEW, Change.FIRST_VIOLATED, Change.STILL, Change.LOST, Change.FIXED}
     items = [item for item in trends.items if item.flaky and item.change not in listed]
-    count = sum(item.flaky for item in trends.items)
-    if not count:
+    if not items:
         return
     yield _BLANK
-    elsewhere = "" if count == len(items) else f" ({count - len(items)} of them in other lists)"
-    yield _title(signs.OPEN, count, f"flaky: now violated, now not{elsewhere}")
+    yield _title(signs.OPEN, len(items), "flaky: violated now and then, and not now")
     for item in items[:4]:
         yield _line(item, screen)
     yield from _more(items[4:])
 
 
-def _gone(trends: Trends) -> Iterator[Line]:
-    groups = gone(trends)
+def _groups(groups: Sequence[Group], sign: Sign, title: str) -> Iterator[Line]:
     if not groups:
         return
     yield _BLANK
-    yield _title(signs.UNKNOWN, len(groups), "gone: judged before, not in the newest round")
+    yield _title(sign, sum(len(group.items) for group in groups), title)
     for group in groups[:5]:
         yield ((f"    {group.text}", None),)
-    if len(groups) > 5:
-        yield ((f"    and {len(groups) - 5} more: see --html or --format json", None),)
+    yield from _more([item for group in groups[5:] for item in group.items])
 
 
 def _regressions(trends: Trends, screen: Screen) -> Iterator[Line]:
@@ -174,26 +184,20 @@ def _regressions(trends: Trends, screen: Screen) -> Iterator[Line]:
     if not found:
         return
     yield _BLANK
-    yield _title(signs.BAD, len(found), f"regressed in {trends.held.after}: more than chance")
+    yield _title(
+        signs.BAD, len(found), f"regressed in {trends.held.after} (medians), by more than chance"
+    )
     for one in found[:6]:
-        yield ((f"    {_column(one.measure.requirement, _ID, screen)}  {worse(one)}", None),)
+        yield ((f"    {_column(one.measure.ids, _ID, screen)}  {one.measure} {one.worse}", None),)
     if len(found) > 6:
         yield ((f"    and {len(found) - 6} more: see --html or --format json", None),)
-
-
-def worse(one: Comparison) -> str:
-    """From which median to which, of how many runs, and how likely that is chance."""
-    before, after = (phrases.value(number or 0.0, one.measure.unit) for number in one.medians)
-    return (
-        f"{one.measure} {before} to {after} (medians of {one.runs_before} and {one.runs_after} "
-        f"runs), p = {one.p:.2g}"
-    )
 
 
 def _rest(trends: Trends) -> Iterator[Line]:
     yield _BLANK
     steady, never = len(trends.of(Change.STEADY)), len(trends.of(Change.NEVER_SHOWN))
-    yield ((f"{steady} shown as before, {never} never shown", None),)
+    flaky = sum(item.flaky for item in trends.items)
+    yield ((f"{steady} shown as before, {never} never shown; {flaky} flaky in all", None),)
     chance = len(trends.found(Finding.CHANCE))
     few = len(trends.found(Finding.TOO_FEW))
     held = f"{trends.held.after} against {trends.held.before}"

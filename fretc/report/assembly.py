@@ -19,6 +19,7 @@ from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE, SUPPORTED
 from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
+from fretc.report.front.front import front
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, assessments
 from fretc.report.model.views import (
@@ -40,7 +41,7 @@ from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.reproduction import commands, folder_of, manifest
 from fretc.report.sections.requirement import remark, section
 from fretc.report.sections.results import is_bounded
-from fretc.report.sections.runs import Run, run_summaries, runs
+from fretc.report.sections.runs import Run, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.traceability.acceptances import warnings
 from fretc.report.traceability.artefacts import shared_products
@@ -106,18 +107,34 @@ def report(
     groups = reviews.change_groups(assessed, changes)
     changed = tuple(reviews.change_sentences(changes, groups))
     signature_list = signatures(book, assessed, evidence, proofs)
+    overall_result = overall(
+        project, assessed, sections, all_runs, reservations, withdrawn, signature_list, changed
+    )
+    rows = matrix(project, assessed, sections)
+    run_list = run_summaries(all_runs, project)
+    all_changes = (*changes, *reviews.withdrawals(withdrawn))
+    components = tuple(sorted({rule.sentence.component for rule in project.rules}))
     checked = _checks(project, assessed, lock, evidence)
     whole = Report(
         schema=SCHEMA,
         fretc=__version__,
         project=folder_of(project),
-        components=tuple(sorted({rule.sentence.component for rule in project.rules})),
+        components=components,
         evidence=phrases.place(path) if evidence else "",
         audited_by=evidence.fretc if evidence else "",
-        overall=overall(
-            project, assessed, sections, all_runs, reservations, withdrawn, signature_list, changed
+        overall=overall_result,
+        front=front(
+            ": ".join(filter(None, [phrases.joined(components), folder_of(project)])),
+            overall_result,
+            sections,
+            rows,
+            assessed,
+            all_runs,
+            run_list,
+            all_changes,
+            [text for text in overall_result.sentences if text != trust(all_runs, project)],
         ),
-        runs=run_summaries(all_runs, project),
+        runs=run_list,
         claims=_claims(assessed, len(all_runs)),
         counts=_counts(assessed),
         not_shown=tuple(_not_shown(view) for view in worst_first(sections) if view.reasons),
@@ -127,10 +144,10 @@ def report(
         verification=phrases.place(proofs.file) if proofs else "",
         remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
         hazards=hazard_views(project),
-        matrix=matrix(project, assessed, sections, runs_by_key),
+        matrix=rows,
         orphans=orphans(project, assessed, briefs),
         reviewed=reviews.summary(assessed, book),
-        changes=(*changes, *reviews.withdrawals(withdrawn)),
+        changes=all_changes,
         withdrawn=tuple(Withdrawal(one.review.requirement, one.text) for one in withdrawn),
         waivers=tuple(view.waiver for view in sections if view.waiver),
         signatures=signature_list,

@@ -12,7 +12,7 @@ from compiler.files.dates import today
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.attestation.signatures import read_signatures
-from fretc.audit.evidence.reader import read as read_evidence
+from fretc.audit.store.anywhere import StoreError, source
 from fretc.report.assembly import report
 from fretc.report.forms.json_text import json_pieces
 from fretc.report.model.views import Report
@@ -71,14 +71,14 @@ def make(
 
     Args:
         project: with or without errors; the report shows what could not be formalized as such.
-        evidence: path of an evidence file; where there is none, nothing has been exercised.
+        evidence: path of a file or of a store; where there is none, nothing has been exercised.
         lock: path of a lock; None: nothing has been reviewed.
         waivers: path of a file of waivers; None: nothing is waived.
         verification: path of a file that `fretc verify` wrote; None: nothing was proved.
         ajpf: paths of results that the `run.py` of bundles wrote.
         signers: path of a list of signers; None: no signature counts.
     """
-    audits = read_evidence(evidence)
+    audits = source(evidence)
     if isinstance(audits, Diagnostic) and audits.is_error:
         return ReportBuild(None, (audits,))
     proofs = read_proofs(verification) if verification is not None else None
@@ -95,16 +95,19 @@ def make(
     proofs_of_ajpf, ajpf_diagnostics = ajpf_proofs(project.rules, ajpf)
     # A missing file of evidence is a note: the report shows that nothing has been exercised.
     present, notes = (None, (audits,)) if isinstance(audits, Diagnostic) else (audits, ())
-    full_report, details, report_diagnostics = report(
-        project,
-        present,
-        path=evidence,
-        lock=reviews,
-        waivers=waivers_in_force,
-        proofs=proofs,
-        ajpf=proofs_of_ajpf,
-        book=signatures,
-    )
+    try:
+        full_report, details, report_diagnostics = report(
+            project,
+            present,
+            path=evidence,
+            lock=reviews,
+            waivers=waivers_in_force,
+            proofs=proofs,
+            ajpf=proofs_of_ajpf,
+            book=signatures,
+        )
+    except StoreError as error:
+        return ReportBuild(None, (error.diagnostic,))
     return ReportBuild(
         full_report,
         (*notes, *waiver_diagnostics, *ajpf_diagnostics, *report_diagnostics),

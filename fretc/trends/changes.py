@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from enum import StrEnum
+from itertools import pairwise
 
 from fretc.audit.evidence.verdicts import BROKEN, SHOWN
 from monitors import kernel
@@ -88,7 +89,7 @@ def is_flaky(rounds: Sequence[Sequence[str]], of_software: Mapping[str, Sequence
     """
     tones = [tone(verdicts) for verdicts in rounds if verdicts]
     known = [each for each in tones if each is not Tone.OPEN]
-    turns = sum(a is not b for a, b in zip(known, known[1:], strict=False))
+    turns = sum(a is not b for a, b in pairwise(known))
     return turns > 1 or any(
         {*verdicts} & {*BROKEN} and {*verdicts} & {*SHOWN} for verdicts in of_software.values()
     )

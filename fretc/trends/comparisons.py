@@ -1,4 +1,4 @@
-"""Latencies and margins of the newest version against those before: is it more than chance?
+"""Latencies and margins of the newest version against those before: whether chance is enough.
 
 Of each run counts one number of a kind, because what happens within a run is not independent:
 the longest and the median latency of its answers, and its least margin to each threshold. Larger
@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from statistics import median
 
 from fretc.audit.evidence.schema import Threshold
+from fretc.report.model.phrases import some, value
 from fretc.trends.histories import Histories, Judged, Run, Scenario
-from fretc.trends.rank_test import Tail, fewer, holm, larger
+from fretc.trends.rank_test import Tail, fewer, holm, larger, testable
 
 LEVEL = 0.05
 """The chance of even one regression that is none, of all that are found together."""
@@ -39,9 +40,9 @@ class Finding(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """What is compared: a latency of a requirement, or its margin to one threshold."""
+    """What is compared: a latency of a requirement, or the margin of some to one threshold."""
 
-    requirement: str
+    requirements: tuple[str, ...]
     kind: Kind
     unit: str
     threshold: str = ""
@@ -51,6 +52,11 @@ class Measure:
     def is_better_larger(self) -> bool:
         """Whether a larger number is better."""
         return self.kind is Kind.MARGIN
+
+    @property
+    def ids(self) -> str:
+        """Its requirements, as they are shown."""
+        return some(self.requirements, 3)
 
     def __str__(self) -> str:
         """As it is shown."""
@@ -84,9 +90,13 @@ class Comparison:
     """Of all runs whose requirement is as it is now, for the picture."""
 
     @property
-    def medians(self) -> tuple[float | None, float | None]:
-        """Before and after."""
-        return self.before, self.after
+    def worse(self) -> str:
+        """From which median to which, of how many runs, and how likely that is chance."""
+        ends = (amount(number or 0.0, self.measure.unit) for number in (self.before, self.after))
+        p = 1.0 if self.p is None else self.p
+        chance = "p < 0.001" if p < 0.001 else f"p = {p:.2g}"
+        runs = f"{self.runs_before} and {self.runs_after} runs"
+        return f"{' to '.join(ends)} ({runs}), {chance}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,25 +140,41 @@ def sides(histories: Histories) -> Sides:
 def comparisons(histories: Histories, held: Sides, level: float = LEVEL) -> tuple[Comparison, ...]:
     """All of them, the regressions first.
 
+    Only what its numbers allow to be found beside all others is tested (Tarone): which that is
+    depends on how many runs there are and which of their numbers are equal, never on which of them
+    are the newest ones.
+
     Args:
         histories: what was read.
         held: which runs are held against which.
         level: the chance of even one regression that is none.
     """
-    measured = [
-        (measure, values)
-        for requirement in histories.requirements
-        for measure, values in _measures(histories, requirement)
-    ]
+    measured = _measured(histories)
     tested = [_tested(histories.runs, held, measure, values) for measure, values in measured]
-    family = [i for i, (tail, _) in enumerate(tested) if tail.least <= level]
+    family = testable([tail.least for tail, _ in tested], level)
     adjusted = dict(zip(family, holm([tested[i][0].p for i in family]), strict=True))
     found = [
-        _comparison(measure, values, *tested[i], adjusted.get(i), level)
+        _comparison(measure, values, tested[i][1], adjusted.get(i), level)
         for i, (measure, values) in enumerate(measured)
     ]
     order = list(Finding)
     return tuple(sorted(found, key=lambda one: (order.index(one.finding), one.p or 1.0)))
+
+
+def _measured(histories: Histories) -> list[tuple[Measure, tuple[Value, ...]]]:
+    """Each measure with its values; what several requirements share is one."""
+    shared: dict[tuple[object, ...], tuple[Measure, tuple[Value, ...]]] = {}
+    for requirement in histories.requirements:
+        for measure, values in _measures(histories, requirement):
+            of_latency = () if measure.threshold else measure.requirements
+            key = measure.threshold, measure.unit, of_latency, values
+            known = shared.get(key)
+            if known is None:
+                shared[key] = measure, values
+            elif measure.threshold:
+                ids = (*known[0].requirements, requirement)
+                shared[key] = replace(known[0], requirements=ids), values
+    return list(shared.values())
 
 
 _Strata = Sequence[tuple[Sequence[float], Sequence[float]]]
@@ -160,13 +186,13 @@ def _tested(
     """The test, and the numbers that it counts: each log once, the newest ones first."""
     strata: dict[Scenario, tuple[list[float], list[float]]] = defaultdict(lambda: ([], []))
     passed: set[str] = set()
-    for value in values:  # from the oldest round on: a copy in a later one is nothing new
-        run = runs[value.run]
+    for one in values:  # from the oldest round on: a copy in a later one is nothing new
+        run = runs[one.run]
         is_after = held.is_after(run)
         if run.content in passed or not (is_after or held.is_before(run)):
             continue
         passed.add(run.content)
-        strata[value.scenario][is_after].append(value.number)
+        strata[one.scenario][is_after].append(one.number)
     both = fewer([(before[::-1], after[::-1]) for before, after in strata.values()])
     sign = -1 if measure.is_better_larger else 1
     return larger([([sign * x for x in b], [sign * x for x in a]) for b, a in both]), both
@@ -175,18 +201,17 @@ def _tested(
 def _comparison(
     measure: Measure,
     values: tuple[Value, ...],
-    tail: Tail,
     strata: _Strata,
     p: float | None,
     level: float,
 ) -> Comparison:
     before = [number for side, _ in strata for number in side]
     after = [number for _, side in strata for number in side]
-    if p is not None and p <= level:
-        finding = Finding.REGRESSED
+    constant = len({*before, *after}) == 1
+    if p is None:
+        finding = Finding.CHANCE if constant else Finding.TOO_FEW
     else:
-        few = tail.arrangements * level < 1
-        finding = Finding.TOO_FEW if few else Finding.CHANCE
+        finding = Finding.REGRESSED if p <= level else Finding.CHANCE
     return Comparison(
         measure,
         finding,
@@ -220,9 +245,9 @@ def _measures(
     same = [one for one in judged if one.basis == basis]
     for kind, number in ((Kind.LONGEST, _longest), (Kind.MEDIAN, _median)):
         values = tuple(_value(histories.runs, one, number(one)) for one in same)
-        known = tuple(value for value in values if value is not None)
+        known = tuple(each for each in values if each is not None)
         if known:
-            yield Measure(requirement, kind, "s"), known
+            yield Measure((requirement,), kind, "s"), known
     yield from _margins(histories, requirement, same)
 
 
@@ -256,7 +281,7 @@ def _margins(
     for measure, margins in found.items():
         ordered = [(one, margins[run]) for run, one in known.items() if run in margins]
         values = (_value(histories.runs, one, number) for one, number in ordered)
-        yield measure, tuple(value for value in values if value is not None)
+        yield measure, tuple(each for each in values if each is not None)
 
 
 def _margin(each: Threshold) -> float | None:
@@ -267,7 +292,12 @@ def _margin(each: Threshold) -> float | None:
 def _threshold(requirement: str, each: Threshold) -> Measure:
     bound = f"{each.bound:.9g}{f' {each.unit}' if each.unit else ''}"
     text = f"{each.signal} {each.operator} {bound} ({each.proposition})"
-    return Measure(requirement, Kind.MARGIN, each.unit, text)
+    return Measure((requirement,), Kind.MARGIN, each.unit, text)
+
+
+def amount(number: float, unit: str) -> str:
+    """A number of three digits with its unit."""
+    return value(float(f"{number:.3g}"), unit)
 
 
 def by_finding(found: Sequence[Comparison]) -> Mapping[Finding, int]:

@@ -60,7 +60,7 @@ def _item(each: Item) -> dict[str, Any]:
 
 def _comparison(each: Comparison) -> dict[str, Any]:
     return {
-        "requirement": each.measure.requirement,
+        "requirements": list(each.measure.requirements),
         "measure": str(each.measure),
         "unit": each.measure.unit,
         "finding": str(each.finding),

@@ -7,7 +7,8 @@ to more. That is exact for ties, and for few numbers.
 
 Sources: F. Wilcoxon, Individual Comparisons by Ranking Methods, 1945; P. van Elteren, On the
 combination of independent two sample tests of Wilcoxon, 1960 (here without his weights); S. Holm,
-A Simple Sequentially Rejective Multiple Test Procedure, 1979.
+A Simple Sequentially Rejective Multiple Test Procedure, 1979; R. Tarone, A Modified Bonferroni
+Method for Discrete Data, 1990.
 """
 
 from __future__ import annotations
@@ -88,6 +89,22 @@ def fewer(strata: Sequence[Stratum]) -> list[Stratum]:
     both = [(before, after) for before, after in strata if before and after]
     most = min(MOST_OF_STRATUM, max(2, MOST // max(1, len(both))))
     return [(before[:most], after[:most]) for before, after in both]
+
+
+def testable(least: Sequence[float], level: float) -> list[int]:
+    """The numbers of the tests that can find something at a level, all of them together.
+
+    Of so many tests each has to reach the level divided by their number: what cannot be that small
+    is not one of them.
+
+    Args:
+        least: the least p that each test can have.
+        level: of all together.
+    """
+    count = 1
+    while len(found := [i for i, each in enumerate(least) if each * count <= level]) > count:
+        count += 1
+    return found
 
 
 def holm(values: Sequence[float]) -> list[float]:

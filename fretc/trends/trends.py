@@ -62,8 +62,14 @@ class Trends:
     held: Sides
     comparisons: tuple[Comparison, ...]
     level: float
-    runs: int
+    is_after: tuple[bool, ...]
+    """Of each run, whether it is of what is held against others."""
     undated: bool
+
+    @property
+    def runs(self) -> int:
+        """How many there are."""
+        return len(self.is_after)
 
     def of(self, *kinds: Change) -> tuple[Item, ...]:
         """The items of some kinds."""
@@ -90,34 +96,44 @@ class Trends:
 
 
 @dataclass(frozen=True, slots=True)
-class Gone:
-    """A scenario, or a requirement, that the newest round does not have."""
+class Group:
+    """Items of one scenario, or of one requirement, of which all have come, or gone."""
 
-    text: str
+    name: str
+    """`scenario safety-late`, `requirement R7`, `R7 in safety-late`."""
     items: tuple[Item, ...]
 
+    @property
+    def text(self) -> str:
+        """With what was said of them last."""
+        last = [next(filter(None, reversed(item.tones))) for item in self.items]
+        counts = [f"{last.count(each)} {each}" for each in Tone if each in last]
+        return f"{self.name}: {', '.join(counts)}"
 
-def gone(trends: Trends) -> tuple[Gone, ...]:
-    """What is gone: whole scenarios, whole requirements, then the rest one by one."""
-    items = trends.of(Change.GONE)
-    here = [item for item in trends.items if item.change is not Change.GONE]
-    scenarios, requirements = {i.scenario for i in here}, {i.requirement for i in here}
+
+def grouped(trends: Trends, *kinds: Change) -> tuple[Group, ...]:
+    """Items of some kinds: whole scenarios, whole requirements, then the rest one by one."""
+    others = [item for item in trends.items if item.change not in kinds]
+    scenarios, requirements = {i.scenario for i in others}, {i.requirement for i in others}
     groups: dict[str, list[Item]] = defaultdict(list)
-    for item in items:
+    for item in trends.of(*kinds):
         if item.scenario not in scenarios:
             groups[f"scenario {item.scenario}"].append(item)
         elif item.requirement not in requirements:
             groups[f"requirement {item.requirement}"].append(item)
         else:
             groups[f"{item.requirement} in {item.scenario}"].append(item)
-    return tuple(Gone(_gone_text(name, some), tuple(some)) for name, some in groups.items())
+    return tuple(Group(name, tuple(some)) for name, some in groups.items())
 
 
-def _gone_text(name: str, items: Sequence[Item]) -> str:
-    last = [next(each for each in reversed(item.tones) if each is not None) for item in items]
-    violated = last.count(Tone.VIOLATED)
-    count = f": {len(items)} verdicts" if len(items) > 1 else ""
-    return f"{name}{count}, {violated or 'none'} violated when it was judged last"
+def gone(trends: Trends) -> tuple[Group, ...]:
+    """What was judged before, and is not in the newest round."""
+    return grouped(trends, Change.GONE)
+
+
+def arrived(trends: Trends) -> tuple[Group, ...]:
+    """What was never judged before; what is violated of it is told one by one, too."""
+    return grouped(trends, Change.FIRST, Change.FIRST_VIOLATED)
 
 
 def trends(
@@ -157,7 +173,7 @@ def trends(
         held,
         comparisons(known, held, level),
         level,
-        len(known.runs),
+        tuple(held.is_after(run) for run in known.runs),
         known.undated,
     )
 

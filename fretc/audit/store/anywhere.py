@@ -6,9 +6,18 @@ import os
 from dataclasses import replace
 
 from fretc.audit.evidence import reader as files
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.reader import Evidence
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
+
+
+class StoreError(Exception):
+    """A table of a store is not what it must be."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
 
 
 def read(path: str) -> Evidence | Diagnostic:
@@ -19,7 +28,7 @@ def read(path: str) -> Evidence | Diagnostic:
     """
     if not os.path.isdir(path):
         return files.read(path)
-    from fretc.audit.store.reader import StoreError, evidence, opened
+    from fretc.audit.store.reader import evidence, opened
 
     store = opened(path)
     if isinstance(store, Diagnostic):
@@ -28,6 +37,18 @@ def read(path: str) -> Evidence | Diagnostic:
         return evidence(store)
     except StoreError as error:
         return error.diagnostic
+
+
+def source(path: str) -> EvidenceSource | Diagnostic:
+    """Evidence to read from, of a store little at a time; a note where there is none yet.
+
+    Its methods raise `StoreError` where a store turns out not to be what it must be.
+    """
+    if not os.path.isdir(path):
+        return files.read(path)
+    from fretc.audit.store.reader import opened
+
+    return opened(path)
 
 
 def required(path: str) -> Evidence | Diagnostic:

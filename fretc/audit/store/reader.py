@@ -19,11 +19,13 @@ from compiler.files.checked_json import plain as parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, RunFacts, brief
+from fretc.audit.evidence.briefs import Brief, RunFacts, Stretches, brief, stretches
 from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.reader import Evidence
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
-from fretc.audit.evidence.schema import Bindings, Document, Evidence, Requirement, Result, Threshold
+from fretc.audit.evidence.schema import Bindings, Document, Requirement, Result, Threshold
 from fretc.audit.store import files, tables
+from fretc.audit.store.anywhere import StoreError
 from fretc.audit.store.manifest import FILE, Manifest, Part, place
 from fretc.audit.store.tables import EVENTS, EXACT, RESULTS, RUNS, TABLES, TableName
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -32,14 +34,6 @@ from fretish.diagnostics.source import Source
 T = TypeVar("T")
 _BATCH = 512
 """Results that are read at once."""
-
-
-class StoreError(Exception):
-    """A table of a store is not what it must be."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 def opened(path: str) -> Store | Diagnostic:
@@ -144,6 +138,13 @@ class Store:
                 yield at, decoded(value, list[Threshold])
             except MisshapenError as error:
                 raise self._error(f"cannot be read: {error}") from None
+
+    def stretches(self, requirement: str) -> Iterator[tuple[int, Stretches]]:
+        """The stretches of each result of a requirement, with its place, in order."""
+        for start, part in self._parts():
+            rows = tables.rows_of(self._table(part, RESULTS, ("requirement",)), requirement)
+            for at, result in self._details(part, start, rows):
+                yield at, stretches(result)
 
     def _nested(self, requirement: str, column: str) -> Iterator[tuple[int, Any]]:
         for start, part in self._parts():

@@ -178,7 +178,7 @@ def _unpacked(data: bytes) -> tuple[dict[str, Any], list[Array]]:
 
 def _described(recording: Recording) -> tuple[dict[str, Any], list[Array]]:
     """A recording as plain values and arrays, but for its findings; equal times are kept once."""
-    arrays = [recording.ticks]
+    arrays: list[Array] = [recording.ticks]
     places: dict[bytes, int] = {}
     samples = {}
     for name, each in recording.samples.items():

@@ -398,6 +398,13 @@ def facts(table: pa.Table) -> list[RunFacts]:
     ]
 
 
+def rows_of(table: pa.Table, requirement: str) -> list[int]:
+    """The rows of a requirement."""
+    equal = pc.equal(table["requirement"], requirement).to_numpy(zero_copy_only=False)
+    rows: list[int] = np.flatnonzero(equal).tolist()
+    return rows
+
+
 def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]:
     """One column of `events` for each row of a requirement, with its row, as plain values.
 
@@ -412,7 +419,7 @@ def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]
     main, events = tables[RESULTS], tables[EVENTS]
     if main.num_rows != events.num_rows:
         raise MisshapenError("`events` does not have the rows of `results`")
-    rows = pc.equal(main["requirement"], requirement).to_numpy(zero_copy_only=False).nonzero()[0]
+    rows = rows_of(main, requirement)
     (column,) = (each.column for each in _NESTED if each.name == name)
     values = column.values(_whole(_taken(events, rows), name))
     texts = _taken(main[EXACT], rows).to_pylist()
@@ -420,4 +427,4 @@ def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]
         value if text is None else plain(decoded(parsed(text), Result))[name]
         for value, text in zip(values, texts, strict=True)
     ]
-    return [*zip(rows.tolist(), whole, strict=True)]
+    return [*zip(rows, whole, strict=True)]

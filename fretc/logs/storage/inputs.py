@@ -299,9 +299,7 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
     place = Source(shown(url), "").span()
     try:
         import fsspec
-    except ModuleNotFoundError:
-        return storage_diagnostics.no_fsspec(place)
-    try:
+
         system, path = fsspec.core.url_to_fs(url, **web.options(url))
         about = system.info(path)
         if about.get("type") == "directory":
@@ -315,9 +313,9 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
             return _copy(_copied(_Limited(file, size), stack))
         file = stack.enter_context(system.open(path, "rb", block_size=_SMALL_BLOCK))
     except ImportError as error:
-        return storage_diagnostics.no_protocol_package(url.partition("://")[0], str(error), place)
+        return storage_diagnostics.no_package(url, error, place)
     except Exception as error:  # each protocol has its own
-        raise _as_os_error(error) from error
+        raise as_os_error(error) from error
     hashed = _Hashed(file, size)
     stream = stack.enter_context(io.BufferedReader(hashed, _SMALL_BLOCK))
     return Input(cast("io.BufferedReader", stream), size, hashed.sha256, lambda: None, None, None)
@@ -343,7 +341,7 @@ class _Paced:
                 self._file.seek(start)
             data = bytes(self._file.read(length))
         except Exception as error:  # each protocol has its own
-            raise _as_os_error(error) from error
+            raise as_os_error(error) from error
         self._spent += time.monotonic() - since
         self._due += max(self._least, len(data))
         if self._spent > web.PATIENCE + self._due / web.SLOWEST:
@@ -375,7 +373,8 @@ class _Limited(io.BytesIO):
         return data
 
 
-def _as_os_error(error: Exception) -> OSError:
+def as_os_error(error: Exception) -> OSError:
+    """An error of a protocol, each of which has its own, as one of the system."""
     if isinstance(error, FileNotFoundError) and isinstance(error.__cause__, Exception):
         error = error.__cause__  # fsspec hides the real error behind "no such file"
     if isinstance(error, TimeoutError):

@@ -30,6 +30,23 @@ def no_stdin(why: str) -> Diagnostic:
     )
 
 
+def no_package(url: str, error: ImportError, place: Span) -> Diagnostic:
+    """The package that the protocol of a URL needs is not installed, or that of all URLs."""
+    if error.name == "fsspec":
+        return no_fsspec(place)
+    return no_protocol_package(url.partition("://")[0], str(error), place)
+
+
+def unlisted(error: OSError, place: Span) -> Diagnostic:
+    """A store does not say what is in it."""
+    return Diagnostic(
+        Code.UNREADABLE,
+        f"what is there cannot be listed: {error.strerror or error}",
+        place,
+        "check the address, the network, and whether your credentials may list it",
+    )
+
+
 def no_fsspec(place: Span) -> Diagnostic:
     """URLs need an extra."""
     return Diagnostic(

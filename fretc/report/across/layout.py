@@ -266,7 +266,7 @@ def _row(row: UseRow, name: str, y: int, anchors: Collection[str]) -> DrawnRow:
         end=end,
         is_crossed=first.is_crossed,
         dots=dots,
-        label=_words_of(first),
+        label=_fitting(first.text, (WIDTH - _SHARES - 14) * 1.05),
     )
 
 

@@ -82,7 +82,7 @@ def _sarif(subject: Subject) -> str:
 def _markdown(subject: Subject) -> str:
     from fretc.report.forms.markdown import markdown
 
-    return markdown(subject.report)
+    return markdown(subject.report, subject.details)
 
 
 def _reqif(subject: Subject) -> str:

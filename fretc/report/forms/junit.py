@@ -31,7 +31,7 @@ class _Case:
 
 
 def junit(report: Report) -> str:
-    """The whole file; some case is a failure exactly where `--strict` would end with 1."""
+    """The whole file; a case is a failure, or an error, where `--strict` would end with 1."""
     root = ElementTree.Element("testsuites", name="fretc report")
     withdrawn = {one.requirement for one in report.withdrawn}
     views = [view for view in report.requirements if view.id not in withdrawn]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from fretc.report.model.across import Across
 from fretc.report.model.changes import Change, ChangeGroup
+from fretc.report.model.front import Front
 from fretc.report.model.marks import Mark as Mark
 from fretc.report.model.marks import sign_mark as sign_mark
 from fretc.report.model.marks import verdict_mark as verdict_mark
@@ -125,15 +126,6 @@ class Planned:
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
-    """The verdict of one run in the matrix, or of several; `anchor` leads to the details."""
-
-    mark: Mark
-    label: str
-    anchor: str
-
-
-@dataclass(frozen=True, slots=True)
 class Row:
     """A requirement and a hazard that it traces to; `hazard` is empty where it traces to none."""
 
@@ -145,10 +137,13 @@ class Row:
     status: str
     anchor: str
     mark: Mark
+    runs: int
+    """How many runs have the verdict; of a waived one, that behind the waiver."""
     limit: str
     """Why no run can violate it; empty where one can."""
-    artefacts: tuple[Product, ...]
-    cells: tuple[Cell, ...]
+    proof: Mark | None
+    """What is proved of it: the closed loop, or its monitor; None: neither."""
+    review: Mark
 
 
 @dataclass(frozen=True, slots=True)
@@ -326,6 +321,8 @@ class ViolationView:
     deadline: str
     missing: str
     values: tuple[tuple[str, str], ...]
+    causes: tuple[str, ...]
+    """Why the response was not as demanded; empty where the evidence leaves it open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -508,6 +505,7 @@ class Report:
     evidence: str
     audited_by: str
     overall: Overall
+    front: Front
     runs: tuple[RunSummary, ...]
     """Runs with errors first; the JSON form has each with its topics, as a `RunView`."""
     claims: str

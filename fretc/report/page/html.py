@@ -15,6 +15,7 @@ from compiler.formalization.formalized import Formalized
 from fretc.report.across.layout import drawn_lanes, drawn_uses
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Report, worst_first
+from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import Selection, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram
@@ -39,26 +40,29 @@ def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> 
     """
     choice = selection(report, details)
     page = slimmed(report, choice)
+    matrix = picture(report, choice.anchors)
     script, style = render(_SCRIPT), render(_STYLE)
     return render(
         "report/report.html.j2",
-        report=_visible(asdict(page)),
-        selection=_visible(asdict(replace(choice, anchors=frozenset()))),
+        report=visible_texts(asdict(page)),
+        selection=visible_texts(asdict(replace(choice, anchors=frozenset()))),
         anchors=choice.anchors,
-        pictures=_visible(_pictures(choice)),
-        histograms=_visible(_histograms(page)),
-        scales=_visible(_scales(page)),
+        pictures=visible_texts(_pictures(choice)),
+        histograms=visible_texts(_histograms(page)),
+        scales=visible_texts(_scales(page)),
         diagrams=_diagrams(page, rules),
-        argument=_visible(_argument(report)),
-        across=_visible(_across(report, choice, _links(choice))),
-        changes=_visible({each.anchor: asdict(each) for each in page.changes if each.anchor}),
+        matrix=visible_texts(asdict(matrix)),
+        rows=_rows(matrix),
+        argument=visible_texts(_argument(report)),
+        across=visible_texts(_across(report, choice, _links(choice))),
+        changes=visible_texts({each.anchor: asdict(each) for each in page.changes if each.anchor}),
         most=_MOST_CHANGES,
-        script_hash=_hash(script),
-        style_hash=_hash(style),
+        script_hash=hash_source(script),
+        style_hash=hash_source(style),
     )
 
 
-def _hash(text: str) -> str:
+def hash_source(text: str) -> str:
     """As a Content-Security-Policy names an inline script or style.
 
     Source: Content Security Policy Level 3, section 2.3.1, hash-source.
@@ -116,6 +120,12 @@ def _histograms(page: Report) -> dict[str, list[dict[str, Any]]]:
     }
 
 
+def _rows(matrix: Picture) -> dict[str, str]:
+    """The first row of each requirement in the matrix, where it has rows of requirements."""
+    lines = (line for block in matrix.blocks for line in block.lines if line.id)
+    return {line.row.anchor: line.id for line in lines}
+
+
 def _diagrams(page: Report, rules: Sequence[Formalized]) -> Mapping[str, dict[str, Any]]:
     """A drawing of what each sentence means, by its anchor; it escapes its own texts."""
     rules_by_key = {(rule.id, rule.fingerprint): rule for rule in rules}
@@ -169,14 +179,14 @@ def _scales(page: Report) -> dict[str, dict[str, Any]]:
     }
 
 
-def _visible(value: Any) -> Any:
+def visible_texts(value: Any) -> Any:
     """The same value with escapes for characters that hide or turn text."""
     match value:
         case str():
             return visible(value)
         case dict():
-            return {visible(key): _visible(item) for key, item in value.items()}
+            return {visible(key): visible_texts(item) for key, item in value.items()}
         case list() | tuple():
-            return [_visible(item) for item in value]
+            return [visible_texts(item) for item in value]
         case _:
             return value

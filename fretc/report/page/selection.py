@@ -22,7 +22,7 @@ from fretc.report.model.views import (
 )
 from fretc.report.sections.details import Details
 
-COMPACT = 5_000
+COMPACT = 1_000
 """Above this number of results, only runs that are not satisfied have a row."""
 DETAILED, PICTURES = 100, 60
 """The most results with all details, and the most pictures of violations, in one page."""
@@ -259,26 +259,13 @@ def _left_out(
 
 
 def slimmed(report: Report, chosen: Selection) -> Report:
-    """The report without what the page leaves out.
-
-    A link to a result that the page leaves out leads to its requirement.
-    """
+    """The report without what the page leaves out."""
     views = tuple(_slim(view, chosen) for view in report.requirements)
-    matrix = tuple(
-        replace(
-            row,
-            cells=tuple(
-                cell if cell.anchor in chosen.anchors else replace(cell, anchor=row.anchor)
-                for cell in row.cells
-            ),
-        )
-        for row in report.matrix
-    )
     not_shown = tuple(
         replace(each, reasons=_few(each.reasons)) if chosen.is_compact else each
         for each in report.not_shown
     )
-    return replace(report, requirements=views, matrix=matrix, not_shown=not_shown, runs=chosen.runs)
+    return replace(report, requirements=views, not_shown=not_shown, runs=chosen.runs)
 
 
 def _slim(view: RequirementView, chosen: Selection) -> RequirementView:

@@ -18,6 +18,7 @@ from fretc.audit.evidence.verdicts import (
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.audits import ProbabilityAudit, SingleAudit
+from fretc.report.model.causes import causes
 from fretc.report.model.first_tick import reading
 from fretc.report.model.suspicions import since_review
 from fretc.report.model.views import (
@@ -94,7 +95,8 @@ def result_view(
         declared: the bindings.
     """
     # A stale result was judged by other bindings: the clock and the ages of now are not its own.
-    bindings = None if assessment.audits[row.number - 1].is_stale else declared
+    is_stale = assessment.audits[row.number - 1].is_stale
+    bindings, rule = (None, None) if is_stale else (declared, assessment.rule)
     tick, ages = _tick(result, bindings.clock if bindings else None), _ages(bindings)
     return ResultView(
         anchor=row.anchor,
@@ -108,11 +110,11 @@ def result_view(
         exercised=_exercised(result),
         latency=_latency(result, assessment.rule),
         thresholds=tuple(map(_threshold, result.thresholds)),
-        violations=tuple(_violation(v, result, ages) for v in result.violations[:LISTED]),
+        violations=tuple(_violation(v, result, ages, rule) for v in result.violations[:LISTED]),
         violations_total=len(result.violations),
         open=_open(result),
         unknown=_unknown(result),
-        timelines=timelines(result, tick, ages),
+        timelines=timelines(result, tick, ages, rule),
     )
 
 
@@ -223,7 +225,9 @@ def _wait(starts: Sequence[float], end: float) -> str:
 # Stretches -------------------------------------------------------------------------------------
 
 
-def _violation(violation: Violation, result: Result, ages: Mapping[str, float]) -> ViolationView:
+def _violation(
+    violation: Violation, result: Result, ages: Mapping[str, float], rule: Formalized | None
+) -> ViolationView:
     first, last, trigger = violation.first, violation.last, violation.trigger
     ticks = f"{first.tick}" if first.tick == last.tick else f"{first.tick} to {last.tick}"
     return ViolationView(
@@ -236,6 +240,7 @@ def _violation(violation: Violation, result: Result, ages: Mapping[str, float]) 
         values=tuple(
             (name, reading(name, violation, result, ages)) for name in sorted(violation.values)
         ),
+        causes=tuple(dict.fromkeys(each.text for each in causes(violation, result, rule))),
     )
 
 

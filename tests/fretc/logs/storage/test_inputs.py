@@ -176,12 +176,12 @@ def test_what_is_not_there_has_its_code(memory: str, url: str, code: Code) -> No
 
 
 def test_without_the_package_of_a_protocol_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "s3fs", None)
-    diagnostic = refused("s3://bucket/log.mcap")
+    monkeypatch.setitem(sys.modules, "gcsfs", None)
+    diagnostic = refused("gs://bucket/log.mcap")
     assert diagnostic.code is Code.MISSING_EXTRA
-    assert diagnostic.help == "install its package: pip install s3fs"
+    assert diagnostic.help == "install its package: pip install gcsfs"
     monkeypatch.setitem(sys.modules, "fsspec", None)
-    diagnostic = refused("s3://bucket/log.mcap")
+    diagnostic = refused("gs://bucket/log.mcap")
     assert diagnostic.code is Code.MISSING_EXTRA
     assert diagnostic.help == install("remote")
 

@@ -4,6 +4,8 @@ import csv
 import io
 import json
 import re
+from dataclasses import replace
+from itertools import takewhile
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -16,9 +18,21 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fretc.report.forms.csv_rows import _harmless
+from fretc.report.forms.markdown import markdown
+from fretc.report.model.changes import Change
+from fretc.report.model.views import Remark, Report, verdict_mark
+from fretc.report.sections.details import Details
 from tests.command import Fretc, write
 from tests.fretc.report import junit_schema
-from tests.fretc.report.cases import evidence, moment, project, requirement, result, violation
+from tests.fretc.report.cases import (
+    evidence,
+    moment,
+    project,
+    report_of,
+    requirement,
+    result,
+    violation,
+)
 from tests.fretc.report.sarif_schema import SARIF
 
 HOSTILE = "=cmd|' /C calc'!A0 <script>alert(1)</script> | * _x_ @team \u202e [a](b)"
@@ -119,20 +133,99 @@ def test_of_texts_only_plain_numbers_begin_like_a_formula(start: str, rest: str)
 
 def test_markdown_names_the_worst_first_and_takes_texts_as_text(reported: Fretc) -> None:
     text = form(reported, "markdown")
-    assert text.startswith("## ✘ R2 is violated\\.\n") or text.startswith("## ✘ R2 is violated.\n")
-    table = [line for line in text.splitlines() if line.startswith("| **")]
-    assert [re.sub(r"\W", "", line.split("**")[1]) for line in table] == [
-        "R2",
-        "R4",
-        "R3",
-        "R1",
-        "R5",
+    assert re.fullmatch(r"## ✘ .* \\\(R2\\\) is violated\.", text.splitlines()[0])
+    assert figures(text) == {
+        "claimed": 4, "shown": 1, "violated": 1, "not shown": 2, "changed since the review": 0
+    }  # fmt: skip
+    listed = [line[:50] for line in text.splitlines() if line.startswith(("###", "- "))]
+    assert listed == [
+        "### Violated: 1",
+        "- ✘ violated **=cmd\\|' /C calc'\\!A0 \\<script\\>aler",
+        "### Not shown: 2",
+        "- ! unformalized **Title of R4 \\(R4\\)**: F107\\: a ",
+        "- w waived **Title of R3 \\(R3\\)** (later): the aud",
     ]
-    assert all(len(re.findall(r"(?<!\\)\|", line)) == 6 for line in table), (
-        "a table of five columns"
-    )
+    assert "in logs/a.mcap: reason of R2; at 1.4 s" in text
     assert "<script>" not in text
     assert not re.search(r"(?<!\\)@team", text)
+
+
+def figures(text: str) -> dict[str, int]:
+    """The five figures by their names."""
+    names, _, numbers = (line.strip("| ").split(" | ") for line in text.splitlines()[2:5])
+    return dict(zip(names, map(int, numbers), strict=True))
+
+
+MARKS = ("violated", "refuted", "no data", "inconclusive", "vacuous", "satisfied", "retired")
+
+
+@given(
+    st.lists(st.tuples(st.sampled_from(MARKS), st.booleans()), max_size=60),
+    st.integers(0, 60),
+    st.integers(0, 60),
+    st.sampled_from(["", "x" * 10_000]),
+)
+def test_markdown_is_one_screen_and_what_it_leaves_out_is_counted_and_never_worse(
+    plain: tuple[Report, Details],
+    marks: list[tuple[str, bool]],
+    changes: int,
+    accepted: int,
+    long: str,
+) -> None:
+    plain_report, details = plain
+    (view,) = plain_report.requirements
+    views = [
+        replace(view, id=f"R{n}", title=f"T{n}{long}", mark=verdict_mark(word, suspect=suspect))
+        for n, (word, suspect) in enumerate(marks)
+    ]
+    flip = (("a.mcap", "satisfied", "violated"),)
+    change = Change("R0", "", "", "", "", (), (long,) * 9, (long,), (), "", flip)
+    remark = Remark("F203", "warning", long, accepted=long or "meant")
+    text = markdown(
+        replace(
+            plain_report,
+            requirements=tuple(views),
+            changes=(change,) * changes,
+            remarks=(remark,) * accepted,
+        ),
+        details,
+    )
+    lines = text.splitlines()
+    assert len(lines) <= 40
+    assert len(text) < 30_000
+    red = [one for one in views if one.mark.word in ("violated", "refuted")]
+    gaps = [
+        one for one in views
+        if one not in red and not one.mark.shows and one.mark.word != "retired"
+    ]  # fmt: skip
+    for heading, some, most in (("Violated", red, 8), ("Not shown", gaps, 4)):
+        listed = [line for line in lines if f"### {heading}: {len(some)}" == line]
+        assert len(listed) == (1 if some else 0)
+        if not some:
+            continue
+        start = lines.index(listed[0]) + 1
+        entries = list(takewhile(lambda line: line.startswith("- "), lines[start:]))
+        words = [entry.removeprefix("- ").split(" ", 1)[1].split("**")[0] for entry in entries]
+        expected = sorted((one.mark for one in some), key=lambda mark: mark.severity)[:most]
+        assert [word.split(",")[0].strip() for word in words[:most]] == [
+            mark.word for mark in expected
+        ]
+        left = len(some) - most
+        assert entries[most:] == ([f"- … and {left} more"] if left > 0 else [])
+    numbers = figures(text)
+    assert (numbers["violated"], numbers["not shown"]) == (len(red), len(gaps))
+    assert numbers["claimed"] == numbers["shown"] + len(red) + len(gaps)
+    assert numbers["changed since the review"] == changes
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory: pytest.TempPathFactory) -> tuple[Report, Details]:
+    folder = tmp_path_factory.mktemp("plain")
+    known = project(folder)
+    build = report_of(known, folder, result(known, "violated", violations=[violation(14, 20, 11)]))
+    assert build.report is not None
+    assert build.details is not None
+    return build.report, build.details
 
 
 def cases(suite: ElementTree.Element) -> list[tuple[str, list[str]]]:
@@ -207,7 +300,7 @@ def test_sarif_marks_suspect_evidence(reported: Fretc) -> None:
     log = json.loads(form(reported, "sarif"))
     jsonschema.validate(log, SARIF)
     levels = [(one["ruleId"], one["level"]) for one in log["runs"][0]["results"]]
-    assert levels == [("R1", "none"), ("R1", "none"), ("R2", "error")]
+    assert levels == [("R2", "error")]
     path = Path("requirements/bindings.toml")
     path.write_text(path.read_text().replace("< 0.01 m/s", "< 0.02 m/s"))
     log = json.loads(form(reported, "sarif"))

@@ -105,7 +105,8 @@ def test_what_changed_since_the_review_makes_the_requirement_suspect(tmp_path: P
     text = "near: clearance < 5 cm → 90 cm"
     why = f"something has changed since the review of 2026-09-01: {text}"
     assert view["suspicions"] == view["results"][0]["suspicions"] == view["reasons"] == [why]
-    assert report["matrix"][0]["cells"][0]["mark"]["suspect"]
+    assert report["requirements"][0]["results"][0]["mark"]["suspect"]
+    assert report["matrix"][0]["review"]["word"] == "changed since the review"
     assert [c["results"] for c in report["counts"] if c["mark"]["word"] == "satisfied"] == [1, 0]
     assert view["review"]["changes"] == [text]
     (change,) = report["changes"]

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from compiler.project.folder import whole
+from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.reader import read as read_evidence
 from fretc.report.traceability.chain import Node, chains
 from fretc.report.traceability.comparison import Difference, differences
@@ -192,7 +193,7 @@ def compared(lock: Lock | None = None) -> dict[str, Difference]:
     assert not isinstance(project, Diagnostic)
     assert not isinstance(evidence, Diagnostic)
     base = lock or locked()
-    found = differences(standings(chains(project, evidence), base), base, project)
+    found = differences(standings(chains(project, Briefs.of(evidence)), base), base, project)
     return {each.requirement: each for each in found if each.state != "same"}
 
 
