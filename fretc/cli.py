@@ -108,6 +108,10 @@ def main() -> None:
         _no_output(error)
         raise SystemExit(BAD) from None
     except Exception as error:
+        said = getattr(error, "diagnostic", None)  # as of a store that is damaged in the middle
+        if isinstance(said, Diagnostic):
+            say([said])
+            raise SystemExit(BAD) from None
         if "FRETC_TRACEBACK" in os.environ:
             raise
         say([_internal(error)])

@@ -100,6 +100,8 @@ def unreadable(path: str, error: OSError) -> Diagnostic:
 
 
 def _nearest(path: str) -> str:
+    if os.path.islink(path):
+        return f"it is a link to `{os.readlink(path)}`, which is not there: copy what it stands for"
     folder = Path(path).parent
     try:
         near = suggestion(Path(path).name, (entry.name for entry in folder.iterdir()))

@@ -55,8 +55,8 @@ def check(
     from compiler.project.paths import beside
     from compiler.project.stated_numbers import first_unit
     from fretc.audit.evidence.briefs import Briefs
-    from fretc.audit.evidence.reader import read as read_evidence
     from fretc.audit.refusals import refusals
+    from fretc.audit.store.anywhere import source as read_evidence
     from fretc.report.diagnostics import idle_waivers, stale_evidence
     from fretc.report.model.assessments import assessments
     from fretc.report.traceability.acceptances import warnings

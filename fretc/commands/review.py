@@ -73,7 +73,7 @@ def lock(
     """
     from compiler.files.dates import is_date, is_to_come, today
     from compiler.files.templating import to_json
-    from fretc.audit.evidence.reader import refuted
+    from fretc.audit.store.anywhere import refuted
     from fretc.report.traceability.lock import (
         Acceptance,
         Lock,
@@ -170,7 +170,7 @@ def _chains(
 ) -> tuple[Project, Sequence[Chain]]:
     from compiler.project.folder import whole
     from fretc.audit.evidence.briefs import Briefs
-    from fretc.audit.evidence.reader import read
+    from fretc.audit.store.anywhere import source as read
     from fretc.report.traceability.chain import chains
     from fretc.verification.reader import known
 

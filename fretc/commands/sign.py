@@ -141,10 +141,14 @@ def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
 
 def _signable(path: str, key: str, reviewer: str | None, verification: str | None) -> Signable:
     suffix = Path(path).suffix
+    if os.path.isdir(path):
+        return _json(path, verification)
     if reviewer is not None and suffix not in (".lock", ".toml"):
         stop(_usage(f"`{path}` is by no reviewer", "leave `--reviewer` out"))
     if suffix not in (".lock", ".toml", ".json", *_REPORTS):
-        mend = "name evidence (`.json`), a lock (`.lock`), waivers (`.toml`) or a report"
+        mend = (
+            "name evidence (`.json`, or a store), a lock (`.lock`), waivers (`.toml`) or a report"
+        )
         stop(_usage(f"`{path}` is nothing that fretc signs", mend))
     match suffix:
         case ".lock":
@@ -168,18 +172,19 @@ def _json(path: str, verification: str | None) -> Signable:
     """Evidence, proofs, or a report: they say which."""
     from compiler.files.text_files import read as read_text
     from compiler.logic import claims as proved
-    from fretc.audit.evidence.reader import read
+    from fretc.audit.store.anywhere import read
     from fretc.report.model.views import SCHEMA
     from fretc.verification.reader import written
 
-    source = read_text(path)
-    if isinstance(source, Diagnostic):
-        stop(source)
-    schema = _schema(source)
-    if schema == proved.SCHEMA:
-        return _proved(path)
-    if schema == SCHEMA:
-        return _report(path)
+    if not os.path.isdir(path):
+        source = read_text(path)
+        if isinstance(source, Diagnostic):
+            stop(source)
+        schema = _schema(source)
+        if schema == proved.SCHEMA:
+            return _proved(path)
+        if schema == SCHEMA:
+            return _report(path)
     audited = read(path)
     if isinstance(audited, Diagnostic):
         stop(_as_error(audited))

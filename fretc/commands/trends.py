@@ -17,7 +17,7 @@ from fretc.terminal.output import (
     say,
     stop,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 
 @click.command(short_help="Say what is new, fixed, flaky or worse between audits.")
@@ -50,20 +50,22 @@ def trends(
     something that was known before is not known now, or nothing can be compared, 2 bad use or
     bad input.
     """
-    from fretc.audit.evidence.reader import required
-    from fretc.trends.trends import Trends
+    from fretc.audit.store.anywhere import StoreError, required_source
     from fretc.trends.trends import trends as trends_of
 
     if html is not None:
         protect([Path(html)], evidence)
-    sources = [required(path) for path in dict.fromkeys(evidence)]
+    sources = [required_source(path) for path in dict.fromkeys(evidence)]
     wrong = [each for each in sources if isinstance(each, Diagnostic)]
     if wrong:
         stop(*wrong)
-    known = trends_of([each for each in sources if not isinstance(each, Diagnostic)], by, level)
+    good = [each for each in sources if not isinstance(each, Diagnostic)]
+    try:
+        known = trends_of(good, by, level)
+    except StoreError as error:
+        stop(error.diagnostic)
     if isinstance(known, Diagnostic):
         stop(known)
-    assert isinstance(known, Trends)
     if html is not None:
         from fretc.trends.page import html as page
 
@@ -84,8 +86,6 @@ def trends(
 
 
 def _nothing_to_compare() -> Diagnostic:
-    from fretish.diagnostics.diagnostic import Severity
-
     return Diagnostic(
         Code.NOT_COMPARABLE,
         "nothing can be compared: no requirement was judged in one scenario in two rounds",

@@ -188,7 +188,8 @@ def _regressions(trends: Trends, screen: Screen) -> Iterator[Line]:
         signs.BAD, len(found), f"regressed in {trends.held.after} (medians), by more than chance"
     )
     for one in found[:6]:
-        yield ((f"    {_column(one.measure.ids, _ID, screen)}  {one.measure} {one.worse}", None),)
+        ids = _column(one.measure.ids, _ID, screen)
+        yield ((f"    {ids}  {one.measure} {one.worse}", None),)
     if len(found) > 6:
         yield ((f"    and {len(found) - 6} more: see --html or --format json", None),)
 

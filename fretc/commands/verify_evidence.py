@@ -12,6 +12,7 @@ from fretc.commands.sign import demand
 from fretc.terminal.options import (
     PATH,
     bindings_option,
+    evidence_place,
     format_option,
     jobs_option,
     label_option,
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
 
 
 @click.command("verify-evidence", short_help="Make evidence again, and say whether it stands.")
-@click.argument("file", type=PATH, default="build/evidence.json", metavar="[FILE]")
+@click.argument("file", type=PATH, required=False, metavar="[FILE]")
 @requirements_option
 @bindings_option
 @path_option(
@@ -80,7 +81,7 @@ if TYPE_CHECKING:
 @jobs_option
 @format_option()
 def verify_evidence(
-    file: str,
+    file: str | None,
     requirements: str,
     bindings: str | None,
     places_named: tuple[str, ...],
@@ -104,9 +105,10 @@ def verify_evidence(
     compared with what is written. Exit status: 0 it stands, 1 something differs or is missing, 3
     something was not checked, 2 bad use or bad input.
     """
-    from fretc.audit.evidence.reader import required
+    from fretc.audit.store.anywhere import required
     from fretc.verification.reader import written
 
+    file = evidence_place(file)
     evidence = required(file)
     if isinstance(evidence, Diagnostic):
         stop(evidence)

@@ -13,7 +13,6 @@ from types import MappingProxyType
 from fretish.bindings.declarations import LabelSource
 from fretish.bindings.reader import MOST_LABELS, is_label
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
-from fretish.diagnostics.source import Source
 from fretish.reading import name_patterns
 
 LONGEST = 200
@@ -45,9 +44,9 @@ def labels(
         if sound:
             found[name] = sound[0]
         else:
-            diagnostics.append(_none(name, sources, values, run))
+            diagnostics.append(_none(name, sources, is_given=bool(values)))
         if len(sound) > 1:
-            diagnostics.append(conflict(name, sound[0], sound[1], run))
+            diagnostics.append(_conflict(name))
     return found, tuple(diagnostics)
 
 
@@ -71,13 +70,9 @@ def _values(
             yield from described.get(source.text, ())
 
 
-def over(before: Labels, given: Labels, run: str) -> tuple[Labels, tuple[Diagnostic, ...]]:
+def over(before: Labels, given: Labels) -> tuple[Labels, tuple[Diagnostic, ...]]:
     """Labels of a run with those of the command, which count, and where the two disagree."""
-    clashes = (
-        conflict(name, value, before[name], run)
-        for name, value in given.items()
-        if before.get(name, value) != value
-    )
+    clashes = (_conflict(name) for name, value in given.items() if before.get(name, value) != value)
     return {**before, **given}, tuple(clashes)
 
 
@@ -104,29 +99,24 @@ def given(texts: Sequence[str]) -> Labels | Diagnostic:
     return found
 
 
-def conflict(name: str, value: str, other: str, run: str) -> Diagnostic:
-    """F552."""
+def _conflict(name: str) -> Diagnostic:
+    """F552; the same for all logs, so that many of them are one warning."""
     return Diagnostic(
         Code.LABEL_CONFLICT,
-        f"the label `{name}` of this run is `{_short(value)}`, and another source says "
-        f"`{_short(other)}`",
-        Source(run, "").span(),
+        f"sources of the label `{name}` say different things of one run",
         help="the command counts first, then the sources in the order of `[run.label]`",
         severity=Severity.WARNING,
     )
 
 
-def _none(name: str, sources: Sequence[LabelSource], values: Sequence[str], run: str) -> Diagnostic:
+def _none(name: str, sources: Sequence[LabelSource], *, is_given: bool) -> Diagnostic:
     """F553."""
-    if values:
-        why = f"is empty, or longer than {LONGEST} characters"
-    else:
-        texts = (f"{'path' if one.is_path else 'metadata'}:{one.text}" for one in sources)
-        why = f"is nowhere: {', '.join(f'`{text}`' for text in texts)}"
+    texts = (f"{'path' if one.is_path else 'metadata'}:{one.text}" for one in sources)
+    where = " or ".join(f"`{text}`" for text in texts)
+    what = f"is empty, or longer than {LONGEST} characters" if is_given else "says nothing"
     return Diagnostic(
         Code.NO_LABEL,
-        f"the label `{name}` of this run {why}",
-        Source(run, "").span(),
+        f"a run has no label `{name}`: {where} {what}",
         help=f"say it with `--label {name}=...`, or mend its sources in `[run.label]`",
         severity=Severity.WARNING,
     )

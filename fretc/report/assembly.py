@@ -90,7 +90,7 @@ def report(
             project,
             runs_by_key,
             anchors,
-            evidence,
+            evidence is not None,
             all_proofs,
             shared,
             book,
@@ -155,7 +155,7 @@ def report(
         assumptions=_assumptions(project, all_runs),
         commands=commands(project, sections, all_runs, path, proofs, _confidence(evidence)),
         manifest=manifest(project, sections, all_runs, evidence, proofs, book.signers),
-        across=across(assessed, runs_by_key, evidence, project.declarations),
+        across=across(details, [view.anchor for view in worst_first(sections)]),
         change_groups=groups,
     )
     diagnostics = (

@@ -19,6 +19,7 @@ from compiler.files.edition import __version__
 from compiler.files.records import plain, replace
 from compiler.files.text_files import file_sha256, sha256
 from fretc.audit.evidence.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
+from fretc.audit.evidence.briefs import brief
 from fretc.audit.evidence.claim import Claim
 from fretc.audit.evidence.estimates import estimates
 from fretc.audit.evidence.probabilities import Estimated
@@ -225,7 +226,7 @@ def _estimate_difference(before: Estimated, claim: Claim, results: Sequence[Resu
     least, most = _DOUBT
     if not least < before.confidence <= most:
         return f"its confidence is none above {least} and up to {most}"
-    (now,) = estimates([claim], results, before.confidence)
+    (now,) = estimates([claim], [*map(brief, results)], before.confidence)
     if before.answer != now.answer:
         return f"the answer is {now.answer}, and was {before.answer}"
     others = _different_keys(plain(before), plain(now))

@@ -21,8 +21,8 @@ Piece = tuple[str, str | None]
 """A text of a line, with its colour if it has one."""
 REQUIREMENTS_FOLDER = "requirements"
 """Where the requirements of a project are, if nobody says otherwise."""
-EVIDENCE = "build/evidence.json"
-"""Where evidence is, if nobody says otherwise."""
+EVIDENCE, STORE = "build/evidence.json", "build/evidence"
+"""Where evidence of one log is, and of several, if nobody says otherwise."""
 SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
 

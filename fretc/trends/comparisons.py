@@ -16,7 +16,7 @@ from statistics import median
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.model.phrases import some, value
 from fretc.trends.histories import Histories, Judged, Run, Scenario
-from fretc.trends.rank_test import Tail, fewer, holm, larger, testable
+from fretc.trends.rank_test import Tail, decidable, fewer, holm, larger
 
 LEVEL = 0.05
 """The chance of even one regression that is none, of all that are found together."""
@@ -151,7 +151,7 @@ def comparisons(histories: Histories, held: Sides, level: float = LEVEL) -> tupl
     """
     measured = _measured(histories)
     tested = [_tested(histories.runs, held, measure, values) for measure, values in measured]
-    family = testable([tail.least for tail, _ in tested], level)
+    family = decidable([tail.least for tail, _ in tested], level)
     adjusted = dict(zip(family, holm([tested[i][0].p for i in family]), strict=True))
     found = [
         _comparison(measure, values, tested[i][1], adjusted.get(i), level)
@@ -272,7 +272,7 @@ def _margins(
     known = {one.run: one for one in same}
     found: dict[Measure, dict[int, float]] = defaultdict(dict)
     for source, places in zip(histories.sources, histories.places, strict=True):
-        for place, thresholds in source.thresholds(requirement):
+        for place, thresholds in source.thresholds([requirement]):
             run = places[place]
             for each in thresholds if run in known else ():
                 margin = _margin(each)

@@ -139,7 +139,8 @@ def _time(text: str) -> int | None:
     """`2026-11-20`, `2026-11-20T21:00:00+01:00`, `2026_11_20-21_00_00`; without a zone, of UTC."""
     rosbag = _ROSBAG.fullmatch(text)
     try:
-        found = datetime(*map(int, rosbag.groups())) if rosbag else datetime.fromisoformat(text)
+        form = "{}-{}-{}T{}:{}:{}".format(*rosbag.groups()) if rosbag else text
+        found = datetime.fromisoformat(form)
         aware = found if found.tzinfo is not None else found.replace(tzinfo=UTC)
         time = round((aware - datetime(1970, 1, 1, tzinfo=UTC)).total_seconds()) * 10**9
     except (ValueError, OverflowError):
@@ -276,13 +277,12 @@ class _Reader:
 
     def _run(self, facts: RunFacts, round_: int) -> Run:
         labels = facts.labels
-        version = labels.get(VERSION) or labels.get(COMMIT, "")
         return Run(
             facts.run,
             facts.log or facts.log_summary or facts.run,
             scenario_of(facts),
             round_,
-            version,
+            labels.get(VERSION, ""),
             f"commit {labels[COMMIT]}" if COMMIT in labels else f"round {round_}",
             time_of(facts),
         )

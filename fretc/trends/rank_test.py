@@ -76,7 +76,8 @@ def _sums(ranks: Sequence[int], chosen: int) -> _Shares:
     ways[0, 0] = 1.0
     for rank in ranks:
         ways[1:, rank:] = ways[1:, rank:] + ways[:-1, : size - rank]
-    return ways[chosen] / ways[chosen].sum()
+    shares: _Shares = ways[chosen] / ways[chosen].sum()
+    return shares
 
 
 def fewer(strata: Sequence[Stratum]) -> list[Stratum]:
@@ -91,7 +92,7 @@ def fewer(strata: Sequence[Stratum]) -> list[Stratum]:
     return [(before[:most], after[:most]) for before, after in both]
 
 
-def testable(least: Sequence[float], level: float) -> list[int]:
+def decidable(least: Sequence[float], level: float) -> list[int]:
     """The numbers of the tests that can find something at a level, all of them together.
 
     Of so many tests each has to reach the level divided by their number: what cannot be that small

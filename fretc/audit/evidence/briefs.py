@@ -44,6 +44,8 @@ class Brief:
     violated_ticks: int
     first_violation_ns: int | None
     first_violation_s: float | None
+    unknown: int
+    """Stretches of ticks at which it cannot be known whether a demand was broken."""
     unknown_ticks: int
     latency_median_s: float | None
     latency_max_s: float | None
@@ -146,14 +148,16 @@ class EvidenceSource(Protocol):
     def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
         """The whole results at some places, in order."""
 
-    def latencies(self, requirement: str) -> Iterator[tuple[int, Sequence[float]]]:
-        """The latencies in seconds of each result of a requirement, with its place, in order."""
+    def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
+        """Latencies in seconds of each result of some requirements, with its place, in order.
 
-    def thresholds(self, requirement: str) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of a requirement, with its place, in order."""
+        A store is read once for all of them.
+        """
 
-    def stretches(self, requirement: str) -> Iterator[tuple[int, Stretches]]:
-        """The stretches of each result of a requirement, with its place, in order."""
+    def thresholds(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+        """The thresholds of each result of some requirements, with its place, in order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,6 +198,7 @@ def brief(result: Result) -> Brief:
         violated_ticks=sum(v.last_tick - v.first_tick + 1 for v in violations),
         first_violation_ns=first.start_ns if first else None,
         first_violation_s=first.start_s if first else None,
+        unknown=len(result.unknown),
         unknown_ticks=sum(last - first + 1 for first, last in result.unknown),
         latency_median_s=median(latencies) if latencies else None,
         latency_max_s=max(latencies, default=None),

@@ -15,7 +15,7 @@ from compiler.files.checked_json import MisshapenError, parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, RunFacts, Stretches, brief, run_facts, stretches
+from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Bindings, Document, Requirement, Result, Threshold
 from fretc.audit.measurements.confidence_intervals import REFUTED
@@ -84,23 +84,20 @@ class Evidence:
         for place in sorted(places):
             yield place, self.results[place]
 
-    def latencies(self, requirement: str) -> Iterator[tuple[int, Sequence[float]]]:
-        """The latencies in seconds of each result of a requirement, with its place, in order."""
-        for place, result in self._of(requirement):
+    def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
+        """Latencies in seconds of each result of some requirements, with its place, in order."""
+        for place, result in self._of(requirements):
             yield place, result.latencies
 
-    def thresholds(self, requirement: str) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of a requirement, with its place, in order."""
-        for place, result in self._of(requirement):
+    def thresholds(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+        """The thresholds of each result of some requirements, with its place, in order."""
+        for place, result in self._of(requirements):
             yield place, result.thresholds
 
-    def stretches(self, requirement: str) -> Iterator[tuple[int, Stretches]]:
-        """The stretches of each result of a requirement, with its place, in order."""
-        for place, result in self._of(requirement):
-            yield place, stretches(result)
-
-    def _of(self, requirement: str) -> Iterator[tuple[int, Result]]:
-        return ((place, self.results[place]) for place in self._places.get(requirement, ()))
+    def _of(self, requirements: Collection[str]) -> Iterator[tuple[int, Result]]:
+        return self.details([at for id in {*requirements} for at in self._places.get(id, ())])
 
     @cached_property
     def _places(self) -> Mapping[str, Sequence[int]]:

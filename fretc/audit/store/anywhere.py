@@ -51,6 +51,12 @@ def source(path: str) -> EvidenceSource | Diagnostic:
     return opened(path)
 
 
+def required_source(path: str) -> EvidenceSource | Diagnostic:
+    """The same; an error where there is none."""
+    found = source(path)
+    return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
+
+
 def required(path: str) -> Evidence | Diagnostic:
     """The same; an error where there is none."""
     evidence = read(path)

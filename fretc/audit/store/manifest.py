@@ -27,6 +27,11 @@ from fretc.audit.store.tables import TableName
 
 SCHEMA: Final = "fretc-store-1"
 FILE = "manifest.json"
+UNFINISHED = "unfinished.json"
+"""The manifest of an audit that goes on, or was stopped."""
+REUSE = {FILE: "reuse.json", UNFINISHED: "unfinished-reuse.json"}
+"""Manifest → the file that vouches for it (`fretc.audit.store.register`)."""
+REGISTER = "register"
 SUFFIX = ".parquet"
 _NAME = 32
 """Digits of a SHA-256 that make the name of a file."""

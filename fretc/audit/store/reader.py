@@ -19,14 +19,16 @@ from compiler.files.checked_json import plain as parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, RunFacts, Stretches, brief, stretches
+from fretc.audit.evidence.briefs import Brief, RunFacts, brief
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import Evidence
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import Bindings, Document, Requirement, Result, Threshold
+from fretc.audit.measurements.tallies import Tally
 from fretc.audit.store import files, tables
 from fretc.audit.store.anywhere import StoreError
-from fretc.audit.store.manifest import FILE, Manifest, Part, place
+from fretc.audit.store.manifest import FILE, REGISTER, Manifest, Part, Table, place
+from fretc.audit.store.register import Entry, entries, types
 from fretc.audit.store.tables import EVENTS, EXACT, RESULTS, RUNS, TABLES, TableName
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
@@ -36,25 +38,35 @@ _BATCH = 512
 """Results that are read at once."""
 
 
-def opened(path: str) -> Store | Diagnostic:
+def opened(path: str, name: str = FILE) -> Store | Diagnostic:
     """A store whose tables are those of its manifest.
 
     Args:
         path: its folder.
+        name: of the manifest.
     """
-    source = read_text(f"{path}/{FILE}")
+    source = read_text(f"{path}/{name}")
     if isinstance(source, Diagnostic):
         return _wrong(path, "has no manifest") if source.code is Code.NO_SUCH_FILE else source
     try:
-        manifest = decoded(parsed(source.text), Manifest)
+        found = decoded(parsed(source.text), Manifest)
     except MisshapenError as error:
         return _wrong(path, f"has a manifest that is none of fretc: {error}")
-    store = Store(path, sha256(source.text), manifest)
+    store = Store(path, sha256(source.text), found)
     try:
         store.check()
     except StoreError as error:
         return error.diagnostic
     return store
+
+
+def manifest(folder: Path, name: str) -> Manifest | None:
+    """A manifest; None where there is none."""
+    source = read_text(str(folder / name))
+    try:
+        return None if isinstance(source, Diagnostic) else decoded(parsed(source.text), Manifest)
+    except MisshapenError:
+        return None
 
 
 @dataclass(frozen=True)
@@ -94,7 +106,9 @@ class Store:
             if (rows[RESULTS], rows[EVENTS], rows[RUNS]) != (part.results, part.results, part.runs):
                 raise self._error("has a manifest that contradicts itself")
             for name in TABLES:
-                self._content(part, name)
+                self._content(name, part.tables[name])
+        if self.manifest.register:
+            self._content(REGISTER, self.manifest.register)
 
     def briefs(self) -> Iterator[tuple[int, Brief]]:
         """Each result with its place, in order: the requirements of a run stand together."""
@@ -127,36 +141,65 @@ class Store:
                 raise self._error(f"cannot be read: {error}") from None
             yield from zip((start + row for row in some), found, strict=True)
 
-    def latencies(self, requirement: str) -> Iterator[tuple[int, Sequence[float]]]:
-        """The latencies in seconds of each result of a requirement, with its place, in order."""
-        yield from self._nested(requirement, "latencies_s")
+    def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
+        """Latencies in seconds of each result of some requirements, with its place, in order."""
+        yield from self._nested(requirements, "latencies_s")
 
-    def thresholds(self, requirement: str) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of a requirement, with its place, in order."""
-        for at, value in self._nested(requirement, "thresholds"):
+    def thresholds(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+        """The thresholds of each result of some requirements, with its place, in order."""
+        for at, value in self._nested(requirements, "thresholds"):
             try:
                 yield at, decoded(value, list[Threshold])
             except MisshapenError as error:
                 raise self._error(f"cannot be read: {error}") from None
 
-    def stretches(self, requirement: str) -> Iterator[tuple[int, Stretches]]:
-        """The stretches of each result of a requirement, with its place, in order."""
-        for start, part in self._parts():
-            rows = tables.rows_of(self._table(part, RESULTS, ("requirement",)), requirement)
-            for at, result in self._details(part, start, rows):
-                yield at, stretches(result)
-
-    def _nested(self, requirement: str, column: str) -> Iterator[tuple[int, Any]]:
+    def _nested(self, requirements: Collection[str], column: str) -> Iterator[tuple[int, Any]]:
         for start, part in self._parts():
             some: dict[TableName, pa.Table] = {
                 RESULTS: self._table(part, RESULTS, ("requirement", EXACT)),
                 EVENTS: self._table(part, EVENTS, (column,)),
             }
             try:
-                found = tables.nested(some, column, requirement)
+                found = tables.nested(some, column, requirements)
             except MisshapenError as error:
                 raise self._error(f"cannot be read: {error}") from None
             yield from ((start + row, value) for row, value in found)
+
+    def tallies(self) -> Iterator[dict[str, Tally]]:
+        """The tally of each proposition in each run."""
+        for _, part in self._parts():
+            some: dict[TableName, pa.Table] = {
+                RESULTS: self._table(part, RESULTS, ("run_row",)),
+                EVENTS: self._table(part, EVENTS, ("propositions",)),
+                RUNS: self._table(part, RUNS, ("run",)),
+            }
+            try:
+                yield from tables.tallies(some)
+            except (MisshapenError, IndexError) as error:
+                raise self._error(f"cannot be read: {error}") from None
+
+    def whole(self, name: TableName) -> pa.Table:
+        """All rows of a table."""
+        found = [self._table(part, name) for _, part in self._parts()]
+        return pa.concat_tables([tables.schema(name).empty_table(), *found])
+
+    def counts(self) -> Iterator[int]:
+        """How many results each run has."""
+        for _, part in self._parts():
+            yield from self._table(part, RUNS, ("results",))["results"].to_pylist()
+
+    def register(self) -> list[Entry]:
+        """What each log was, in the order of the runs; empty where it is not known."""
+        file = self.manifest.register
+        if not file:
+            return []
+        try:
+            data = self._content(REGISTER, file)
+            return entries(files.decoded(data, file, types()))
+        except MisshapenError as error:
+            raise self._error(f"cannot be read: {error}") from None
 
     def _parts(self) -> Iterator[tuple[int, Part]]:
         """Each part with the place of its first result."""
@@ -171,14 +214,13 @@ class Store:
             raise self._error(f"cannot be read: {error}") from None
 
     def _table(self, part: Part, name: TableName, columns: Sequence[str] | None = None) -> pa.Table:
-        data = self._content(part, name)
+        data = self._content(name, part.tables[name])
         try:
             return files.decoded(data, part.tables[name], tables.schema(name), columns)
         except MisshapenError as error:
             raise self._error(f"cannot be read: {error}") from None
 
-    def _content(self, part: Part, name: TableName) -> bytes:
-        file = part.tables[name]
+    def _content(self, name: str, file: Table) -> bytes:
         path = Path(self.file, place(name, file))
         try:
             return files.content(path, file)

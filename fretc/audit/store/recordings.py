@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,7 @@ _LENGTH = 8
 """Bytes that follow it: how long the description is."""
 _CODES = {code.number: code for code in Code}
 Array = NDArray[Any]
+KnownBy = Literal["read", "stamp", "sha256"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +54,8 @@ class Kept:
 
     def recording(
         self, log: str, declarations: Declarations, wanted: Sequence[str], integrity: Integrity
-    ) -> Recording | None:
-        """What reading the log would give; None where it must be read.
+    ) -> tuple[Recording, KnownBy] | None:
+        """What reading the log would give, and how that is known; None where it must be read.
 
         Args:
             log: its path. It is not opened where its stamp is what it was.
@@ -70,13 +71,10 @@ class Kept:
             return None
         about, arrays = content
         of_now = _reading(declarations, wanted, integrity)
-        if (
-            about["reading"] != of_now
-            or about["edition"] != edition()
-            or not _unchanged(log, about)
-        ):
+        if about["reading"] != of_now or about["edition"] != edition():
             return None
-        return _recording(about, arrays, declarations)
+        by = _unchanged(log, about)
+        return by and (_recording(about, arrays, declarations), by)
 
     def keep(
         self,
@@ -140,13 +138,15 @@ def _reading(declarations: Declarations, wanted: Sequence[str], integrity: Integ
     return sha256(json.dumps([repr(declarations.clock), read, bound, labels, integrity]))
 
 
-def _unchanged(log: str, about: Mapping[str, Any]) -> bool:
+def _unchanged(log: str, about: Mapping[str, Any]) -> KnownBy | None:
+    """By what it is known that the log is what it was; None: it is not known."""
     before, now = Stamp(*about["stamp"]), stamp(log)
     if now is None or now.size != before.size or os.path.realpath(log) != about["log"]:
-        return False
+        return None
     if before.settled and now == before:
-        return True
-    return bool(about["checked"]["hashed"]) and file_sha256(log) == about["sha256"]
+        return "stamp"
+    same = about["checked"]["hashed"] and file_sha256(log) == about["sha256"]
+    return "sha256" if same else None
 
 
 def _stands_alone(log: str) -> bool:

@@ -6,8 +6,9 @@ hold as it is (`fretc.audit.store.columns`) stands in `exact`, too, as JSON.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -22,6 +23,8 @@ from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
 from fretc.audit.evidence.reader import VERDICTS
 from fretc.audit.evidence.samples import Surroundings
 from fretc.audit.evidence.schema import Hashes, Health, Result, Violation
+from fretc.audit.evidence.writer import unjudged
+from fretc.audit.measurements.tallies import Tally
 from fretc.audit.store.columns import (
     Column,
     Field,
@@ -98,13 +101,13 @@ def _below(path: str, fields: Iterable[Field]) -> Iterator[Field]:
     return (each.below(path) for each in fields)
 
 
-_SHARED = ("health", "labels")
+_SHARED = ("health", "labels", "course")
 """What all results of a run share."""
 _FLAT = "run requirement verdict finite reason clock ticks start_ns end_ns trials".split()
 _ELSEWHERE = ("violations", "hashes", *_SHARED, *_FLAT)
 _MAIN = tuple(each for each in fields_of(Result) if each.name in _FLAT)
 _NESTED = tuple(each for each in fields_of(Result) if each.name not in _ELSEWHERE)
-_LABELS = tuple(each for each in fields_of(Result) if each.name in _SHARED[1:])
+_OF_RUN = tuple(each for each in fields_of(Result) if each.name in _SHARED[1:])
 _COUNTS = tuple(e for e in fields_of(Brief) if e.name not in (*_FLAT, "fingerprints"))
 _FACTS = tuple(e for e in fields_of(RunFacts) if e.name not in _SHARED)
 _HASHES = fields_of(Hashes)
@@ -140,7 +143,7 @@ TABLES: Mapping[TableName, tuple[Field, ...]] = {
         *_below("facts", _FACTS),
         *_of("results", Whole()),
         *_below("facts.health", _HEALTH),
-        *_below("first", _LABELS),
+        *_below("first", _OF_RUN),
         *_of(EXACT, Text()),
     ),
 }
@@ -227,7 +230,7 @@ def runs_of(results: Iterable[Result]) -> list[list[Result]]:
 
 
 def _shared(result: Result) -> tuple[object, ...]:
-    return (result.run, result.health, *(getattr(result, each.attribute) for each in _LABELS))
+    return (result.run, result.health, *(getattr(result, each.attribute) for each in _OF_RUN))
 
 
 # Read --------------------------------------------------------------------------------------------
@@ -267,7 +270,6 @@ def _held(tables: Tables, rows: Sequence[int]) -> list[Result]:
     main, events = (_taken(tables[name], rows) for name in (RESULTS, EVENTS))
     run_rows = main["run_row"].to_pylist()
     shared = _of_runs(tables[RUNS], run_rows)
-    blank = plain(_BLANK)
     parts = zip(
         _objects(main, _MAIN),
         _objects(events, _NESTED),
@@ -276,15 +278,18 @@ def _held(tables: Tables, rows: Sequence[int]) -> list[Result]:
         strict=True,
     )
     records = [
-        {**flat, **nested, "hashes": hashes, "violations": violations, "health": blank}
+        {**flat, **nested, "hashes": hashes, "violations": violations, "health": _NO_HEALTH}
         for flat, nested, hashes, violations in parts
     ]
     found = decoded(records, list[Result])
     return [replace(each, **shared[n]) for each, n in zip(found, run_rows, strict=True)]
 
 
-_BLANK = Health(False, None, None, (), (), {})
+_NO_HEALTH = plain(Health(False, None, None, (), (), {}))
 """In place of that of the run, which is made once and not with each result."""
+_NO_HASHES = dict.fromkeys(("sentence", "bindings", "monitor"), "0" * 64)
+_BLANK = plain(unjudged("", "none", "", _NO_HASHES, decoded(_NO_HEALTH, Health)))
+"""A result of which only what the run has counts."""
 
 
 def _objects(table: pa.Table, fields: Sequence[Field], suffix: str = "") -> list[Any]:
@@ -309,10 +314,12 @@ def _of_runs(table: pa.Table, run_rows: Sequence[int]) -> dict[int, dict[str, An
     if len(known) != len({*run_rows}):
         raise MisshapenError("`results` names a row that `runs` does not have")
     some = _taken(table, known)
-    health = decoded(_objects(some, _HEALTH), list[Health])
-    labels = _objects(some, _LABELS)
+    parts = zip(_objects(some, _HEALTH), _objects(some, _OF_RUN), strict=True)
+    found = decoded([{**_BLANK, "health": health, **more} for health, more in parts], list[Result])
+    names = ("health", *(each.attribute for each in _OF_RUN))
     return {
-        row: {"health": one, **more} for row, one, more in zip(known, health, labels, strict=True)
+        row: {name: getattr(one, name) for name in names}
+        for row, one in zip(known, found, strict=True)
     }
 
 
@@ -385,12 +392,10 @@ def facts(table: pa.Table) -> list[RunFacts]:
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
     some = _taken(table, held)
-    rows = zip(
-        _objects(some, _FACTS), _objects(some, _HEALTH), _objects(some, _LABELS), strict=True
-    )
-    found = decoded(
-        [{**row, "health": health, **labels} for row, health, labels in rows], list[RunFacts]
-    )
+    labels = tuple(each for each in _OF_RUN if each.name == "labels")
+    rows = zip(*(_objects(some, fields) for fields in (_FACTS, _HEALTH, labels)), strict=True)
+    records = [{**facts, "health": health, **labels} for facts, health, labels in rows]
+    found = decoded(records, list[RunFacts])
     whole = dict(zip(held, found, strict=True))
     return [
         whole[n] if text is None else decoded(parsed(text), RunFacts)
@@ -398,20 +403,13 @@ def facts(table: pa.Table) -> list[RunFacts]:
     ]
 
 
-def rows_of(table: pa.Table, requirement: str) -> list[int]:
-    """The rows of a requirement."""
-    equal = pc.equal(table["requirement"], requirement).to_numpy(zero_copy_only=False)
-    rows: list[int] = np.flatnonzero(equal).tolist()
-    return rows
-
-
-def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]:
-    """One column of `events` for each row of a requirement, with its row, as plain values.
+def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tuple[int, Any]]:
+    """One column of `events` for each row of some requirements, with its row, as plain values.
 
     Args:
         tables: `results` with `requirement` and `exact`, `events` with the column.
         name: of the column.
-        requirement: whose rows.
+        requirements: whose rows.
 
     Raises:
         MisshapenError: a row cannot be read.
@@ -419,7 +417,9 @@ def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]
     main, events = tables[RESULTS], tables[EVENTS]
     if main.num_rows != events.num_rows:
         raise MisshapenError("`events` does not have the rows of `results`")
-    rows = rows_of(main, requirement)
+    wanted = pa.array([*requirements], pa.string())
+    is_wanted = pc.is_in(main["requirement"], wanted).to_numpy(zero_copy_only=False)
+    rows: list[int] = np.flatnonzero(is_wanted).tolist()
     (column,) = (each.column for each in _NESTED if each.name == name)
     values = column.values(_whole(_taken(events, rows), name))
     texts = _taken(main[EXACT], rows).to_pylist()
@@ -428,3 +428,54 @@ def nested(tables: Tables, name: str, requirement: str) -> list[tuple[int, Any]]
         for value, text in zip(values, texts, strict=True)
     ]
     return [*zip(rows, whole, strict=True)]
+
+
+def joined(groups: Sequence[Tables]) -> Tables:
+    """The tables of several groups of runs as those of all of them, in their order."""
+    if len(groups) == 1:
+        return groups[0]
+    return {name: _joined(groups, name) for name in TABLES}
+
+
+_KEYS: Mapping[TableName, tuple[str, TableName]] = {
+    RESULTS: ("run_row", RUNS),
+    VIOLATIONS: ("result_row", RESULTS),
+    SAMPLES: ("violation_row", VIOLATIONS),
+}
+"""Table → its column with rows of another table."""
+
+
+def _joined(groups: Sequence[Tables], name: TableName) -> pa.Table:
+    key, other = _KEYS.get(name, ("", name))
+    starts = accumulate((len(group[other]) for group in groups), initial=0)
+    parts = []
+    for group, start in zip(groups, starts, strict=False):
+        part = group[name]
+        if key:
+            place = part.schema.get_field_index(key)
+            part = part.set_column(place, key, pc.add(part[key], pa.scalar(start, pa.int64())))
+        parts.append(part)
+    return pa.concat_tables(parts)
+
+
+def tallies(tables: Tables) -> list[dict[str, Tally]]:
+    """The tally of each proposition in each run.
+
+    Args:
+        tables: `results` with `run_row`, `events` with `propositions`, `runs`.
+
+    Raises:
+        MisshapenError: they cannot be read.
+    """
+    (column,) = (each.column for each in _NESTED if each.name == "propositions")
+    found: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]
+    rows = tables[RESULTS]["run_row"].to_pylist()
+    values = column.values(_whole(tables[EVENTS], "propositions"))
+    known: dict[tuple[int, ...], Tally] = {}
+    for row, propositions in zip(rows, values, strict=True):
+        for name, counts in propositions.items():
+            numbers = tuple(counts.values())
+            if numbers not in known:
+                known[numbers] = decoded(counts, Tally)
+            found[row][name] = known[numbers]
+    return found

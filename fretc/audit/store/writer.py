@@ -2,67 +2,120 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from compiler.files.text_files import sha256, write
-from fretc.audit.evidence.schema import Document, Result
-from fretc.audit.store.files import encoded
-from fretc.audit.store.manifest import FILE, SCHEMA, SUFFIX, Manifest, Part, place, text
+from compiler.files.checked_json import MisshapenError
+from compiler.files.text_files import regular, sha256, write
+from fretc.audit.evidence.schema import Document
+from fretc.audit.store import register
+from fretc.audit.store.files import content, encoded
+from fretc.audit.store.manifest import (
+    FILE,
+    REGISTER,
+    REUSE,
+    SCHEMA,
+    UNFINISHED,
+    Manifest,
+    Part,
+    Table,
+    place,
+    text,
+)
 from fretc.audit.store.parts import parts
-from fretc.audit.store.tables import RESULTS, RUNS, TABLES, runs_of, tabled
+from fretc.audit.store.register import Entry
+from fretc.audit.store.tables import RESULTS, RUNS, TABLES, Tables, runs_of, tabled
 from fretish.diagnostics.diagnostic import Diagnostic
 
 
-def write_part(folder: Path, results: Sequence[Result], fretc: str) -> Part | Diagnostic:
+def write_part(folder: Path, tables: Tables) -> Part | Diagnostic:
     """Write the tables of some runs.
 
     Args:
         folder: of the store.
-        results: of whole runs.
-        fretc: the version that made them.
+        tables: of whole runs.
 
     Returns:
         What the manifest says of them; or why they cannot be written.
     """
-    files = {name: encoded(table) for name, table in tabled(results, fretc).items()}
-    wrong = write({folder / place(name, file): data for name, (data, file) in files.items()})
+    made = {name: encoded(table) for name, table in tables.items()}
+    wrong = write(
+        {
+            folder / place(name, file): data
+            for name, (data, file) in made.items()
+            if not _is_there(folder / place(name, file), file)
+        }
+    )
     if wrong is not None:
         return wrong
-    tables = {name: file for name, (_, file) in files.items()}
-    return Part(tables[RUNS].rows, tables[RESULTS].rows, tables)
+    known = {name: file for name, (_, file) in made.items()}
+    return Part(known[RUNS].rows, known[RESULTS].rows, known)
 
 
-def finish(folder: Path, manifest: Manifest) -> str | Diagnostic:
-    """Write the manifest, and remove what belonged to an earlier one.
-
-    Returns:
-        Its SHA-256; or why it cannot be written.
-    """
-    content = text(manifest)
-    wrong = write({folder / FILE: content})
-    if wrong is not None:
-        return wrong
-    remove_others(folder, manifest)
-    return sha256(content)
+def _is_there(path: Path, file: Table) -> bool:
+    try:
+        content(path, file)
+    except (OSError, MisshapenError):
+        return False
+    return True
 
 
-def remove_others(folder: Path, manifest: Manifest | None) -> None:
-    """Remove tables that a manifest does not name; None: all of them."""
-    kept = {folder / path for path in _files(manifest)} if manifest else set()
-    for table in TABLES:
-        for path in [*(folder / table).glob(f"*{SUFFIX}"), *(folder / table).glob(".*.tmp")]:
-            if path not in kept:
+def write_register(folder: Path, entries: Sequence[Entry]) -> Table | Diagnostic:
+    """Write what each log was."""
+    data, file = encoded(register.table(entries))
+    return write({folder / place(REGISTER, file): data}) or file
+
+
+def write_manifest(folder: Path, manifest: Manifest, name: str = FILE) -> str | Diagnostic:
+    """Write a manifest; gives its SHA-256."""
+    made = text(manifest)
+    return write({folder / name: made}) or sha256(made)
+
+
+def remove_others(folder: Path, *manifests: Manifest) -> None:
+    """Remove the tables that none of the manifests names."""
+    kept = {folder / path for manifest in manifests for path in _files(manifest)}
+    for table in (*TABLES, REGISTER):
+        for path in (folder / table).glob("*"):
+            if _OURS.fullmatch(path.name) and path not in kept:
                 path.unlink(missing_ok=True)
-        with suppress(OSError):  # something else is there
+        with suppress(OSError):  # it is in use, or something else is in it
             (folder / table).rmdir()
 
 
-def _files(manifest: Manifest) -> Iterable[Path]:
+_OURS = re.compile(r"[0-9a-f]{32}\.parquet|\.[0-9a-f]{32}\.parquet\.[0-9a-f]{8}\.tmp")
+
+
+def _files(manifest: Manifest) -> Iterator[Path]:
     for part in manifest.parts:
         for name, file in part.tables.items():
             yield Path(place(name, file))
+    if manifest.register:
+        yield Path(place(REGISTER, manifest.register))
+
+
+def is_store(folder: Path) -> bool:
+    """Whether fretc has written into a folder: nothing else of a user's is ever removed."""
+    return any(_is_manifest(folder / name) for name in (FILE, UNFINISHED))
+
+
+def _is_manifest(path: Path) -> bool:
+    try:
+        with regular(path) as file:
+            return SCHEMA.encode() in file.read(200)
+    except OSError:
+        return False
+
+
+def remove(folder: Path) -> None:
+    """Remove a store, and its folder where nothing else is in it."""
+    for name in (FILE, UNFINISHED, *REUSE.values()):
+        (folder / name).unlink(missing_ok=True)
+    remove_others(folder)
+    with suppress(OSError):
+        folder.rmdir()
 
 
 def write_document(
@@ -73,7 +126,7 @@ def write_document(
     written: list[Part] = []
     for places in parts([run[0].run for run in runs]):
         results = [result for place in places for result in runs[place]]
-        part = write_part(folder, results, document.fretc)
+        part = write_part(folder, tabled(results, document.fretc))
         if isinstance(part, Diagnostic):
             return part
         written.append(part)
@@ -86,4 +139,7 @@ def write_document(
         parts=tuple(written),
         probabilities=document.probabilities,
     )
-    return finish(folder, manifest)
+    digest = write_manifest(folder, manifest)
+    if isinstance(digest, str):
+        remove_others(folder, manifest)
+    return digest

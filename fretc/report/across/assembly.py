@@ -5,79 +5,74 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from math import inf
 
-from fretc.audit.evidence.briefs import EvidenceSource, stretches
-from fretc.audit.evidence.declared_units import thresholds_in_declared_units
+from fretc.audit.evidence.briefs import stretches
 from fretc.audit.evidence.schema import Result, Threshold
-from fretc.report.across.lanes import RunStretches, Words, lanes, with_marks
+from fretc.report.across.lanes import Known, LanePlan, RunStretches, plan, with_marks
 from fretc.report.across.uses import RunNumbers, uses
 from fretc.report.model import phrases
-from fretc.report.model.across import Across, Lanes, RequirementAcross
+from fretc.report.model.across import Across, RequirementAcross
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.audits import SingleAudit
 from fretc.report.model.pictures import WordLane
 from fretc.report.pictures.histograms import is_answered, seconds_allowed
+from fretc.report.sections.details import Details, Thresholds
 from fretc.report.sections.results import result_anchor
 from fretc.report.sections.runs import Run, RunKey, run_key
-from fretish.bindings.declarations import Declarations
 
 _ROWS, _MARKS = 180, 1_500
 """Of the pictures of all requirements together."""
+PICTURED = 16
+"""The most requirements with pictures of their own in a page; `--json` has those of all."""
 _FEWEST, _MOST = 3, 20
 """Rows of one picture of a requirement."""
 
 
-def across(
-    assessed: Sequence[Assessment],
-    runs: Mapping[RunKey, Run],
-    evidence: EvidenceSource | None,
-    declared: Declarations | None,
-) -> Across:
-    """The lanes of all requirements, and the lanes and the used bounds of each.
+def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> Across:
+    """The lanes of all requirements, and the lanes and the used bounds of the worst.
 
     Args:
-        assessed: all requirements; those that are retired have no lanes.
-        runs: all runs.
-        evidence: None where no run was audited.
-        declared: the bindings.
+        details: requirements, runs and the evidence; those that are retired have no lanes.
+        worst: the anchors of the requirements, the worst first.
+        pictured: how many of these have pictures of their own.
     """
-    active = [each for each in assessed if each.requirement.status != "retired"]
+    active = [a for a in details.assessments.values() if a.requirement.status != "retired"]
     most = max(_FEWEST, min(_MOST, _ROWS // max(1, len(active))))
     marks = max(10 * _FEWEST, _MARKS // max(1, len(active)))
-    of_each = {each.anchor: _results(each, runs, evidence) for each in active}
-    of_all = _in_order([one for of in of_each.values() for one in of], runs)
-    words = _words(active, runs, evidence)
+    in_force = {assessment.anchor for assessment in active}
+    chosen = {*[anchor for anchor in worst if anchor in in_force][:pictured]}
+    several = [each for each in active if each.anchor in chosen and len(each.audits) > 1]
+    of_all = plan(
+        "All requirements, a lane for each run",
+        _in_order([one for each in active for one in _results(each, details)], details.runs),
+    )
+    plans = {each.anchor: _plan(each, details, most, marks) for each in several}
+    known = _known(details, [at for each in (of_all, *plans.values()) for at in each.places])
+    uses_of = {
+        each.anchor: uses(*_numbers(each, details, thresholds, most))
+        for each, thresholds in details.thresholds(plans)
+    }
     return Across(
-        lanes("All requirements, a lane for each run", of_all, words=words),
+        of_all.lanes(known),
         tuple(
-            _requirement(each, of_each[each.anchor], most, marks, evidence, declared)
+            RequirementAcross(
+                each.id,
+                each.anchor,
+                plans[each.anchor].lanes(known) if each.anchor in plans else None,
+                uses_of.get(each.anchor),
+            )
             for each in active
+            if each.anchor in chosen
         ),
     )
 
 
-def _requirement(
-    assessment: Assessment,
-    of: Sequence[RunStretches],
-    most: int,
-    marks: int,
-    evidence: EvidenceSource | None,
-    declared: Declarations | None,
-) -> RequirementAcross:
-    several = len(of) > 1
-    return RequirementAcross(
-        assessment.id,
-        assessment.anchor,
-        _lanes(assessment.id, of, most, marks) if several else None,
-        uses(*_numbers(assessment, of, most, evidence, declared)) if several else None,
-    )
-
-
-def _lanes(id: str, of: Sequence[RunStretches], most: int, marks: int) -> Lanes | None:
+def _plan(assessment: Assessment, details: Details, most: int, marks: int) -> LanePlan:
     """Of the runs that have anything to mark; the others are counted."""
+    of = _results(assessment, details)
     marked = with_marks(of)
     calm = len(of) - len(marked)
-    note = f" No lane: {phrases.times(calm, 'run')} with nothing of it." if calm else ""
-    return lanes(f"{id} in its runs", marked, most, marks, note=note) if marked else None
+    note = f"No lane: {phrases.times(calm, 'run')} with nothing of it." if calm else ""
+    return plan(f"{assessment.id} in its runs", marked, most, marks, note)
 
 
 def _in_order(
@@ -91,10 +86,7 @@ def _in_order(
 # What the evidence says ------------------------------------------------------------------------
 
 
-def _results(
-    assessment: Assessment, runs: Mapping[RunKey, Run], evidence: EvidenceSource | None
-) -> list[RunStretches]:
-    stretches_at = dict(evidence.stretches(assessment.id)) if evidence else {}
+def _results(assessment: Assessment, details: Details) -> list[RunStretches]:
     return [
         RunStretches(
             run.anchor,
@@ -104,27 +96,22 @@ def _results(
             assessment.anchor,
             result_anchor(assessment, number),
             audit.mark,
-            stretches_at[audit.place],
+            audit.place,
+            audit.result.ticks > 0,
+            (audit.result.violations, audit.result.unknown, audit.result.open),
         )
         for number, audit in enumerate(assessment.reviewed_audits, 1)
-        for run in [runs[run_key(audit.result)]]
+        for run in [details.runs[run_key(audit.result)]]
     ]
 
 
 def _numbers(
-    assessment: Assessment,
-    of: Sequence[RunStretches],
-    most: int,
-    evidence: EvidenceSource | None,
-    declared: Declarations | None,
+    assessment: Assessment, details: Details, thresholds: Thresholds, most: int
 ) -> tuple[list[RunNumbers], float | None, int, int]:
     """The runs whose results are current, the time allowed, the rows, and the other runs."""
-    thresholds_at = {
-        place: thresholds_in_declared_units(thresholds, declared)
-        for place, thresholds in (evidence.thresholds(assessment.id) if evidence else ())
-    }
+    of = _results(assessment, details)
     current = [
-        _run_numbers(audit, each, thresholds_at[audit.place])
+        _run_numbers(audit, each, tuple(thresholds[audit.place]))
         for audit, each in zip(assessment.audits, of, strict=True)
         if not audit.is_stale
     ]
@@ -149,25 +136,10 @@ def _run_numbers(
     )
 
 
-# Words -----------------------------------------------------------------------------------------
-
-
-def _words(
-    assessed: Sequence[Assessment], runs: Mapping[RunKey, Run], evidence: EvidenceSource | None
-) -> Words:
-    """Reads the signals of words of some runs, by their anchors: each from one of its results."""
-    places: dict[str, int] = {}
-    for assessment in assessed:
-        for audit in assessment.audits:
-            if audit.result.ticks:
-                places.setdefault(runs[run_key(audit.result)].anchor, audit.place)
-
-    def words(anchors: Collection[str]) -> Mapping[str, tuple[WordLane, ...]]:
-        run_at = {places[anchor]: anchor for anchor in anchors if anchor in places}
-        results = evidence.details(run_at) if evidence else ()
-        return {run_at[place]: word_lanes(result) for place, result in results}
-
-    return words
+def _known(details: Details, places: Collection[int]) -> Mapping[int, Known]:
+    """What there is to see of some results."""
+    found = details.evidence.details(places) if details.evidence else ()
+    return {place: (stretches(result), word_lanes(result)) for place, result in found}
 
 
 def word_lanes(result: Result) -> tuple[WordLane, ...]:

@@ -6,10 +6,11 @@ The results of all runs may be more than memory holds: they are read and written
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, fields, is_dataclass
+from dataclasses import asdict, fields, is_dataclass, replace
 from typing import Any
 
 from compiler.files.templating import to_json
+from fretc.report.across.assembly import across
 from fretc.report.model.views import Report, RequirementView
 from fretc.report.sections.details import Details
 
@@ -19,6 +20,8 @@ _AT_ONCE = 2_000
 
 def json_pieces(report: Report, details: Details) -> Iterator[str]:
     """The whole file."""
+    anchors = [view.anchor for view in report.requirements]
+    report = replace(report, across=across(details, anchors, len(anchors)))
     runs = (to_json(asdict(run), "    ") for run in details.run_views(report.runs))
     requirements = _requirements(report.requirements, details)
     yield from _object(report, {"runs": runs, "requirements": requirements}, "")
@@ -30,9 +33,11 @@ def _requirements(views: Sequence[RequirementView], details: Details) -> Iterato
         results: dict[str, list[str]] = {view.anchor: [] for view in group}
         for row, result in details.results(row for view in group for row in view.results):
             results[row.requirement].append(to_json(asdict(result), "        "))
+        histograms = dict(details.histograms(view.anchor for view in group))
         for view in group:
+            whole = replace(view, histograms=histograms[view.anchor])
             own = {"results": results.pop(view.anchor)}
-            yield "".join(_object(view, own, "    "))
+            yield "".join(_object(whole, own, "    "))
 
 
 def _groups(views: Sequence[RequirementView]) -> Iterator[list[RequirementView]]:

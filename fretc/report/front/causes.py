@@ -27,7 +27,7 @@ _CAUSES = {
     WAIVED: "waived",
     SUSPECT: "suspect: changed since",
 }
-_NEVER, _SOMETIMES, _OTHER = "never triggered", "not triggered in every run", "other reasons"
+_NEVER, _SOMETIMES, _OTHER = "never triggered", "not triggered in some runs", "other reasons"
 _ORDER = (
     _CAUSES[UNFORMALIZED], _CAUSES[kernel.NO_DATA], _NEVER, _SOMETIMES,
     _CAUSES[kernel.INCONCLUSIVE], _CAUSES[NOT_EXERCISED], _CAUSES[SUSPECT], _CAUSES[WAIVED], _OTHER,

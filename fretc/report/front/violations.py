@@ -13,7 +13,7 @@ from monitors import kernel
 
 _NAMED = 2
 """Up to this number the headline names the requirements; else it counts them."""
-_SENTENCES, _GROUPS = 3, 3
+_SENTENCES, _GROUPS = 4, 3
 """The most sentences about violations, and the most groups that one of them names."""
 
 
@@ -49,7 +49,7 @@ def headline(views: Sequence[RequirementView], runs: int) -> str:
 def _of(count: int, total: int) -> str:
     if count == total:
         return "the one run" if total == 1 else f"every one of {number(total)} runs"
-    return f"{number(count)} of {phrases.times(total, 'run')}"
+    return f"{number(count)} of {number(total)} runs"
 
 
 def sentences(views: Sequence[RequirementView], groups: Sequence[RunGroup]) -> Iterator[str]:
@@ -82,8 +82,11 @@ def where(broken: frozenset[str], groups: Sequence[RunGroup]) -> str:
             for group, count in hit
         ]
         return f"only in {phrases.joined(parts)}"
-    names = [run.name for run in runs if run.anchor in broken]
-    return f"in {len(broken)} of {phrases.times(len(runs), 'run')}: {phrases.some(names, 4)}"
+    count = f"in {len(broken)} of {phrases.times(len(runs), 'run')}"
+    others = [run.name for run in runs if run.anchor not in broken]
+    if len(others) <= _GROUPS and len(others) < len(broken):
+        return f"{count}, all but {phrases.joined(others)}"
+    return f"{count}: {phrases.some([run.name for run in runs if run.anchor in broken], 4)}"
 
 
 def _unknown(

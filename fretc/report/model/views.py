@@ -450,6 +450,7 @@ class RequirementView:
     exercise: str
     """How often all runs together have triggered it, in words."""
     histograms: tuple[Histogram, ...]
+    """Empty until `fretc.report.sections.details` reads them, for a form that has them."""
     probability: ProbabilityView | None
     """None where the sentence has no probability, or the evidence has no estimation."""
     results: tuple[ResultRow, ...]
@@ -533,6 +534,7 @@ class Report:
     commands: tuple[Command, ...]
     manifest: tuple[Hash, ...]
     across: Across
+    """With pictures of some requirements, the worst; the JSON form has those of all."""
     """All runs in one picture each: their violations, and what they used of the bounds."""
     change_groups: tuple[ChangeGroup, ...]
     """Each change since the review once, with the requirements that it touches."""

@@ -14,7 +14,7 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from fretc.report.across.layout import drawn_lanes, drawn_uses
 from fretc.report.model.phrases import visible
-from fretc.report.model.views import Report, worst_first
+from fretc.report.model.views import Report
 from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import Selection, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
@@ -23,8 +23,6 @@ from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
 from fretc.report.sections.details import Details
 
-_ACROSS = 16
-"""The most requirements with pictures of all their runs; `--json` has those of all."""
 _MOST_CHANGES = 100
 """The most changes, and the most runs with another verdict, in one list."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
@@ -48,7 +46,7 @@ def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> 
         selection=visible_texts(asdict(replace(choice, anchors=frozenset()))),
         anchors=choice.anchors,
         pictures=visible_texts(_pictures(choice)),
-        histograms=visible_texts(_histograms(page)),
+        histograms=visible_texts(_histograms(choice, details)),
         scales=visible_texts(_scales(page)),
         diagrams=_diagrams(page, rules),
         matrix=visible_texts(asdict(matrix)),
@@ -95,7 +93,6 @@ def _links(choice: Selection) -> frozenset[str]:
 def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[str, Any]:
     """The pictures of all runs; those of some requirements, the worst first, by their anchors."""
     everything = report.across.lanes
-    worst = {view.anchor for view in worst_first(report.requirements)[:_ACROSS]}
     return {
         "lanes": everything and asdict(drawn_lanes(everything, "across-lanes", links)),
         "requirements": {
@@ -105,19 +102,20 @@ def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[st
                 "uses": each.uses and asdict(drawn_uses(each.uses, f"uses-{each.anchor}", links)),
             }
             for each in report.across.requirements
-            if each.anchor in worst and not choice.by_anchor[each.anchor].is_short
+            if not choice.by_anchor[each.anchor].is_short
         },
     }
 
 
-def _histograms(page: Report) -> dict[str, list[dict[str, Any]]]:
-    return {
-        view.anchor: [
-            asdict(histogram(each, f"histogram-{view.anchor}.{number}"))
-            for number, each in enumerate(view.histograms, 1)
+def _histograms(choice: Selection, details: Details) -> dict[str, list[dict[str, Any]]]:
+    whole = [anchor for anchor, section in choice.by_anchor.items() if not section.is_short]
+    drawn: dict[str, list[dict[str, Any]]] = {anchor: [] for anchor in choice.by_anchor}
+    for anchor, some in details.histograms(whole):
+        drawn[anchor] = [
+            asdict(histogram(each, f"histogram-{anchor}.{number}"))
+            for number, each in enumerate(some, 1)
         ]
-        for view in page.requirements
-    }
+    return drawn
 
 
 def _rows(matrix: Picture) -> dict[str, str]:

@@ -16,7 +16,7 @@ from fretc.report.model import phrases
 from fretc.report.model.front import ColumnRun, RunGroup
 from fretc.report.model.views import Mark, Report, RequirementView, Row
 
-MOST = 6_000
+MOST = 10_000
 """The most cells of a picture that has all of them."""
 TITLED = 2_000
 """The most cells that say their requirement and run in a title of their own."""

@@ -26,18 +26,20 @@ COMPACT = 1_000
 """Above this number of results, only runs that are not satisfied have a row."""
 DETAILED, PICTURES = 100, 60
 """The most results with all details, and the most pictures of violations, in one page."""
+_FEW_DETAILED, _FEW_PICTURES = 40, 20
+"""The same in a compact page."""
 _ROWS = 10
 """The most rows of a requirement in a compact page."""
 _RUNS, _RUN_ROWS = 8, 200
 """Above the first number, runs stand in a table; the second is the most rows of that table."""
 _FOLDED = 60
 """Up to this number of results, the page has the details of satisfied runs too, folded."""
-_VIOLATIONS = 12
-"""The most violations of one result in a page with more than `_FOLDED` results."""
+_VIOLATIONS, _FEW_VIOLATIONS = 12, 6
+"""The most violations of one result above `_FOLDED` results, and in a compact page."""
 _WHOLE = 200
 """Above this number of requirements, a compact page has no formulas, artefacts and pictures."""
 _REASONS = 3
-"""The most reasons of a requirement in a compact page."""
+"""The most reasons of a requirement in the list of what is not shown, and in a compact page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +94,8 @@ def selection(report: Report, details: Details) -> Selection:
     """The selection for a report, from its rows; the details of no others are read."""
     total = sum(len(view.results) for view in report.requirements)
     compact = total > COMPACT
-    detailed = _detailed(report.requirements)
+    limits = _limits(total, compact)
+    detailed = _detailed(report.requirements, limits.results)
     rest = [
         row
         for view in report.requirements
@@ -100,7 +103,7 @@ def selection(report: Report, details: Details) -> Selection:
         if total <= _FOLDED and row.anchor not in detailed and _is_good(row)
     ]
     views = {row.anchor: view for row, view in details.results((*detailed.values(), *rest))}
-    open_ = _shortened([views[anchor] for anchor in detailed], total)
+    open_ = _shortened([views[anchor] for anchor in detailed], limits)
     folded = {row.anchor: views[row.anchor] for row in rest}
     by_anchor = {
         view.anchor: _section_runs(view, open_, folded, compact, len(report.requirements))
@@ -143,8 +146,8 @@ def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
         return
     yield (
         f"This page is compact, because {phrases.whole(total)} results are more than "
-        f"{phrases.whole(COMPACT)}: runs that satisfy a requirement are counted, and have no rows "
-        "of their own."
+        f"{phrases.whole(COMPACT)}: runs that satisfy a requirement have a mark in the matrix and "
+        "no row of their own, and requirements are not drawn."
     )
     if requirements > _WHOLE:
         yield (
@@ -161,28 +164,44 @@ def _is_good(result: ResultRow) -> bool:
     return result.mark.shows
 
 
-def _detailed(views: Sequence[RequirementView]) -> Mapping[str, ResultRow]:
+@dataclass(frozen=True, slots=True)
+class _Limits:
+    """The most of what a page has."""
+
+    results: int
+    """With details."""
+    pictures: int
+    violations: int | None
+    """Of one result; None: no limit."""
+
+
+def _limits(total: int, compact: bool) -> _Limits:
+    if compact:
+        return _Limits(min(DETAILED, _FEW_DETAILED), min(PICTURES, _FEW_PICTURES), _FEW_VIOLATIONS)
+    return _Limits(DETAILED, PICTURES, None if total <= _FOLDED else _VIOLATIONS)
+
+
+def _detailed(views: Sequence[RequirementView], most: int) -> Mapping[str, ResultRow]:
     """The results with all details: the worst of each requirement, then the next of each, ..."""
     wanted = [
         sorted(
             (r for r in view.results if not _is_good(r) or len(view.results) == 1),
             key=lambda result: result.mark.severity,
-        )[:DETAILED]
+        )[:most]
         for view in views
     ]
     in_turn = (r for turn in zip_longest(*wanted) for r in turn if r is not None)
-    return {row.anchor: row for row in islice(in_turn, DETAILED)}
+    return {row.anchor: row for row in islice(in_turn, most)}
 
 
-def _shortened(results: Sequence[ResultView], total: int) -> Mapping[str, ResultView]:
+def _shortened(results: Sequence[ResultView], limits: _Limits) -> Mapping[str, ResultView]:
     """The results in their order, with the pictures and violations that the page has room for."""
-    listed = None if total <= _FOLDED else _VIOLATIONS
     short: dict[str, ResultView] = {}
-    pictures = PICTURES
+    pictures = limits.pictures
     for result in results:
         kept = result.timelines[:pictures]
         pictures -= len(kept)
-        violations = result.violations[:listed]
+        violations = result.violations[: limits.violations]
         short[result.anchor] = replace(result, timelines=kept, violations=violations)
     return short
 
@@ -194,7 +213,8 @@ def _section_runs(
     compact: bool,
     requirements: int,
 ) -> SectionRuns:
-    details = [r for r in view.results if r.anchor in detailed]
+    worst_first = sorted(view.results, key=lambda result: result.mark.severity)
+    details = [r for r in worst_first if r.anchor in detailed]
     folded = [r for r in view.results if r.anchor in foldable]
     rows: Sequence[ResultRow] = view.results if len(view.results) > 1 else ()
     if compact:
@@ -262,23 +282,25 @@ def slimmed(report: Report, chosen: Selection) -> Report:
     """The report without what the page leaves out."""
     views = tuple(_slim(view, chosen) for view in report.requirements)
     not_shown = tuple(
-        replace(each, reasons=_few(each.reasons)) if chosen.is_compact else each
-        for each in report.not_shown
+        replace(each, reasons=_few(each.reasons, "in its section")) for each in report.not_shown
     )
     return replace(report, requirements=views, not_shown=not_shown, runs=chosen.runs)
 
 
 def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
     """A section without its results: the template takes those from the selection."""
-    reasons = _few(view.reasons) if chosen.is_compact else view.reasons
+    where = "in the table of its runs"
+    reasons = _few(view.reasons, where) if chosen.is_compact else view.reasons
     kept = replace(view, results=(), reasons=reasons)
+    if chosen.is_compact:
+        kept = replace(kept, diagram="")
     if not chosen.by_anchor[view.anchor].is_short:
         return kept
-    return replace(kept, formulas=(), propositions=(), artefacts=(), histograms=(), diagram="")
+    return replace(kept, formulas=(), propositions=(), artefacts=())
 
 
-def _few(reasons: Sequence[str]) -> tuple[str, ...]:
+def _few(reasons: Sequence[str], where: str) -> tuple[str, ...]:
     left = len(reasons) - _REASONS
     if left <= 1:
         return tuple(reasons)
-    return (*reasons[:_REASONS], "and more, in the table of its runs")
+    return (*reasons[:_REASONS], f"and {left} more, {where}")

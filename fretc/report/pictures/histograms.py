@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from math import ceil, floor
 from statistics import median
 
 from compiler.formalization.formalized import Formalized
-from fretc.audit.evidence.briefs import Brief, EvidenceSource
-from fretc.audit.evidence.declared_units import thresholds_in_declared_units
+from fretc.audit.evidence.briefs import Brief
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.pictures import Bin, Histogram
 from fretish import syntax
-from fretish.bindings.declarations import Declarations
 
 _BINS = 20
 """The number of bars, about."""
@@ -63,27 +61,22 @@ def exercise(assessment: Assessment) -> str:
 
 
 def histograms(
-    assessment: Assessment, evidence: EvidenceSource | None, declared: Declarations | None
+    assessment: Assessment,
+    latencies: Mapping[int, Sequence[float]],
+    thresholds: Mapping[int, Sequence[Threshold]],
 ) -> tuple[Histogram, ...]:
-    """One of latency, then one for each threshold; none of fewer than two values."""
+    """One of latency, then one for each threshold; none of fewer than two values.
+
+    Args:
+        assessment: of the requirement.
+        latencies: of each of its results, by place.
+        thresholds: the same, in declared units.
+    """
     results = _current_results(assessment)
-    if evidence is None or not results:
-        return ()
-    current = {audit.place for audit in assessment.audits if not audit.is_stale}
-    late = [
-        latency
-        for place, latencies in evidence.latencies(assessment.id)
-        if place in current
-        for latency in latencies
-    ]
+    places = [audit.place for audit in assessment.audits if not audit.is_stale]
+    late = [latency for place in places for latency in latencies[place]]
     latency_histogram = [_latency(late, results, assessment.rule)] if len(late) > 1 else []
-    if len(results) < 2:
-        return tuple(latency_histogram)
-    margins = _margins(
-        thresholds_in_declared_units(thresholds, declared)
-        for place, thresholds in evidence.thresholds(assessment.id)
-        if place in current
-    )
+    margins = _margins(thresholds[place] for place in places) if len(results) > 1 else iter(())
     return (*latency_histogram, *islice(margins, _MARGINS))
 
 

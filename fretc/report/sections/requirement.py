@@ -14,7 +14,6 @@ from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
-from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.probabilities import shown
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -29,7 +28,7 @@ from fretc.report.model.views import (
     SignalView,
     verdict_mark,
 )
-from fretc.report.pictures.histograms import exercise, histograms
+from fretc.report.pictures.histograms import exercise
 from fretc.report.sections.plans import planned
 from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.results import reasons, result_rows
@@ -49,7 +48,7 @@ def section(
     project: Project,
     runs: Mapping[RunKey, Run],
     anchors: Mapping[str, str],
-    evidence: EvidenceSource | None,
+    audited: bool,
     proofs: Sequence[Proof] = (),
     shared_products: Sequence[Product] = (),
     book: SignatureBook = NO_SIGNATURES,
@@ -61,7 +60,7 @@ def section(
         project: with or without errors.
         runs: all runs.
         anchors: of the section of each requirement, by its id.
-        evidence: None where no run has been audited.
+        audited: whether there is any evidence.
         proofs: about all requirements, and about shared parts.
         shared_products: what targets make from the bindings alone.
         book: who signed what.
@@ -97,9 +96,9 @@ def section(
         probability=_probability(assessment),
         proofs=own_proofs,
         exercise=exercise(assessment),
-        histograms=histograms(assessment, evidence, project.declarations),
+        histograms=(),
         results=result_rows(assessment, runs),
-        reasons=reasons(assessment, runs, audited=evidence is not None),
+        reasons=reasons(assessment, runs, audited=audited),
         limit=_limit(rule),
         coverage=assessment.coverage,
         review=review(assessment, book),

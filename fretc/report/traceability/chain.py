@@ -36,6 +36,8 @@ TEXT, WORDS, FORMULAS, ARTEFACT = "text", "words", "formulas", "artefact"
 ACCEPTANCE = "acceptance"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
 PROOF, SHARED = "proof", "shared"
+DERIVED = (FORMULAS, ARTEFACT, VERDICT, PROOF)
+"""Kinds of nodes that are made of those upstream; of any other the fingerprint is its own."""
 ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
 """Kinds of nodes that may come after a review without a change of what was reviewed."""
 _READINGS = ("ltl", "json")
@@ -548,7 +550,11 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
 
 def _first(causes: set[Node], upstream: Mapping[Node, frozenset[Node]]) -> Iterator[Node]:
     """The causes that do not follow from another cause."""
-    return (cause for cause in causes if not upstream.get(cause, frozenset()) & causes)
+    return (
+        cause
+        for cause in causes
+        if cause.kind not in DERIVED or not upstream.get(cause, frozenset()) & causes
+    )
 
 
 def upstream_of(nodes: Iterable[Node], links: Sequence[Link]) -> dict[Node, frozenset[Node]]:

@@ -13,6 +13,7 @@ from fretc.report.traceability.chain import (
     ACCEPTANCE,
     ADDED,
     ARTEFACT,
+    DERIVED,
     FORMULAS,
     HAZARD,
     LOG,
@@ -48,6 +49,8 @@ class Change:
     """As it is written; empty: it is not there; None: it has no text."""
     is_of_evidence: bool = False
     """The evidence is about another one; since the review it has not changed."""
+    is_table: bool = False
+    """It came or went as a whole: what is not there has no default."""
 
     @property
     def text(self) -> str:
@@ -66,11 +69,14 @@ class Change:
     @property
     def _absent(self) -> str:
         """What stands for a text that is not there: a field that is left out has a default."""
-        return "not stated" if self.node.kind in _WITH_DEFAULTS else "none"
+        has_default = self.node.kind in _WITH_DEFAULTS and not self.is_table
+        return "not stated" if has_default else "none"
 
     @property
     def brief(self) -> str:
         """The same in a sentence: of a long one the beginning."""
+        if not self.is_of_evidence and (self.before is None or self.after is None):
+            return f"{self.what} changed"
         return self.text if len(self.text) <= _BRIEF else f"{self.text[: _BRIEF - 2]} …"
 
     @property
@@ -193,7 +199,7 @@ class _Comparison:
         for node in sorted(self._nodes - self._explained):
             is_new = node not in self._prints and node.kind in ADDED
             is_gone = node not in self._now and node.kind in _ONLY_OF_EVIDENCE
-            derived = node.kind in _DERIVED and above.get(node, frozenset()) & self._nodes
+            derived = node.kind in DERIVED and above.get(node, frozenset()) & self._nodes
             if not (is_new or is_gone or derived or self._follows(node)):
                 yield self._named(node)
 
@@ -204,7 +210,7 @@ class _Comparison:
         if node.kind == basis.FRETC:  # it has no version where it has no formulas
             is_other = node in self._prints and node in self._now
             return not is_other and basis.SENTENCE in kinds
-        sources = _SOURCES if self._texts is None else _SOURCES | _SOURCES_OF_TEXTS
+        sources = _SOURCES if self._texts is None else {**_SOURCES, **_SOURCES_OF_TEXTS}
         return bool(kinds & sources.get(node.kind, frozenset()))
 
     def _named(self, node: Node) -> Change:
@@ -244,8 +250,6 @@ def _digest(sha256: str) -> str:
 
 _MANY = (ARTEFACT, FORMULAS, PLAN, SHARED)
 """Kinds of which a requirement has several, and a text is about all of them."""
-_DERIVED = (FORMULAS, ARTEFACT, VERDICT, PROOF)
-"""Kinds of things that are made of what the links come from."""
 _ONLY_OF_EVIDENCE = (VERDICT, basis.TOPICS)
 """Kinds of things that are there where runs are: their log says that it is gone."""
 _SOURCES: Mapping[str, frozenset[str]] = {
@@ -256,7 +260,7 @@ _SOURCES: Mapping[str, frozenset[str]] = {
 """What else a thing may be made of, without a link to it."""
 _SOURCES_OF_TEXTS: Mapping[str, frozenset[str]] = {
     basis.BINDINGS: frozenset({basis.SENTENCE}),
-    WORDS: frozenset({basis.SENTENCE}),
+    WORDS: frozenset({basis.SENTENCE, basis.BINDINGS}),
     basis.TOPICS: frozenset({basis.SENTENCE, basis.BINDINGS}),
     PROOF: frozenset({basis.SENTENCE, basis.BINDINGS}),
 }
@@ -297,7 +301,7 @@ def _merged(
         assert leaf is not None
         if leaf.owner in lone:
             if key[2] == _FACE.get(key[0]) and not _comes_with(key[0], different, lone):
-                yield _change(_name(key, leaf), then, now)
+                yield _change(_name(key, leaf), then, now, is_table=True)
         elif not _is_repetition(key, different):
             yield _change(leaf.what, then, now)
 
@@ -310,10 +314,11 @@ def _is_repetition(key: Key, different: _Pairs) -> bool:
     return key == ("", "", "topics") and own
 
 
-def _change(what: str, then: Leaf | None, now: Leaf | None) -> Change:
+def _change(what: str, then: Leaf | None, now: Leaf | None, *, is_table: bool = False) -> Change:
     leaf = now or then
     assert leaf is not None
-    return Change(leaf.node, what, then.text if then else "", now.text if now else "")
+    before, after = then.text if then else "", now.text if now else ""
+    return Change(leaf.node, what, before, after, is_table=is_table)
 
 
 _SENTENCE, _WORDING = ("", "", "sentence"), ("", "", "wording")

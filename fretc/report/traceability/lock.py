@@ -98,10 +98,9 @@ class Lock:
 def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) -> Review:
     """A review of the present state of a requirement."""
     id, prints, texts = chain.requirement, chain.prints, chain.texts
-    vouched = texts is not None and agree(id, texts, prints)
-    return Review(
-        id, reviewer, role, date, comment, prints, chain.verdicts, texts if vouched else None
-    )
+    readable = texts is not None and isinstance(read_texts(as_table(texts)), Texts)
+    kept = texts if texts is not None and readable and agree(id, texts, prints) else None
+    return Review(id, reviewer, role, date, comment, prints, chain.verdicts, kept)
 
 
 def verdicts_of(chain: Chain) -> str:

@@ -41,6 +41,7 @@ from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import expression
+from fretish.reading.recursion import deep
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,9 +109,8 @@ def _of_parents(texts: Texts) -> Iterator[tuple[Key, Leaf]]:
     """Of hazards, and of the requirements between."""
     tables: list[tuple[str, str, Mapping[str, str]]] = []
     for id, header in texts.above.items():
-        words = _fields(header)
-        del words["parents"]
-        tables.append((TEXT, id, words))
+        texts_of = {name: text for name, text in _fields(header).items() if name != "parents"}
+        tables.append((TEXT, id, texts_of))
         node, parents = Node(TEXT, id), header.parents
         leaf = Leaf(node, f"parents of {id}", ", ".join(parents), {*parents}, f"text {id}")
         yield (TEXT, id, "parents"), leaf
@@ -154,6 +154,8 @@ def _fields(record: Record) -> dict[str, Any]:
 
 _WORDS = ("text", "role", "kind")
 _OUTLINE = ("footprint", "sensor")
+_FIRST = {"expr", "value"}
+"""What a reader looks at first."""
 _CLOCK = ("tick", "time", "end", "phase", "rounding")
 
 
@@ -191,7 +193,7 @@ def _of_table(
             meanings.get(field, _in_toml(table.get(field, ""))),
             f"{kind} {name}",
         )
-        for field in dict.fromkeys((*table, *meanings))
+        for field in dict.fromkeys((*(_FIRST & table.keys()), *table, *meanings))
     }
 
 
@@ -234,6 +236,7 @@ def _variable(name: str, declarations: Declarations | None) -> Mapping[str, Any]
     return {"value": value, "modality": str(known.modality), "action": known.action, **words}
 
 
+@deep
 def _in_toml(value: Any) -> str:
     """A text as it is; of anything else what the file says, on one line."""
     if isinstance(value, str):
@@ -254,6 +257,7 @@ def _line(text: str) -> str:
     return " ".join(text.split())
 
 
+@deep
 def _declarations(bindings: Bindings) -> Declarations | None:
     """The tables, read as bindings are; None where they are none."""
     tables = {"clock": bindings.clock, "signal": bindings.signal}

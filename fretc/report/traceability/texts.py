@@ -21,6 +21,8 @@ from fretish.reading.toml_text import read as read_tables
 
 Table = dict[str, Any]
 _LARGEST = 2**63
+_DEEPEST = 20
+"""Tables and lists within each other; bindings need less than half of it."""
 
 
 class Above(Record, frozen=True, omit_defaults=True):
@@ -182,14 +184,15 @@ def read(value: object) -> Texts | str:
 
 
 def _is_plain(value: object) -> bool:
-    """Whether it is made of texts, truth values and numbers of 64 bits alone."""
-    waiting = [value]
+    """Whether it is made of texts, truth values and numbers of 64 bits alone, and not deep."""
+    waiting = [(value, 0)]
     while waiting:
-        each = waiting.pop()
-        if isinstance(each, dict):
-            waiting.extend(each.values())
-        elif isinstance(each, list | tuple):
-            waiting.extend(each)
+        each, depth = waiting.pop()
+        if depth > _DEEPEST:
+            return False
+        if isinstance(each, dict | list | tuple):
+            inside = each.values() if isinstance(each, dict) else each
+            waiting.extend((part, depth + 1) for part in inside)
         elif isinstance(each, int):
             if not -_LARGEST < each < _LARGEST:
                 return False

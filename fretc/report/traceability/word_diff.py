@@ -5,18 +5,16 @@ from __future__ import annotations
 import re
 from difflib import SequenceMatcher
 from functools import lru_cache
-from os.path import commonprefix
-from typing import Literal
 
 from fretish import units
 from fretish.clock import NANOSECONDS
 
 SAME, BEFORE, AFTER = "same", "before", "after"
-Kind = Literal["same", "before", "after"]
-Segment = tuple[Kind, str]
-"""A stretch of both texts, of the one before, or of the one after."""
+Segment = tuple[str, str]
+"""`SAME`, `BEFORE` or `AFTER`, and a stretch of both texts or of one of them."""
 _TOKEN = re.compile(
-    r"(?P<number>[+-]?[0-9][0-9.]*)[ \u00a0\u202f](?P<unit>%|[A-Za-z]\w{0,12}(?:/[A-Za-z]\w{0,3})?)(?!\w)"
+    r"(?P<number>[+-]?[0-9][0-9.]*)[ \u00a0\u202f]"
+    r"(?P<unit>%|[A-Za-z]\w{0,12}(?:/[A-Za-z]\w{0,3})?)(?!\w)"
     r"|[()\[\]{},;]|[^\s()\[\]{},;]+|\s+"
 )
 _MOST_TOKENS = 300
@@ -78,14 +76,24 @@ def _stretches(before: str, after: str) -> list[_Stretch]:
 
 def _around(before: str, after: str) -> list[_Stretch]:
     """Long texts: what they begin with alike, what differs, what they end with alike."""
-    start = len(commonprefix([before, after]))
+    if before == after:
+        return [(True, before, after, (0, 0))]
+    start = before.rfind(" ", 0, _shared(before, after)) + 1
     rest = min(len(before), len(after)) - start
-    end = min(rest, len(commonprefix([before[::-1], after[::-1]])))
+    end = min(rest, _shared(before[::-1], after[::-1]))
+    space = before.find(" ", len(before) - end)
+    end = len(before) - space if space >= 0 else 0
     old, new = before[start : len(before) - end], after[start : len(after) - end]
     tail = before[len(before) - end :]
     found: list[_Stretch] = [(True, before[:start], before[:start], (0, 0))] if start else []
     found += [(False, old, new, (start, start))] if old or new else []
     return [*found, *([(True, tail, tail, (start + len(old), start + len(new)))] if end else [])]
+
+
+def _shared(before: str, after: str) -> int:
+    """The number of characters with which both begin."""
+    pairs = enumerate(zip(before, after, strict=False))
+    return next((i for i, (a, b) in pairs if a != b), min(len(before), len(after)))
 
 
 def _tokens(text: str) -> list[str]:

@@ -79,7 +79,7 @@ CHANGES: dict[str, tuple[Texts, set[str]]] = {
 
 
 def plan(folder: Path, texts: Texts, evaluation: str = "columns") -> Plan:
-    folder.mkdir()
+    folder.mkdir(exist_ok=True)
     bindings = folder / "bindings.toml"
     bindings.write_text(texts["bindings"])
     paths = []

@@ -12,7 +12,6 @@ from fretc.audit.evidence.reader import Evidence
 from fretc.audit.evidence.schema import Result
 from fretc.trends.changes import RED, Change
 from fretc.trends.comparisons import Finding
-from fretc.trends.sources import InMemory
 from fretc.trends.trends import Trends, gone
 from fretc.trends.trends import trends as trends_of
 from tests.fretc.audit.results import SHA
@@ -23,9 +22,7 @@ OTHER = "1" * 64
 
 def trends(*nights: Sequence[Result], by: str | None = None) -> Trends:
     """Of evidence that is named by its number, in the order given."""
-    sources = [
-        InMemory(Evidence(f"{i}.json", SHA, document(night))) for i, night in enumerate(nights)
-    ]
+    sources = [Evidence(f"{i}.json", SHA, document(night)) for i, night in enumerate(nights)]
     found = trends_of(sources, by)
     assert isinstance(found, Trends), found
     return found
@@ -75,7 +72,7 @@ def test_one_evidence_is_compared_day_by_day_or_by_a_label() -> None:
     assert [each.name for each in found.rounds] == ["2025-11-08", "2025-11-09", "2025-11-10"]
     assert changes(found) == {("R1", "a.mcap"): Change.STILL}
     assert changes(trends(runs, by="version")) == {("R1", "a.mcap"): Change.NEW}
-    unlabelled = trends_of([InMemory(Evidence("", SHA, document(runs)))], "robot")
+    unlabelled = trends_of([Evidence("", SHA, document(runs))], "robot")
     assert not isinstance(unlabelled, Trends)
     assert unlabelled.code.number == "F560"
 

@@ -18,12 +18,13 @@ from fretc.audit.store.tables import runs_of
 from fretc.audit.store.writer import write_document
 from tests.fretc.audit.results import SHA, result
 
+SHARED = ("run", "health", "labels", "course")
 LARGE = 2**63
 
 # Values of every type of the schema, by its constraints ------------------------------------------
 
 _FLOATS = [0.0, -0.0, 5e-324, 1.7976931348623157e308, 0.1, 1.0]
-_TEXTS = st.sampled_from(["", "R1", "a.mcap", "mètre \u202e\n", '"', "violated"])
+TEXTS = ["", "R1", "a.mcap", "mètre \u202e\n", '"', "violated"]
 
 
 def values(kind: Any, *, held: bool) -> st.SearchStrategy[Any]:
@@ -59,7 +60,7 @@ def values(kind: Any, *, held: bool) -> st.SearchStrategy[Any]:
         case types.LiteralType(values=words):
             return st.sampled_from(words)
         case types.StrType(pattern=None, min_length=least):
-            return _TEXTS.filter(bool) if least else _TEXTS
+            return st.sampled_from([*filter(None, TEXTS)] if least else TEXTS)
         case types.StrType(pattern=pattern) if pattern and pattern.startswith("^F"):
             return st.just("F405")
         case types.StrType(max_length=most):
@@ -69,8 +70,9 @@ def values(kind: Any, *, held: bool) -> st.SearchStrategy[Any]:
             return st.lists(values(item, held=held), min_size=least or 0, max_size=2)
         case types.TupleType(item_types=items):
             return st.tuples(*(values(item, held=held) for item in items)).map(list)
-        case types.DictType(value_type=item):
-            return st.dictionaries(_TEXTS, values(item, held=held), max_size=2)
+        case types.DictType(key_type=key, value_type=item, min_length=least):
+            names, items = values(key, held=held), values(item, held=held)
+            return st.dictionaries(names, items, min_size=least or 0, max_size=2)
         case types.StructType() | types.DataclassType():
             return records(kind, held=held)
     raise AssertionError(kind)
@@ -92,10 +94,12 @@ def _mended(value: dict[str, Any], name: str) -> dict[str, Any]:
     """Times in their order, as many as values; a probability for a bound."""
     if name == "Estimated":
         return value | {"bound": "0.99"}
-    if name in ("Series", "WordSeries"):
-        of = "values" if name == "Series" else "words"
-        size = min(len(value["times_ns"]), len(value[of]))
-        return {"times_ns": sorted(value["times_ns"])[:size], of: value[of][:size]}
+    lists = [key for key in ("times_ns", "values", "words", "x", "y") if key in value]
+    if name in ("Series", "WordSeries", "Way", "Words"):
+        size = min(len(value[key]) for key in lists)
+        value |= {key: value[key][:size] for key in lists} | {"starts": [0][:size]}
+        value["times_ns"].sort()
+        return value if name == "Way" else {key: value[key] for key in value if key != "starts"}
     if name == "Surroundings":
         start, end = sorted((value["start_ns"], value["end_ns"]))
         return value | {"start_ns": start, "end_ns": end}
@@ -115,7 +119,7 @@ def documents(draw: st.DrawFn) -> Document:
     alike = draw(st.lists(st.booleans(), min_size=6, max_size=6))
     for one, like_the_last in zip(draw(st.lists(results, max_size=6)), alike, strict=False):
         if found and like_the_last:
-            one = replace(one, run=found[-1].run, health=found[-1].health)
+            one = replace(one, **{name: getattr(found[-1], name) for name in SHARED})
         found.append(one)
     return replace(decoded(draw(heads) | {"results": []}, Document), results=tuple(found))
 
@@ -157,7 +161,7 @@ def test_times_of_a_damaged_log_are_kept(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @settings(
-    max_examples=40,
+    max_examples=30,
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
@@ -170,7 +174,11 @@ def test_evidence_comes_back_from_a_store_to_the_letter(document: Document, fold
     assert [*store.runs()] == [*map(run_facts, runs_of(document.results))]
     for id in {each.requirement for each in document.results}:
         own = [(n, r) for n, r in enumerate(document.results) if r.requirement == id]
-        assert [(n, [*x]) for n, x in store.latencies(id)] == [(n, [*r.latencies]) for n, r in own]
-        assert [(n, (*x,)) for n, x in store.thresholds(id)] == [(n, r.thresholds) for n, r in own]
+        assert [(n, [*x]) for n, x in store.latencies([id])] == [
+            (n, [*r.latencies]) for n, r in own
+        ]
+        assert [(n, (*x,)) for n, x in store.thresholds([id])] == [
+            (n, r.thresholds) for n, r in own
+        ]
     for n, one in enumerate(document.results):
         assert [*store.details([n])] == [(n, one)]

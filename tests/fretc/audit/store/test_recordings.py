@@ -195,8 +195,10 @@ def test_words_whole_numbers_and_small_floats_come_back_as_they_were(
     recording = read(log, *asked)
     assert isinstance(recording, Recording)
     kept.keep(log, text_files.stamp(log), recording, *asked)
-    again = kept.recording(log, *asked)
-    assert again is not None
+    found = kept.recording(log, *asked)
+    assert found is not None
+    again, by = found
+    assert by == "stamp"
     for name, samples in recording.samples.items():
         same = again.samples[name]
         assert same.values.dtype == samples.values.dtype

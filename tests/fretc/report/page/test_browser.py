@@ -22,21 +22,10 @@ from tests.fretc.report.cases import (
     violation,
 )
 
-pytest.importorskip("playwright", reason="needs Playwright: pip install -e '.[dev]'")
-
-from playwright.sync_api import sync_playwright
-
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-CHROMIUM = "/usr/bin/chromium"
-
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(
-        not Path(CHROMIUM).exists(), reason=f"needs {CHROMIUM}: apt-get install chromium"
-    ),
-]
+pytestmark = pytest.mark.slow
 LONG = "x" * 10_000
 HOSTILE = (
     "<script>document.title = 'broken'</script>",
@@ -45,14 +34,6 @@ HOSTILE = (
     LONG,
 )
 Open = Callable[..., "Page"]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield started
-        started.close()
 
 
 @pytest.fixture(scope="module")

@@ -425,6 +425,7 @@ def test_a_signature_covers_the_texts(reviewed: Fretc) -> None:
         ("nothing = 1", "object contains unknown field `nothing`"),
         ("topics = [1979-05-27]", "it has a value that no requirement and no binding has"),
         ("bindings = { clock = { tick = 0xffffffffffffffffffff } }", "it has a value that no"),
+        (f"bindings = {{ clock = {{ tick = {'[' * 200}{']' * 200} }} }}", "it has a value that no"),
         ("hazards = { H = { weight = 'x' } }", "unknown field `weight`"),
     ],
 )
@@ -449,6 +450,71 @@ def test_the_texts_of_real_projects_give_their_fingerprints(folder: str) -> None
         assert agree(chain.requirement, chain.texts, chain.prints)
         review = accepted(chain, "A", "b", "2026-01-02", "c")
         assert review.texts == chain.texts
+
+
+HEAD = '+++\nid = "R1"\ntitle = "T"\nparents = ["HAZ-1", "R0"]\n+++\n'
+CLOCK = '[clock]\ntick = "100 ms"\n'
+SIGNALS = """
+[signal.v]
+path = "/a.v"
+unit = "km/h"
+agg = "any"
+[signal.scan]
+path = "/s.ranges[:]"
+unit = "m"
+type = "sensor_msgs/msg/LaserScan"
+reduce = "outline"
+footprint = [[1, 0.5], [-1.0, 0.5], [0, -1]]
+valid = "0 <= x and x < 35"
+max_age = "0.3 s"
+[signal.mode]
+path = "/m.mode"
+values = { "drive fast" = 1, dock = 4 }
+[proposition.near]
+expr = "scan < 5 cm for 200 ms"
+on_unknown = true
+[variable.limit]
+value = "5 km/h"
+[variable.fast]
+value = "v > limit"
+role = "internal"
+"""
+
+
+@pytest.mark.parametrize("bindings", [None, CLOCK, CLOCK + SIGNALS, '[clock]\ntick = "/s"\n'])
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        '"free text: it must  stop"',
+        "the rover shal satisfy near",
+        "the rover shall always satisfy near",
+        "whenever near the rover shall within 250 milliseconds satisfy !near",
+        "when v > 1.5 m/s the rover shall\n  always  satisfy v < 50 km/h & near",
+        "if fast the rover shall with probability > 0.9 eventually satisfy near",
+        'in dock mode the rover shall always satisfy mode = dock | "odd  name" > 3',
+        "the rover shall immediately satisfy persisted(2, near) & previous(v) <= v",
+    ],
+)
+@pytest.mark.parametrize("status", ["draft", "retired"])
+def test_the_texts_of_any_requirement_give_its_fingerprints(
+    tmp_path: Path, bindings: str | None, sentence: str, status: str
+) -> None:
+    header = HEAD.replace("parents", f'status = "{status}"\nverify = ["audit"]\nparents')
+    write(str(tmp_path / "r1.fret"), f"{header}{sentence}\n")
+    write(
+        str(tmp_path / "r0.fret"),
+        HEAD.replace("R1", "R0").replace('"R0"]', '"R1"]') + "the a shall b",
+    )
+    write(str(tmp_path / "hazards.toml"), '[HAZ-1]\ntitle = "x"\n')
+    if bindings is not None:
+        write(str(tmp_path / "bindings.toml"), bindings)
+    project = whole(str(tmp_path))
+    assert not isinstance(project, Diagnostic)
+    for chain in chains(project, None):
+        review = accepted(chain, "A", "b", "2026-01-02", "c")
+        assert review.texts is not None
+        path = write(str(tmp_path / "fretc.lock"), text(Lock({chain.requirement: review})))
+        assert read(path) == Lock({chain.requirement: review})
 
 
 BEFORE_AND_AFTER: list[tuple[Callable[[], None], str]] = [

@@ -58,7 +58,15 @@ def test_long_texts_are_told_where_they_differ() -> None:
     words = [f"w{i}" for i in range(1000)]
     other = [*words[:700], "a", "b", *words[700:]]
     assert "a b" in short(" ".join(words), " ".join(other))
-    assert (AFTER, "a b ") in segments(" ".join(words), " ".join(other))
+    (new,) = (text for kind, text in segments(" ".join(words), " ".join(other)) if kind == AFTER)
+    assert new.startswith("a b")
+    assert len(new) < 20
+
+
+def test_a_number_of_a_long_text_is_told_whole() -> None:
+    words = " ".join(["w"] * 1000)
+    found = segments(f"{words} 0.40 m", f"{words} 0.45 m")
+    assert [text for kind, text in found if kind != "same"] == ["0.40", "0.45"]
 
 
 @given(st.text("ab ", max_size=40), st.text("ab ", max_size=40))
