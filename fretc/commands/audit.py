@@ -210,7 +210,7 @@ def audit(
     plan = replace(plan, labels=given_labels)
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refusals, project.diagnostics)
-    kept = _samples(target) if keep_columns else None
+    kept = _samples(target, rehash=rehash) if keep_columns else None
     with ExitStack() as stack:
         if target.is_store:
             session = stack.enter_context(_session(target.path, plan, logs, rehash=rehash))
@@ -286,7 +286,7 @@ def _deliver(
     remove_other(target)
 
 
-def _samples(target: Target) -> Kept | None:
+def _samples(target: Target, *, rehash: bool) -> Kept | None:
     """Where samples are kept; None where there is no key of the user, which says who kept them."""
     from compiler.files.user_key import user_key
     from fretc.audit.store.recordings import SUFFIX, Kept
@@ -297,7 +297,7 @@ def _samples(target: Target) -> Kept | None:
     if isinstance(key, Diagnostic):
         say([key])
         return None
-    return Kept(target.path.with_name(f"{target.path.name}{SUFFIX}"), key)
+    return Kept(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
 
 
 def _no_place_for_columns(why: str, mend: str) -> Diagnostic:

@@ -51,6 +51,8 @@ class Kept:
     folder: Path
     key: bytes
     """Of the user."""
+    rehash: bool = False
+    """Know a log by its SHA-256 alone."""
 
     def recording(
         self, log: str, declarations: Declarations, wanted: Sequence[str], integrity: Integrity
@@ -73,7 +75,7 @@ class Kept:
         of_now = _reading(declarations, wanted, integrity)
         if about["reading"] != of_now or about["edition"] != edition():
             return None
-        by = _unchanged(log, about)
+        by = _unchanged(log, about, rehash=self.rehash)
         return by and (_recording(about, arrays, declarations), by)
 
     def keep(
@@ -138,12 +140,12 @@ def _reading(declarations: Declarations, wanted: Sequence[str], integrity: Integ
     return sha256(json.dumps([repr(declarations.clock), read, bound, labels, integrity]))
 
 
-def _unchanged(log: str, about: Mapping[str, Any]) -> KnownBy | None:
+def _unchanged(log: str, about: Mapping[str, Any], *, rehash: bool) -> KnownBy | None:
     """By what it is known that the log is what it was; None: it is not known."""
     before, now = Stamp(*about["stamp"]), stamp(log)
     if now is None or now.size != before.size or os.path.realpath(log) != about["log"]:
         return None
-    if before.settled and now == before:
+    if before.settled and now == before and not rehash:
         return "stamp"
     same = about["checked"]["hashed"] and file_sha256(log) == about["sha256"]
     return "sha256" if same else None

@@ -113,6 +113,16 @@ def test_where_times_do_not_tell_the_log_is_hashed(
     assert opened == [log]
 
 
+def test_a_log_can_be_known_by_its_hash_alone(
+    tmp_path: Path, log: str, kept: Kept, opened: list[str]
+) -> None:
+    made, _ = _kept(tmp_path, log, kept)
+    for rehash, by in ((False, "stamp"), (True, "sha256")):
+        opened.clear()
+        assert audited(made, log, kept=Kept(kept.folder, KEY, rehash)).known_by == by
+        assert opened == [log] * rehash
+
+
 def test_a_log_that_is_gone_is_an_error_as_before(tmp_path: Path, log: str, kept: Kept) -> None:
     made, _ = _kept(tmp_path, log, kept)
     Path(log).unlink()
