@@ -13,7 +13,8 @@ import pytest
 
 from fretc.report.page.html import html
 from tests.fretc.report.cases import project, report_of, requirement, result, violation
-from tests.fretc.report.page.large import MARKS, enlarged, mostly_satisfied, small
+from tests.fretc.report.page.large import MARKS, mostly_satisfied, small
+from tests.fretc.report.page.large import page as page_of
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -28,8 +29,9 @@ def empty(folder: Path) -> str:
     (folder / "none.fret").write_text("", encoding="utf-8")
     build = report_of(project(folder, "", hazards=None), folder)
     assert build.report is not None
+    assert build.details is not None
     report = replace(build.report, requirements=(), matrix=(), hazards=())
-    return html(report)
+    return html(report, build.details)
 
 
 def nothing_audited(folder: Path) -> str:
@@ -71,10 +73,8 @@ def mission(folder: Path) -> str:
 
 def sized(requirements: int, groups: int, runs: int) -> Callable[[Path], str]:
     def make(folder: Path) -> str:
-        report = small(folder).report
-        assert report is not None
         names = [(f"scenario-{n}", runs) for n in range(groups)]
-        return html(enlarged(report, requirements, names, mostly_satisfied(1, 0.03)))
+        return page_of(small(folder), requirements, names, mostly_satisfied(1, 0.03))
 
     return make
 
