@@ -267,6 +267,7 @@ class Session:
         """
         self.folder, self._plan, self._key = folder, plan, key
         destination(folder / FILE)
+        self._new_folder = None if folder.parent.exists() else folder.parent
         folder.mkdir(parents=True, exist_ok=True)
         self._lock = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:
@@ -300,6 +301,9 @@ class Session:
             found = [manifest(self.folder, name) for name in names]
             if not any(each is None or each.parts for each in found):
                 remove(self.folder)
+                if self._new_folder is not None:
+                    with suppress(OSError):  # something else is in it by now
+                        self._new_folder.rmdir()
             else:
                 others = set() if self._is_finished else self._before
                 remove_others(self.folder, *filter(None, found), kept=others)
