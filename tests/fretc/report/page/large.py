@@ -98,7 +98,10 @@ def page(
     """The page of such a report."""
     assert build.report is not None
     assert build.details is not None
-    return html(enlarged(build.report, requirements, groups, choose), build.details)
+    (one,) = build.details.assessments.values()
+    like = {f"req-R{number}": one for number in range(requirements)}
+    details = replace(build.details, assessments={**build.details.assessments, **like})
+    return html(enlarged(build.report, requirements, groups, choose), details)
 
 
 def small(folder: Path) -> ReportBuild:
