@@ -44,6 +44,7 @@ from fretc.audit.store.register import (
 )
 from fretc.audit.store.tables import Tables, joined, tabled
 from fretc.audit.store.writer import (
+    files,
     is_store,
     remove,
     remove_others,
@@ -222,6 +223,9 @@ class Session:
         except BaseException:
             os.close(self._lock)
             raise
+        self._before = files(folder)
+        """What was there: an earlier manifest that is damaged may need it."""
+        self._is_finished = False
         self._drafts = [_Draft([logs[n] for n in places]) for places in parts(logs)]
         self._draft_of = {log: draft for draft in self._drafts for log in draft.logs}
         self.known = {log: one for log in logs if (one := self.earlier.find(log)) is not None}
@@ -242,11 +246,11 @@ class Session:
         try:
             names = [name for name in (FILE, UNFINISHED) if (self.folder / name).exists()]
             found = [manifest(self.folder, name) for name in names]
-            kept = [each for each in found if each is not None]
             if not any(each is None or each.parts for each in found):
                 remove(self.folder)
-            elif len(kept) == len(found):  # what a damaged one names is not known
-                remove_others(self.folder, *kept)
+            else:
+                others = set() if self._is_finished else self._before
+                remove_others(self.folder, *filter(None, found), kept=others)
         finally:
             os.close(self._lock)
 
@@ -418,6 +422,7 @@ class Session:
         store = Store(str(self.folder), "", made)
         if self._read:  # a mistyped name must not cost the evidence of the last audit
             store = Store(str(self.folder), self._write(made, FILE), made)
+            self._is_finished = True
             for name in (UNFINISHED, REUSE[UNFINISHED]):
                 (self.folder / name).unlink(missing_ok=True)
         estimates = tuple(store.probabilities)

@@ -180,7 +180,7 @@ def assessments(
     results = briefs.by_requirement if briefs else {}
     basis_of = bases(project)
     products_of = {id: products(rule) for id, rule in rules.items()}
-    standing_of_each = standings(chains(project, briefs, products_of, proofs), lock)
+    standing_of_each = standings(chains(project, briefs, products_of, proofs, basis_of), lock)
     audited_by = briefs.source.fretc if briefs else ""
     anchors: list[str] = []
     assessed: list[Assessment] = []

@@ -17,8 +17,7 @@ from compiler.files.shell_quoting import (
     words,
 )
 from compiler.project.folder import Project
-from fretc.audit.bases import bases
-from fretc.audit.evidence.basis import BINDINGS, of_all
+from fretc.audit.evidence.basis import of_all, of_bindings
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
 from fretc.report.model import phrases
@@ -140,9 +139,11 @@ def _emission(files: Sequence[str], emits: str) -> str:
 
 def _of_bindings(project: Project) -> str:
     """SHA-256 as in the evidence: of the bindings that requirements in force read."""
-    basis_of = bases(project)
+    rules = {id(rule.requirement): rule for rule in project.rules}
     inforce = [each for each in project.requirements if each.status != "retired"]
-    return of_all({each.id: basis_of[id(each)][BINDINGS] for each in inforce})
+    return of_all(
+        {each.id: of_bindings(rules.get(id(each)), project.declarations) for each in inforce}
+    )
 
 
 def manifest(

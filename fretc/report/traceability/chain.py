@@ -134,6 +134,7 @@ def chains(
     briefs: Briefs | None,
     artefacts: Mapping[int, Sequence[Product]] | None = None,
     proofs: Sequence[Proof] = (),
+    known: Mapping[int, Basis] | None = None,
 ) -> tuple[Chain, ...]:
     """The chain of each requirement, in the order of the project.
 
@@ -142,10 +143,11 @@ def chains(
         briefs: of the evidence; None where no run has been audited.
         artefacts: the products of each requirement, by its `id()`; None: `products` makes them.
         proofs: the results of verification.
+        known: what a verdict on each requirement rests on now; None: `bases` makes it.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     results = briefs.by_requirement if briefs else {}
-    common = _common(project, briefs, proofs)
+    common = _common(project, briefs, proofs, known)
     return tuple(
         _ChainBuilder(common, requirement).build(
             requirement,
@@ -179,13 +181,18 @@ class _Common:
     """The tables of the bindings."""
 
 
-def _common(project: Project, briefs: Briefs | None, proofs: Sequence[Proof]) -> _Common:
+def _common(
+    project: Project,
+    briefs: Briefs | None,
+    proofs: Sequence[Proof],
+    known: Mapping[int, Basis] | None,
+) -> _Common:
     shared = shared_products(project.declarations) if proofs else ()
     topics = audited_topics(project)
     return _Common(
         project,
         {requirement.id: requirement for requirement in project.requirements},
-        bases(project, topics),
+        bases(project, topics) if known is None else known,
         briefs.source.fretc if briefs else "",
         _by_requirement(project.acceptances),
         {product.file: product.sha256 for product in shared},

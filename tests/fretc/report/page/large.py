@@ -98,10 +98,10 @@ def page(
     """The page of such a report."""
     assert build.report is not None
     assert build.details is not None
+    report = enlarged(build.report, requirements, groups, choose)
     (one,) = build.details.assessments.values()
-    like = {f"req-R{number}": one for number in range(requirements)}
-    details = replace(build.details, assessments={**build.details.assessments, **like})
-    return html(enlarged(build.report, requirements, groups, choose), details)
+    assessments = {view.anchor: one for view in report.requirements}
+    return html(report, replace(build.details, assessments=assessments))
 
 
 def small(folder: Path) -> ReportBuild:
