@@ -121,7 +121,7 @@ def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[st
 
 
 def _histograms(choice: Selection, details: Details) -> dict[str, list[dict[str, Any]]]:
-    whole = [anchor for anchor, section in choice.by_anchor.items() if not section.is_short]
+    whole = [] if choice.is_compact else [*choice.by_anchor]
     drawn: dict[str, list[dict[str, Any]]] = {anchor: [] for anchor in choice.by_anchor}
     for anchor, some in details.histograms(whole):
         drawn[anchor] = [
