@@ -40,22 +40,23 @@ from fretc.terminal.output import (
     say_line,
     stop,
 )
-from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from fretc.audit.into_store import Session
+    from fretc.audit.into_store import Earlier, Session
     from fretc.audit.many_logs import Engine
     from fretc.audit.plan import Plan
+    from fretc.audit.store.recordings import Kept
     from fretc.commands.audit_outputs import Outcome, Target
 
 
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
     "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
-    "Many logs": ("labels", "jobs", "engine", "rehash"),
+    "Many logs": ("labels", "jobs", "engine", "rehash", "keep_columns"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
         "query",
@@ -122,6 +123,11 @@ _AUDIT = {
     help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
 )
 @click.option(
+    "--keep-columns",
+    is_flag=True,
+    help="Keep samples of all logs beside the evidence; an unchanged log is not read again.",
+)
+@click.option(
     "--rehash", is_flag=True, help="Know a log by its SHA-256, not by its size and times."
 )
 @path_option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
@@ -150,6 +156,7 @@ def audit(
     jobs: int,
     engine: str,
     rehash: bool,
+    keep_columns: bool,
     parquet: str | None,
     resume: bool,
     summary: bool,
@@ -203,12 +210,15 @@ def audit(
     plan = replace(plan, labels=given_labels)
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refusals, project.diagnostics)
+    kept = _samples(target, rehash=rehash) if keep_columns else None
     with ExitStack() as stack:
         if target.is_store:
             session = stack.enter_context(_session(target.path, plan, logs, rehash=rehash))
-            result: outputs.Outcome = audit_into(session, _engine(engine, jobs))
+            result: outputs.Outcome = audit_into(
+                session, _engine(engine, jobs, kept, session.earlier)
+            )
         else:
-            result = audit_in_memory(plan, logs, _engine(engine, jobs))
+            result = audit_in_memory(plan, logs, _engine(engine, jobs, kept))
         diagnostics = project.answered(result.diagnostics)
         say_also(diagnostics, (*project.diagnostics, *refusals))
         if result.read:  # a mistyped name must not cost the evidence of the last audit
@@ -276,11 +286,33 @@ def _deliver(
     remove_other(target)
 
 
-def _engine(name: str, jobs: int) -> Engine:
+def _samples(target: Target, *, rehash: bool) -> Kept | None:
+    """Where samples are kept; None where there is no key of the user, which says who kept them."""
+    from compiler.files.user_key import user_key
+    from fretc.audit.store.recordings import SUFFIX, Kept
+
+    if str(target.path) == "-":
+        stop(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
+    key = user_key()
+    if isinstance(key, Diagnostic):
+        say([key])
+        return None
+    return Kept(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
+
+
+def _no_place_for_columns(why: str, mend: str) -> Diagnostic:
+    message = f"`--keep-columns` keeps samples beside the evidence of this machine, and {why}"
+    return Diagnostic(Code.BAD_USAGE, message, help=mend)
+
+
+def _engine(name: str, jobs: int, kept: Kept | None, earlier: Earlier | None = None) -> Engine:
     if name == "local":
         from fretc.audit.many_logs import locally
 
-        return locally(jobs)
+        return locally(jobs, kept, earlier.results) if earlier else locally(jobs, kept)
+    if kept is not None:
+        why = f"`--engine {name}` reads the logs elsewhere"
+        stop(_no_place_for_columns(why, "leave out one of the two"))
     from fretc.audit import fleet
 
     engine = fleet.engine(name, jobs)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -74,13 +74,24 @@ def write_manifest(folder: Path, manifest: Manifest, name: str = FILE) -> str | 
     return write({folder / name: made}) or sha256(made)
 
 
-def remove_others(folder: Path, *manifests: Manifest) -> None:
-    """Remove the tables that none of the manifests names."""
-    kept = {folder / path for manifest in manifests for path in _files(manifest)}
+def files(folder: Path) -> set[Path]:
+    """All tables in a folder, also those that no manifest names."""
+    found = (path for table in (*TABLES, REGISTER) for path in (folder / table).glob("*"))
+    return {path for path in found if _OURS.fullmatch(path.name)}
+
+
+def remove_others(folder: Path, *manifests: Manifest, kept: Collection[Path] = frozenset()) -> None:
+    """Remove the tables that none of the manifests names.
+
+    Args:
+        folder: of the store.
+        manifests: whose tables stay.
+        kept: other files that stay.
+    """
+    named = {folder / path for manifest in manifests for path in _files(manifest)}
+    for path in files(folder) - named - {*kept}:
+        path.unlink(missing_ok=True)
     for table in (*TABLES, REGISTER):
-        for path in (folder / table).glob("*"):
-            if _OURS.fullmatch(path.name) and path not in kept:
-                path.unlink(missing_ok=True)
         with suppress(OSError):  # it is in use, or something else is in it
             (folder / table).rmdir()
 

@@ -163,7 +163,8 @@ def test_a_violation_of_before_a_change_is_never_said_to_be_one_of_now(
     known: Project, folder: Path
 ) -> None:
     page = front(known, folder, result(known, "violated", "R1", **OLD))
-    assert page["headline"] == "R1 was violated, and the sentence has changed since the audit."
+    since = "was violated, and the sentence has changed since the audit."
+    assert page["headline"] == f"Title of R1 (R1) {since}"
     assert figures(page)["violated"] == 1
 
 

@@ -9,16 +9,16 @@ from fretc.report.sections.runs import Run
 
 
 @dataclass
-class Result:
+class Facts:
     run: str
-    labels: dict[str, str] | None = None
+    labels: dict[str, str]
 
 
 def grouped(*paths: str, scenarios: list[str] | None = None) -> dict[str, list[str]]:
     """The short names of the runs of each group."""
-    labels = [{"scenario": s} for s in scenarios] if scenarios else [None] * len(paths)
+    labels = [{"scenario": s} for s in scenarios] if scenarios else [{}] * len(paths)
     runs = [
-        Run(n, cast(Any, Result(path, label)))
+        Run(n, cast(Any, Facts(path, label)), False)
         for n, (path, label) in enumerate(zip(paths, labels, strict=True), 1)
     ]
     return {group.name: [run.short for run in group.runs] for group in run_groups(runs)}
@@ -57,7 +57,7 @@ def test_runs_of_one_name_are_told_apart() -> None:
 
 @given(st.lists(st.text(alphabet="ab1/-. \\", max_size=8), max_size=8))
 def test_each_run_has_one_column_and_a_name_of_its_own(paths: list[str]) -> None:
-    runs = [Run(n, cast(Any, Result(path))) for n, path in enumerate(paths, 1)]
+    runs = [Run(n, cast(Any, Facts(path, {})), False) for n, path in enumerate(paths, 1)]
     columns = [run for group in run_groups(runs) for run in group.runs]
     assert sorted(run.anchor for run in columns) == sorted(run.anchor for run in runs)
     assert len({run.name for run in columns}) == len(runs)

@@ -14,10 +14,11 @@ from fretc.report.model.views import (
     Mark,
     Report,
     RequirementView,
-    ResultView,
+    ResultRow,
     Row,
     verdict_mark,
 )
+from fretc.report.page.html import html
 from tests.fretc.report.cases import project, report_of, result
 
 MARKS = [
@@ -78,8 +79,8 @@ def enlarged(
 
 
 def _results(
-    like: ResultView, number: int, runs: Sequence[ColumnRun], choose: Choose
-) -> list[ResultView]:
+    like: ResultRow, number: int, runs: Sequence[ColumnRun], choose: Choose
+) -> list[ResultRow]:
     results = []
     for column, run in enumerate(runs):
         mark = choose(number, column)
@@ -89,6 +90,18 @@ def _results(
                 replace(like, anchor=anchor, run=run.anchor, run_file=run.name, mark=mark)
             )
     return results
+
+
+def page(
+    build: ReportBuild, requirements: int, groups: Sequence[tuple[str, int]], choose: Choose
+) -> str:
+    """The page of such a report."""
+    assert build.report is not None
+    assert build.details is not None
+    report = enlarged(build.report, requirements, groups, choose)
+    (one,) = build.details.assessments.values()
+    assessments = {view.anchor: one for view in report.requirements}
+    return html(report, replace(build.details, assessments=assessments))
 
 
 def small(folder: Path) -> ReportBuild:

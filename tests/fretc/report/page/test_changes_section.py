@@ -13,6 +13,7 @@ import pytest
 
 from compiler.project.folder import Project
 from fretc.audit.evidence import reader as reading
+from fretc.audit.evidence.briefs import Briefs
 from fretc.report.make import make
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, accepted, text
@@ -45,7 +46,9 @@ def locked(known: Project, audited: str, folder: Path) -> str:
     """Everything as it is now, accepted."""
     found = reading.read(audited)
     assert not isinstance(found, Diagnostic)
-    reviews = [accepted(each, "A", "B", "2026-01-01", "c") for each in chains(known, found)]
+    reviews = [
+        accepted(each, "A", "B", "2026-01-01", "c") for each in chains(known, Briefs.of(found))
+    ]
     path = folder / "fretc.lock"
     path.write_text(text(Lock({each.requirement: each for each in reviews})), encoding="utf-8")
     return str(path)
@@ -112,6 +115,26 @@ def test_texts_of_a_lock_are_shown_and_not_followed(page: Path) -> None:
     assert "\u202e" not in changes
     assert changes.count("<del>") == changes.count("</del>") == 4
     assert len(changes) < 20_000, "of a long text only what is around the difference"
+
+
+def test_of_many_runs_the_violated_ones_come_first_and_the_rest_is_counted(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    runs = [f"logs/{n:02}.mcap" for n in range(30)]
+    audited = written(tmp_path, known, *(result(known, "satisfied", run=run) for run in runs))
+    lock = locked(known, audited, tmp_path)
+    now = [
+        result(known, "violated", run=run, violations=[violation(14, 20, 11)])
+        if run >= "logs/05"
+        else result(known, "vacuous", run=run)
+        for run in runs
+    ]
+    html = make(known, written(tmp_path, known, *now), lock=lock).html
+    (tmp_path / "report.html").write_text(html or "", encoding="utf-8")
+    changes = section(tmp_path / "report.html")
+    assert "25 verdicts became violated" in changes
+    assert "5 verdicts became vacuous" in changes
+    assert changes.count("<td><bdi>violated</bdi></td>") == 20
+    assert "And 10 more runs, 5 of them violated" in changes
 
 
 @pytest.fixture(scope="module")

@@ -145,6 +145,8 @@ def test_the_parts_stand_in_their_order(tmp_path: Path) -> None:
     assert re.findall(r"<h2>(.*?)</h2>", page(tmp_path)) == [
         "The matrix",
         "What is not shown, and why",
+        "What changed since the review",
+        "Across runs",
         "The requirements",
         "Can the runs be trusted?",
         "The assurance argument",
@@ -173,7 +175,8 @@ def test_a_requirement_that_no_run_can_violate_says_so_beside_its_verdict(tmp_pa
 
 def test_a_violation_has_its_picture_and_its_values(tmp_path: Path) -> None:
     text = Page(page(tmp_path)).text
-    cause = "stopped did not come by 1.4 s, triggered at 1.1 s; at 1.4 s clearance was unknown"
+    late = "stopped was false from 1.1 s to 2 s, it had to be true by 1.4 s"
+    cause = f"{late}; at 1.4 s clearance was unknown"
     old = "0.0318 m is 400 ms old, and counts for 300 ms"
     assert f"Violation 1. {cause}: {old} and vx was unknown." in text
     assert "From 0.1 s to 2 s: 2 ticks with a trigger (1 s to 1.2 s)" in text

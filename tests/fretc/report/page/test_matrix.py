@@ -10,23 +10,26 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fretc.report.make import ReportBuild
 from fretc.report.model.front import RunGroup
 from fretc.report.model.views import Mark, Report
-from fretc.report.page.html import html
 from fretc.report.page.matrix import Picture, picture
-from fretc.report.page.selection import selection
 from tests.fretc.report.cases import as_json, project, report_of, requirement, result
-from tests.fretc.report.page.large import MARKS, enlarged, mostly_satisfied, small
+from tests.fretc.report.page.large import MARKS, enlarged, mostly_satisfied, page, small
 
 ALL, NONE = 10**9, 0
 _CELL = re.compile(r'<td[^>]*>(?:<a href="#([^"]+)" aria-label="([^"]+)"[^>]*>(.*?)</a>)?</td>')
 
 
 @pytest.fixture(scope="module")
-def base(tmp_path_factory: pytest.TempPathFactory) -> Report:
-    report = small(tmp_path_factory.mktemp("small")).report
-    assert report is not None
-    return report
+def build(tmp_path_factory: pytest.TempPathFactory) -> ReportBuild:
+    return small(tmp_path_factory.mktemp("small"))
+
+
+@pytest.fixture(scope="module")
+def base(build: ReportBuild) -> Report:
+    assert build.report is not None
+    return build.report
 
 
 @st.composite
@@ -108,14 +111,14 @@ def whole(report: Report) -> dict[str, list[str]]:
 
 
 def test_a_cell_costs_about_sixty_bytes_and_the_page_one_and_a_half_megabytes(
-    base: Report,
+    build: ReportBuild,
 ) -> None:
     groups = [(f"scenario-{n}", 10) for n in range(10)]
-    page = html(enlarged(base, 50, groups, mostly_satisfied(1, 0.05)))
-    cells = [match[0] for match in _CELL.finditer(page)]
+    text = page(build, 50, groups, mostly_satisfied(1, 0.05))
+    cells = [match[0] for match in _CELL.finditer(text)]
     assert len(cells) == 5_000
     assert sum(map(len, cells)) / len(cells) <= 62
-    assert len(page.encode()) <= 1_500_000
+    assert len(text.encode()) <= 1_500_000
 
 
 def test_a_requirement_below_two_hazards_has_a_row_below_each(tmp_path: Path) -> None:
@@ -145,15 +148,14 @@ def test_two_results_of_one_run_have_one_mark_the_worst(tmp_path: Path) -> None:
     assert [cell.mark.word for cell in line.cells if cell] == ["violated"]
 
 
-def test_a_mark_leads_to_its_details_or_to_its_requirement(base: Report) -> None:
-    report = enlarged(base, 3, [("", 40)], mostly_satisfied(2, 0.9))
-    chosen = selection(report)
-    page = html(report)
-    places = set(re.findall(r'id="([^"]+)"', page))
-    cells = [match for match in _CELL.finditer(page) if match[1]]
+def test_a_mark_leads_to_its_details_or_to_its_requirement(build: ReportBuild) -> None:
+    text = page(build, 3, [("", 40)], mostly_satisfied(2, 0.9))
+    places = set(re.findall(r'id="([^"]+)"', text))
+    cells = [match for match in _CELL.finditer(text) if match[1]]
     assert len(cells) == 120
     assert {match[1] for match in cells} <= places
-    detailed = {r.anchor for each in chosen.by_anchor.values() for r in each.details}
+    detailed = set(re.findall(r'<section class="result[^>]* id="([^"]+)"', text))
+    assert detailed
     assert detailed <= {match[1] for match in cells}
 
 
@@ -164,8 +166,8 @@ def test_the_page_and_its_json_say_the_same_of_each_run(tmp_path: Path) -> None:
     stale = result(known, "satisfied", run="old.mcap", hashes={"sentence": "0" * 64})
     build = report_of(known, tmp_path, *runs, stale)
     (view,) = as_json(build)["requirements"]
-    page = build.html or ""
-    row = page[page.index('<tr id="row-R1"') :]
+    text = build.html or ""
+    row = text[text.index('<tr id="row-R1"') :]
     cells = _CELL.findall(row[: row.index("</tr>")])
     assert [word for _, word, _ in cells] == [
         f"{each['mark']['word']}{', suspect' if each['mark']['suspect'] else ''}"
