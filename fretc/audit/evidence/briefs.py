@@ -184,11 +184,10 @@ _Pools = dict[type, dict[Any, Any]]
 
 def _sharing(brief: Brief, pools: _Pools) -> Brief:
     """The same with values that are there already."""
-    prints = zip(
-        _PRINTS, (_shared(each, pools) for each in _prints(brief.fingerprints)), strict=True
-    )
-    values = [_shared(each, pools) for each in _values(brief)]
-    return Brief(*values[:_AT], Hashes(**dict(prints)), *values[_AT + 1 :])
+    known = [_shared(each, pools) for each in _prints(brief.fingerprints)]
+    values: list[Any] = [_shared(each, pools) for each in _values(brief)]
+    values[_AT] = Hashes(**dict(zip(_PRINTS, known, strict=True)))
+    return Brief(*values)
 
 
 def _shared(value: Any, pools: _Pools) -> Any:
