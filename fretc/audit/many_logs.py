@@ -25,7 +25,7 @@ from fretc.audit.measurements.judgement import Engine as Evaluation
 from fretc.audit.one_log import audit, examined, signals_of
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
-from fretc.audit.pool import Killed, each, was_killed
+from fretc.audit.pool import ENDLESS, Killed, Late, Limits, each, was_killed, was_late
 from fretc.logs.reader import read
 from fretc.logs.storage.inputs import STDIN
 from fretc.logs.storage.inputs import shown as called
@@ -128,19 +128,21 @@ Engine = Callable[[Plan, Sequence[str]], LogAudits]
 """Where logs are audited. Closing what it gives ends all work at once."""
 
 
-def locally(jobs: int) -> Engine:
-    """On this machine, in some processes."""
+def locally(jobs: int, limits: Limits = ENDLESS) -> Engine:
+    """On this machine, in some processes; standard input only where there are no limits."""
 
     def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
         monitored_requirements(plan)  # before the processes are born: they inherit it
         if STDIN in logs:  # another process does not have it
             yield STDIN, audited(plan, STDIN)
         files = [log for log in logs if log != STDIN]
-        with closing(each(partial(audited, plan), files, jobs)) as done:
+        with closing(each(partial(audited, plan), files, jobs, limits)) as done:
             for place, result in done:
                 log = files[place]
                 if isinstance(result, Killed):
                     yield log, given_up(plan, log, str(result))
+                elif isinstance(result, Late):
+                    yield log, _unaudited(plan, log, was_late(log, result, limits))
                 else:
                     yield log, result
 
@@ -278,6 +280,12 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogA
     return LogAudit(tuple(records), (why,), read=False)
 
 
+def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogAudit:
+    """The results of a log for which there was no time: no data. It is not even hashed."""
+    records = [unread(called(log), each.id, why, each.basis) for each in plan.named]
+    return LogAudit(tuple(records), (why,), read=False)
+
+
 def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
     """SHA-256 of a log that could not be read as one, where it is still what was tried."""
     digest = file_sha256(log)
@@ -298,4 +306,5 @@ def _evidence(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estim
         ),
         results=tuple(results),
         probabilities=tuple(of_all_runs) or UNSET,
+        selection=plan.selection or UNSET,
     )

@@ -17,7 +17,7 @@ from compiler.targets.python import monitor as monitors
 from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.claim import Claim
-from fretc.audit.evidence.schema import SCHEMA
+from fretc.audit.evidence.schema import SCHEMA, Selection
 from fretc.audit.expected_response import demand
 from fretc.audit.measurements import confidence_intervals as odds
 from fretc.audit.measurements.count_trials import chance, trials
@@ -48,6 +48,8 @@ class Plan:
     """Of the bounds of a probability over all logs."""
     refused: tuple[RefusedRequirement, ...] = field(default=(), compare=False, repr=False)
     """The requirements in force that are not among the claims."""
+    selection: Selection | None = field(default=None, compare=False, repr=False)
+    """Which of the named logs are audited, for the evidence; None: all."""
 
     @property
     def named(self) -> tuple[Claim | RefusedRequirement, ...]:

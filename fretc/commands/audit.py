@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.commands.audit_logs import selected, time_limits
 from fretc.commands.audit_progress import audit_all
+from fretc.commands.notify import notify, words
 from fretc.commands.summary import summarize
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import (
@@ -47,12 +49,14 @@ if TYPE_CHECKING:
     from fretc.audit.journal import Journal
     from fretc.audit.many_logs import Audit, Engine
     from fretc.audit.plan import Plan
+    from fretc.audit.pool import Limits
 
 
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
     "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
-    "Many logs": ("jobs", "resume", "engine"),
+    "Which logs": ("since", "sample", "seed"),
+    "Many logs": ("jobs", "log_time", "whole_time", "resume", "engine", "command"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
         "query",
@@ -118,6 +122,18 @@ _AUDIT = {
     show_default=True,
     help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
 )
+@click.option("--since", metavar="TIME", help="Logs since then: 2026-11-22, 24h, 7d.")
+@click.option(
+    "--sample", type=click.IntRange(min=1), metavar="N", help="At most N of the logs, by chance."
+)
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of that chance."
+)
+@click.option("--log-time", metavar="TIME", help="For each log at most: 90s, 5min.")
+@click.option("--time", "whole_time", metavar="TIME", help="For all logs at most: 6h.")
+@click.option(
+    "--notify", "command", metavar="CMD", help="Give CMD a summary on standard input, as JSON."
+)
 @click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
 @path_option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
 @click.option(
@@ -138,6 +154,12 @@ def audit(
     confidence: float,
     jobs: int,
     engine: str,
+    since: str | None,
+    sample: int | None,
+    seed: int,
+    log_time: str | None,
+    whole_time: str | None,
+    command: str | None,
     resume: bool,
     parquet: str | None,
     summary: bool,
@@ -146,8 +168,8 @@ def audit(
     """Audit recorded runs against all requirements.
 
     LOG is an MCAP file, a bag (.bag, .db3), a folder (all logs below it), a quoted pattern
-    ('runs/**/*.mcap'), a URL, or - for standard input. A folder of rosbag2 with several files is
-    one log.
+    ('runs/**/*.mcap'), a URL, a folder or pattern in a store (s3://bucket/runs/), or - for standard
+    input. A folder of rosbag2 with several files is one log.
 
     Each run and requirement gets a verdict: satisfied, violated, inconclusive, vacuous or no data.
     A requirement with a probability is judged over all runs: supported, refuted or inconclusive.
@@ -160,13 +182,12 @@ def audit(
     from compiler.project.folder import load
     from compiler.project.paths import beside, companions, requirement_files
     from fretc.audit.log_paths import files_of
-    from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.plan import Plan, planned
     from fretc.logs.signals.integrity import Integrity
 
-    logs = logs_of(paths)
-    if isinstance(logs, Diagnostic):
-        stop(logs)
+    hook = None if command is None else words(command)
+    logs, selection = selected(paths, since, sample, seed)
+    limits = time_limits(log_time, whole_time, logs, engine)
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
@@ -180,10 +201,11 @@ def audit(
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         stop(*(reason for reason in plan if reason not in project.diagnostics))
+    plan = replace(plan, selection=selection)
     journal = _journal(output, plan) if output != "-" and len(logs) > 1 else None
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refusals, project.diagnostics)
-    result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
+    result = audit_all(plan, logs, _engine(engine, jobs, limits), journal, resume=resume)
     result = replace(result, diagnostics=project.answered(result.diagnostics))
     say_also(result.diagnostics, (*project.diagnostics, *refusals))
     if result.read:  # a mistyped name must not cost the evidence of the last audit
@@ -198,18 +220,26 @@ def audit(
         deliver({**forms, **annotation_files}, inputs)
         if journal is not None:
             journal.remove()
+    from fretc.commands.audit_text import Places, Subject, lines
+    from fretc.commands.audit_text import summary as summary_of
+
+    places, not_judged = Places(requirements, bindings, output), {one.id for one in plan.refused}
+    subject = Subject(result, project, not_judged, places, time.perf_counter() - began)
     if form == "text":
-        from fretc.commands.audit_text import Places, Subject, lines
         from fretc.terminal.screen import screen
 
-        places, refused = Places(requirements, bindings, output), {one.id for one in plan.refused}
-        subject = Subject(result, project, refused, places, time.perf_counter() - began)
         click.echo(painted(lines(subject, screen(), every=verbose)), nl=False)
     else:
         click.echo(_text(result, project, refusals, form), nl=False)
-    if plan.refused or has_errors((*project.diagnostics, *result.diagnostics)):
-        raise SystemExit(BAD)
-    raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
+    is_bad = plan.refused or has_errors((*project.diagnostics, *result.diagnostics))
+    status = BAD if is_bad else _status(result)
+    if hook is not None:
+        notify(hook, summary_of(subject, status))
+    raise SystemExit(status)
+
+
+def _status(result: Audit) -> int:
+    return VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN
 
 
 def _journal(evidence: str, plan: Plan) -> Journal | None:
@@ -251,11 +281,11 @@ def _text(result: Audit, project: Project, refusals: Sequence[Diagnostic], form:
     return sarif(each, project.rules, diagnostics, together, project.without_rule)
 
 
-def _engine(name: str, jobs: int) -> Engine:
+def _engine(name: str, jobs: int, limits: Limits) -> Engine:
     if name == "local":
         from fretc.audit.many_logs import locally
 
-        return locally(jobs)
+        return locally(jobs, limits)
     from fretc.audit import fleet
 
     engine = fleet.engine(name, jobs)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from shlex import quote
+from typing import Any
 
 from compiler.formalization.record import wording
 from compiler.project.folder import Project
@@ -88,7 +89,23 @@ def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
     yield _last(subject)
 
 
-def _first_to_look_at(subject: Subject) -> Iterator[str]:
+def summary(subject: Subject, status: int) -> dict[str, Any]:
+    """What `--notify` tells: a text for a person, and its numbers for a program."""
+    results, refused = subject.audit.results, subject.refused
+    last = "".join(text for text, _ in _last(subject)).rsplit("  ", 1)[0]
+    worst_first = [*_first_to_look_at(subject, commands=False)]
+    counts = totals(results, subject.audit.estimates, refused)
+    return {
+        "text": "\n".join(map(visible, [last, *worst_first[1:]])),
+        "status": status,
+        "runs": len(runs(results)),
+        "requirements": len({result.requirement for result in results}),
+        "counts": {each.word: each.results for each in counts},
+        "evidence": subject.places.evidence,
+    }
+
+
+def _first_to_look_at(subject: Subject, *, commands: bool = True) -> Iterator[str]:
     """The worst result, and the commands that show more; nothing where all is shown."""
     result = worst(subject.audit.results, subject.refused)
     refuted = next((one for one in subject.audit.estimates if one.answer == REFUTED), None)
@@ -100,9 +117,9 @@ def _first_to_look_at(subject: Subject) -> Iterator[str]:
     else:
         return
     yield ""
-    yield f"worst: {id} {where}: {_title(subject, id)}"
+    yield f"worst: {_name(subject, id)} {where}"
     yield from (f"  {line}" for line in details)
-    for place, command in enumerate(subject.places.commands(id)):
+    for place, command in enumerate(subject.places.commands(id) if commands else ()):
         yield f"  {'more:' if place == 0 else '     '} {command}"
 
 
@@ -116,10 +133,12 @@ def _details(result: Result, subject: Subject) -> Iterator[str]:
     yield from _violation(shown, shown.violations[result.violations.index(violation)])
 
 
-def _title(subject: Subject, id: str) -> str:
-    """Of a requirement; its sentence, where it has none."""
+def _name(subject: Subject, id: str) -> str:
+    """Of a requirement: its title and id; its id and sentence, where it has no title."""
     requirement = next((each for each in subject.project.requirements if each.id == id), None)
-    return requirement.title or wording(requirement) if requirement else ""
+    if requirement is None or requirement.title:
+        return requirement.name if requirement else id
+    return f"{id} (`{wording(requirement)}`)"
 
 
 def _violation(result: Result, violation: Violation) -> Iterator[str]:

@@ -407,6 +407,19 @@ class Requirement(Record, frozen=True):
     sha256: Annotated[Sha256, about("of the canonical wording")]
 
 
+class Selection(Record, frozen=True):
+    """Which of the logs that were named were audited."""
+
+    named: Annotated[Count, about("logs")]
+    since: Annotated[str | None, about("an instant of ISO 8601; null: whatever their dates")]
+    older: Annotated[Count, about("logs from before it: they were left out")]
+    sample_of: Annotated[
+        Count | None, about("of how many logs some were chosen by chance; null: all were audited")
+    ]
+    seed: Annotated[Whole | None, about("of the chance")]
+    audited: Annotated[Count, about("logs")]
+
+
 class Document(Record, frozen=True):
     """A whole file."""
 
@@ -421,6 +434,9 @@ class Document(Record, frozen=True):
             "what all runs together say of each requirement with a probability; absent: there is "
             "none"
         ),
+    ] = UNSET
+    selection: Annotated[
+        Selection | UnsetType, about("absent: all logs that were named were audited")
     ] = UNSET
 
 
@@ -446,6 +462,11 @@ class Evidence:
     def probabilities(self) -> tuple[Estimated, ...]:
         """What all runs say of each requirement with a probability."""
         return self.document.probabilities or ()
+
+    @property
+    def selection(self) -> Selection | None:
+        """Which of the named logs were audited; None: all."""
+        return self.document.selection or None
 
     def with_results(self, results: Sequence[Result]) -> Evidence:
         """The same with other results."""

@@ -139,7 +139,7 @@ def test_the_worst_is_named_with_title_value_limit_times_and_commands(robot: Fre
     listed, worst = untimed(run.out).split("\n\n")
     assert listed.startswith("run.mcap\n  ✘ R1  violated")
     assert worst == (
-        "worst: R1 violated in run.mcap: Enough is left\n"
+        "worst: Enough is left (R1) violated in run.mcap\n"
         "  at 1000 s by the clock of the log, 0 s into the log, until 0.5 s\n"
         "  demanded: charged; charge = 0 %\n"
         "  limit: charge > 5 % (charged); from 0 % to 11 % in this run\n"
