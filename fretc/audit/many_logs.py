@@ -17,7 +17,6 @@ from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Requirement, Result
-from fretc.audit.evidence.verdicts import VERDICTS
 from fretc.audit.evidence.writer import as_record, unjudged, unread
 from fretc.audit.evidence.writer import text as written
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
@@ -30,7 +29,6 @@ from fretc.logs.reader import read
 from fretc.logs.storage.inputs import STDIN
 from fretc.logs.storage.inputs import shown as called
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.diagnostics.rendering import visible
 from monitors import kernel
 
 
@@ -71,37 +69,6 @@ class Audit:
         if not self.estimates:
             return f"{to_json(results)}\n"
         return f"{to_json({'results': results, 'probabilities': plain(self.estimates)})}\n"
-
-    @property
-    def text(self) -> tuple[tuple[str, str | None], ...]:
-        """Lines for a person, each with its colour."""
-        lines: list[tuple[str, str | None]] = []
-        width = max((len(result.requirement) for result in self.results), default=0)
-        run = None
-        for result in self.results:
-            if result.run != run:
-                run = result.run
-                lines.append((run, None))
-            verdict = VERDICTS[result.verdict]
-            name = f"{result.requirement:<{width}}"
-            line = f"  {verdict.sign.glyph} {name}  {verdict.word:<12}  {result.reason}"
-            lines.append((line, verdict.sign.colour))
-        lines.extend(estimate_lines(self.estimates))
-        return tuple((visible(line), colour) for line, colour in lines)
-
-
-def estimate_lines(estimates: Sequence[Estimated]) -> tuple[tuple[str, str | None], ...]:
-    """What all runs say of each requirement with a probability, each line with its colour."""
-    return tuple(line for one in estimates for line in _block(one))
-
-
-def _block(one: Estimated) -> Iterator[tuple[str, str | None]]:
-    """What all runs say of one requirement, the answer in its colour."""
-    first, *rest = one.lines
-    verdict = VERDICTS[one.answer]
-    yield f"{one.requirement} over all runs, {one.text}", None
-    yield f"  {verdict.sign.glyph} {first}", verdict.sign.colour
-    yield from ((f"    {line}", None) for line in rest)
 
 
 EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}

@@ -8,13 +8,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import SHOWN
 from fretc.audit.outputs.totals import COUNTED, runs, severity, sign_of, word_of
 from fretc.terminal.output import Piece
-from fretc.terminal.screen import Screen, fitted, padded, width
+from fretc.terminal.screen import Screen, fitted, padded, titled, width
 
 MOST_RUNS = 200
 """Columns of a table: of more runs the worst ones."""
@@ -24,7 +25,7 @@ MOST_NAMES = 20
 """Runs that are named below the table."""
 _GROUP = 10
 """Marks between two blanks."""
-_LONGEST_ID = 24
+_LONGEST_ID = 30
 Line = tuple[Piece, ...]
 _BLANK: Line = (("", None),)
 
@@ -72,6 +73,7 @@ def table(
     estimates: Iterable[Estimated],
     refused: Collection[str],
     screen: Screen,
+    titles: Mapping[str, str] = MappingProxyType({}),
 ) -> Iterator[Line]:
     """The lines of the table, and below it the runs in which something is not shown.
 
@@ -80,13 +82,14 @@ def table(
         estimates: what all runs say of requirements with a probability.
         refused: the ids of requirements that could not be held against any run.
         screen: where it is shown.
+        titles: of requirements, by their ids; there need be none.
     """
     grid = Grid.of(results, estimates, refused)
     badness = [_badness(grid.counts(run)) for run in range(len(grid.names))]
     columns = sorted(sorted(range(len(grid.names)), key=badness.__getitem__)[:MOST_RUNS])
     worst_ids = sorted(grid.ids, key=lambda id: severity(grid.word(id)))[:MOST_REQUIREMENTS]
     rows = [id for id in grid.ids if id in {*worst_ids}]
-    yield from _blocks(grid, rows, columns, screen)
+    yield from _blocks(grid, rows, columns, screen, titles)
     yield from _left_out(grid, rows, columns)
     bad = [run for run in columns if not {*grid.counts(run)} <= {*SHOWN, COUNTED}]
     yield from _legend(grid, sorted(bad, key=badness.__getitem__), screen)
@@ -98,12 +101,17 @@ def _badness(counts: Counter[str]) -> tuple[tuple[int, int], ...]:
 
 
 def _blocks(
-    grid: Grid, rows: Sequence[str], columns: Sequence[int], screen: Screen
+    grid: Grid,
+    rows: Sequence[str],
+    columns: Sequence[int],
+    screen: Screen,
+    titles: Mapping[str, str],
 ) -> Iterator[Line]:
     """All rows, with as many columns as fit; then all rows again with the next ones."""
-    names = [screen.text(id) for id in rows]
-    room = min(max(map(width, (*names, "run"))), screen.width // 3, _LONGEST_ID)
-    names = [padded(fitted(name, room), room) for name in names]
+    most = min(screen.width // 3, _LONGEST_ID)
+    names = [titled(screen.text(id), screen.text(titles.get(id, "")), most) for id in rows]
+    room = max(map(width, (*names, "run")))
+    names = [padded(name, room) for name in names]
     groups = max(1, (screen.width - room - 5) // (_GROUP + 1))
     for start in range(0, len(columns), groups * _GROUP):
         block = columns[start : start + groups * _GROUP]

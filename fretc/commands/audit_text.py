@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from shlex import quote
 from typing import Any
@@ -11,9 +11,10 @@ from typing import Any
 from compiler.formalization.record import wording
 from compiler.project.folder import Project
 from fretc.audit.evidence.declared_units import without_samples
+from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result, Threshold, Violation
-from fretc.audit.evidence.verdicts import SHOWN
-from fretc.audit.many_logs import Audit, estimate_lines
+from fretc.audit.evidence.verdicts import SHOWN, VERDICTS
+from fretc.audit.many_logs import Audit
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretc.audit.outputs.totals import (
     COUNTED,
@@ -27,12 +28,17 @@ from fretc.audit.outputs.totals import (
 from fretc.audit.outputs.violated_values import values
 from fretc.commands.audit_table import Line, table
 from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER
-from fretc.terminal.screen import Screen
+from fretc.terminal.screen import Screen, padded, titled, width
 from fretish.bindings.amounts import exact, instant, seconds, value
 from fretish.diagnostics.rendering import visible
+from fretish.documents import named
 
 _FIRST_DATE = 10**17
 """Nanoseconds, in 1973: a clock that tells less is simulated, and counts from its own zero."""
+
+
+_LONGEST_NAME = 48
+"""Columns of the name of a requirement, at least, before it is shortened."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,14 +85,42 @@ def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
         every: list each result also where a table would have them.
     """
     audit, refused = subject.audit, subject.refused
+    titles = {each.id: each.title for each in subject.project.requirements}
     if every or len(runs(audit.results)) == 1:
-        yield from ((line,) for line in audit.text)
+        yield from _listed(audit.results, titles, screen)
     else:
-        yield from table(audit.results, audit.estimates, refused, screen)
-        yield from (((visible(text), colour),) for text, colour in estimate_lines(audit.estimates))
+        yield from table(audit.results, audit.estimates, refused, screen, titles)
+    for one in audit.estimates:
+        yield from _estimate(one, named(one.requirement, titles.get(one.requirement, "")))
     for text in _first_to_look_at(subject):
         yield ((visible(text), None),)
     yield _last(subject)
+
+
+def _listed(results: Sequence[Result], titles: Mapping[str, str], screen: Screen) -> Iterator[Line]:
+    """The name of each run, and a line for each of its results."""
+    most = max(_LONGEST_NAME, screen.width // 3)
+    names = {
+        id: titled(screen.text(id), screen.text(titles.get(id, "")), most)
+        for id in dict.fromkeys(result.requirement for result in results)
+    }
+    room = max(map(width, names.values()), default=0)
+    for run in runs(results):
+        yield ((visible(run[0].run), None),)
+        for result in run:
+            verdict = VERDICTS[result.verdict]
+            name = padded(names[result.requirement], room)
+            line = f"  {verdict.sign.glyph} {name}  {verdict.word:<12}  {visible(result.reason)}"
+            yield ((line, verdict.sign.colour),)
+
+
+def _estimate(one: Estimated, name: str) -> Iterator[Line]:
+    """What all runs say of a requirement with a probability, the answer in its colour."""
+    first, *rest = one.lines
+    verdict = VERDICTS[one.answer]
+    yield ((visible(f"{name} over all runs, {one.text}"), None),)
+    yield ((visible(f"  {verdict.sign.glyph} {first}"), verdict.sign.colour),)
+    yield from (((visible(f"    {line}"), None),) for line in rest)
 
 
 def summary(subject: Subject, status: int) -> dict[str, Any]:

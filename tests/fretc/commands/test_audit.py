@@ -137,7 +137,7 @@ def test_the_worst_is_named_with_title_value_limit_times_and_commands(robot: Fre
     run = robot("audit", "run.mcap", "-o", "e v.json")
     assert run.status == 1
     listed, worst = untimed(run.out).split("\n\n")
-    assert listed.startswith("run.mcap\n  ✘ R1  violated")
+    assert listed.startswith("run.mcap\n  ✘ Enough is left (R1)  violated")
     assert worst == (
         "worst: Enough is left (R1) violated in run.mcap\n"
         "  at 1000 s by the clock of the log, 0 s into the log, until 0.5 s\n"
@@ -153,10 +153,11 @@ def test_many_runs_are_a_table_and_verbose_lists_them(robot: Fretc) -> None:
     shutil.copy("run.mcap", "same.mcap")
     run = robot("audit", "run.mcap", "same.mcap")
     assert run.out.startswith(
-        "    run 1\n  ✘ R1  ✘✘\n\n  run 1: 1 violated: run.mcap\n  run 2: 1 violated: same.mcap\n\n"
+        f"    {'run':<19} 1\n  ✘ Enough is left (R1) ✘✘\n\n"
+        "  run 1: 1 violated: run.mcap\n  run 2: 1 violated: same.mcap\n\n"
     )
     listed = robot("audit", "run.mcap", "same.mcap", "-v")
-    assert "same.mcap\n  ✘ R1  violated" in listed.out
+    assert "same.mcap\n  ✘ Enough is left (R1)  violated" in listed.out
     last = "2 runs \N{MULTIPLICATION SIGN} 1 requirement: 2 violated (1 requirement in 2 runs)\n"
     assert untimed(run.out).endswith(last)
     assert untimed(listed.out).endswith(last)
