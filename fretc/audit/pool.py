@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from enum import Enum
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import ForkProcess
-from typing import Any, TypeVar
+from typing import Any, TypeVar, overload
 
 from compiler.files.processes import reply
 from fretc.logs.storage.inputs import shown
@@ -101,6 +101,18 @@ def was_killed(log: str, how: str) -> Diagnostic:
         Source(log, "").span(),
         help="was there memory enough? audit this log on a machine that has more",
     )
+
+
+@overload
+def each(
+    function: Callable[[T], R], things: Sequence[T], jobs: int
+) -> Generator[tuple[int, R | Killed], None, None]: ...
+
+
+@overload
+def each(
+    function: Callable[[T], R], things: Sequence[T], jobs: int, limits: Limits
+) -> Generator[tuple[int, R | Killed | Late], None, None]: ...
 
 
 def each(
