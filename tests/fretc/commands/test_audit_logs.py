@@ -92,7 +92,7 @@ def test_a_log_for_which_there_is_no_time_is_no_data(robot: Fretc) -> None:
 def test_what_the_time_of_an_audit_does_not_reach_is_no_data(robot: Fretc) -> None:
     run = robot("audit", "runs/0.mcap", "runs/2.mcap", "--time", "1ns", "--format", "json")
     assert run.status == 3
-    assert "F441 warning: the 1e-06 ms of the audit were over: no data (in 2 of 2 logs" in run.err
+    assert "F441 warning: the 1 ns of the audit were over: no data (in 2 of 2 logs" in run.err
     results = json.loads(run.out)
     assert [one["verdict"] for one in results] == ["no data"] * 2
     codes = {finding["code"] for one in results for finding in one["health"]["findings"]}
