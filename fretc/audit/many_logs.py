@@ -2,29 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from types import MappingProxyType
 
 from compiler.files.edition import __version__
-from compiler.files.records import UNSET, plain
-from compiler.files.templating import to_json
+from compiler.files.records import UNSET
+from compiler.files.records import replace as record_with
 from compiler.files.text_files import Stamp, file_sha256, stamp
-from fretc.audit.constancy import never_changed, tallies_of
+from fretc.audit.constancy import never_changed, tallies_of, totals
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
+from fretc.audit.evidence.briefs import Brief, EvidenceSource, brief
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.reader import Evidence
 from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Requirement, Result
 from fretc.audit.evidence.writer import as_record, unjudged, unread
 from fretc.audit.evidence.writer import text as written
-from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.audit.measurements.judgement import Engine as Evaluation
+from fretc.audit.measurements.tallies import Tally
 from fretc.audit.one_log import audit, examined, signals_of
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
 from fretc.audit.pool import ENDLESS, Killed, Late, Limits, each, was_killed, was_late
+from fretc.logs.labels import NO_METADATA, labels, over
 from fretc.logs.reader import read
 from fretc.logs.storage.inputs import STDIN
 from fretc.logs.storage.inputs import shown as called
@@ -36,39 +39,30 @@ from monitors import kernel
 class Audit:
     """The outcome of an audit: one result for each run and requirement, runs in their order."""
 
-    results: tuple[Result, ...]
-    evidence: str
-    """The text of the evidence file."""
+    document: Document
     diagnostics: tuple[Diagnostic, ...]
     read: int = 0
     """How many of the logs could be read."""
-    estimates: tuple[Estimated, ...] = ()
-    """What all runs say of each requirement with a probability."""
 
     @property
-    def violated(self) -> bool:
-        """Whether any requirement is violated in any run, or refuted by all of them."""
-        return any(one.answer == REFUTED for one in self.estimates) or any(
-            result.verdict == kernel.VIOLATED for result in self.results
-        )
+    def results(self) -> tuple[Result, ...]:
+        """Each of a run and a requirement."""
+        return self.document.results
 
     @property
-    def shown(self) -> bool:
-        """Whether every requirement is satisfied in every run, or supported by all of them."""
-        of_all_runs = {one.requirement for one in self.estimates}
-        return all(one.answer == SUPPORTED for one in self.estimates) and all(
-            result.verdict == kernel.SATISFIED
-            for result in self.results
-            if result.requirement not in of_all_runs
-        )
+    def estimates(self) -> tuple[Estimated, ...]:
+        """What all runs say of each requirement with a probability."""
+        return self.document.probabilities or ()
 
     @property
-    def as_json(self) -> str:
-        """One JSON array, an object per run and requirement; with probabilities, both by name."""
-        results = plain(self.results)
-        if not self.estimates:
-            return f"{to_json(results)}\n"
-        return f"{to_json({'results': results, 'probabilities': plain(self.estimates)})}\n"
+    def evidence(self) -> str:
+        """The text of the evidence file."""
+        return written(self.document)
+
+    @property
+    def source(self) -> EvidenceSource:
+        """The results, to be read from."""
+        return Evidence("", "", self.document)
 
 
 EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}
@@ -149,31 +143,55 @@ def audit_logs(
             assert log not in done
             done[log] = one
             tell(log, one)
-    return gathered(plan, [done[log] for log in logs])
+    return gathered(plan, [labelled(plan, done[log]) for log in logs])
 
 
 def gathered(plan: Plan, audits: Sequence[LogAudit]) -> Audit:
     """One audit of the audits of single logs, in their order."""
     results = [result for one in audits for result in one.results]
-    diagnostics = _diagnostics(audits)
-    of_all_runs = estimates(plan.claims, results, plan.confidence)
-    constant = never_changed(tallies_of(results), plan.declarations, diagnostics)
+    of_all_runs = estimates_of(plan, map(brief, results))
+    tallies = (tallies_of(one.results) for one in audits)
+    of_logs = [(one.results[0].run, one.diagnostics) for one in audits]
     return Audit(
-        tuple(results),
-        written(_evidence(plan, results, of_all_runs)),
-        (*diagnostics, *constant, *warnings(of_all_runs)),
+        document(plan, results, of_all_runs),
+        diagnostics_of_all(plan, of_logs, tallies, of_all_runs),
         sum(one.read for one in audits),
-        of_all_runs,
     )
 
 
-def _diagnostics(audits: Sequence[LogAudit]) -> tuple[Diagnostic, ...]:
+def estimates_of(plan: Plan, results: Iterable[Brief]) -> tuple[Estimated, ...]:
+    """What all runs say of each requirement with a probability."""
+    ids = {claim.id for claim in plan.claims if claim.chance is not None}
+    counted = [each for each in results if each.requirement in ids] if ids else []
+    return estimates(plan.claims, counted, plan.confidence)
+
+
+def diagnostics_of_all(
+    plan: Plan,
+    of_logs: Sequence[tuple[str, Sequence[Diagnostic]]],
+    tallies: Iterable[Mapping[str, Tally]],
+    of_all_runs: Sequence[Estimated],
+) -> tuple[Diagnostic, ...]:
+    """What there is to say of all logs together.
+
+    Args:
+        plan: what they were judged by.
+        of_logs: the name of each run, and what there is to say of its log.
+        tallies: of each run, by proposition.
+        of_all_runs: what all say of each requirement with a probability.
+    """
+    diagnostics = _shared(of_logs)
+    constant = never_changed(totals(tallies), plan.declarations, diagnostics)
+    return (*diagnostics, *constant, *warnings(of_all_runs))
+
+
+def _shared(of_logs: Sequence[tuple[str, Sequence[Diagnostic]]]) -> tuple[Diagnostic, ...]:
     """The diagnostics of all logs. One that several logs share is given once."""
     runs: dict[Diagnostic, list[str]] = {}
-    for one in audits:
-        for diagnostic in one.diagnostics:
-            runs.setdefault(diagnostic, []).append(one.results[0].run)
-    return tuple(_of(diagnostic, of, len(audits)) for diagnostic, of in runs.items())
+    for run, diagnostics in of_logs:
+        for diagnostic in diagnostics:
+            runs.setdefault(diagnostic, []).append(run)
+    return tuple(_of(diagnostic, of, len(of_logs)) for diagnostic, of in runs.items())
 
 
 def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
@@ -196,11 +214,41 @@ def audited(plan: Plan, log: str) -> LogAudit:
     evidence = audit(recording, declarations, requirements, EVALUATIONS[plan.evaluation])
     phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
     records = [as_record(e) for e in evidence]
-    return LogAudit(
+    own = LogAudit(
         (*records, *_refused_results(plan, records[0])),
         (*recording.findings, *findings(phased, declarations)),
         read=True,
         stamp=before if before == stamp(log) else None,
+    )
+    return _with_own_labels(plan, own, recording.described)
+
+
+def _with_own_labels(
+    plan: Plan, one: LogAudit, described: Mapping[str, tuple[str, ...]] = NO_METADATA
+) -> LogAudit:
+    """The audit of a log with the labels that the bindings ask for."""
+    declared = plan.declarations.labels
+    if not declared:
+        return one
+    found, notes = labels(declared, one.results[0].run, described)
+    return _with_labels(one, found, notes)
+
+
+def labelled(plan: Plan, one: LogAudit) -> LogAudit:
+    """The audit of a log with the labels that the command gives all runs."""
+    if not plan.labels:
+        return one
+    first = one.results[0]
+    found, notes = over(first.labels or {}, plan.labels)
+    return _with_labels(one, found, notes)
+
+
+def _with_labels(one: LogAudit, found: Mapping[str, str], notes: Sequence[Diagnostic]) -> LogAudit:
+    of_run = dict(sorted(found.items())) or UNSET
+    return replace(
+        one,
+        results=tuple(record_with(result, labels=of_run) for result in one.results),
+        diagnostics=(*one.diagnostics, *notes),
     )
 
 
@@ -244,7 +292,7 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogA
     """
     hashes = _hash_of(log, before)
     records = [unread(called(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
-    return LogAudit(tuple(records), (why,), read=False)
+    return _with_own_labels(plan, LogAudit(tuple(records), (why,), read=False))
 
 
 def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogAudit:
@@ -260,7 +308,8 @@ def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
     return {} if digest is None or changed else {"log": digest}
 
 
-def _evidence(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]) -> Document:
+def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]) -> Document:
+    """The evidence of an audit."""
     return Document(
         schema=SCHEMA,
         fretc=__version__,

@@ -30,6 +30,7 @@ from fretish.bindings.amounts import margin as margin_text
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
+from fretish.reading.memory import remembered
 from fretish.units import base_name
 from monitors import kernel
 from monitors.kernel import Column, Monitor
@@ -50,9 +51,20 @@ class MonitoredRequirement:
     @property
     def propositions(self) -> tuple[str, ...]:
         """All that are needed, each once."""
-        return tuple(dict.fromkeys((*self.monitor.PROPOSITIONS, *self.counted)))
+        return _needed(self)
 
 
+@remembered
+def _needed(requirement: MonitoredRequirement) -> tuple[str, ...]:
+    return tuple(dict.fromkeys((*requirement.monitor.PROPOSITIONS, *requirement.counted)))
+
+
+@remembered
+def _assumed(declarations: Declarations, requirement: MonitoredRequirement) -> tuple[str, ...]:
+    return declarations.reading(requirement.propositions).assumptions
+
+
+@remembered
 def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple[str, ...]:
     """The names of the signals that the propositions read, in the order of their first use."""
     return tuple(
@@ -185,7 +197,7 @@ def _evidence(
         units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},
         hashes={_hashed(recording): recording.sha256, **requirement.hashes},
         health=health(recording),
-        assumptions=declarations.reading(requirement.propositions).assumptions,
+        assumptions=_assumed(declarations, requirement),
     )
     evidence = replace(evidence, reason=_reason(evidence, recording, declarations))
     if requirement.count is None:

@@ -48,6 +48,8 @@ class Plan:
     """Of the bounds of a probability over all logs."""
     refused: tuple[RefusedRequirement, ...] = field(default=(), compare=False, repr=False)
     """The requirements in force that are not among the claims."""
+    labels: Mapping[str, str] = field(default_factory=dict, compare=False)
+    """What the command says of all runs. No audit of a log depends on it: the key does not."""
     selection: Selection | None = field(default=None, compare=False, repr=False)
     """Which of the named logs are audited, for the evidence; None: all."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import time
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.commands.audit_logs import selected, time_limits
-from fretc.commands.audit_progress import audit_all
+from fretc.commands.audit_progress import audit_in_memory, audit_into
 from fretc.commands.notify import notify, words
 from fretc.commands.summary import summarize
 from fretc.terminal.group import Grouped
@@ -21,13 +22,13 @@ from fretc.terminal.options import (
     bindings_option,
     format_option,
     jobs_option,
+    label_option,
     output_option,
     path_option,
     requirements_option,
 )
 from fretc.terminal.output import (
     BAD,
-    EVIDENCE,
     NOT_SHOWN,
     SHOWN,
     VIOLATION,
@@ -38,25 +39,28 @@ from fretc.terminal.output import (
     say,
     say_also,
     say_briefly,
+    say_line,
     stop,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
-    from compiler.project.folder import Project
-    from fretc.audit.journal import Journal
-    from fretc.audit.many_logs import Audit, Engine
+    from fretc.audit.into_store import Session
+    from fretc.audit.many_logs import Engine
+    from fretc.audit.outputs.totals import Marks
     from fretc.audit.plan import Plan
     from fretc.audit.pool import Limits
+    from fretc.commands.audit_outputs import Outcome, Target
 
 
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
     "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
     "Which logs": ("since", "sample", "seed"),
-    "Many logs": ("jobs", "log_time", "whole_time", "resume", "engine", "command"),
+    "Many logs": ("labels", "jobs", "log_time", "whole_time", "engine", "rehash", "command"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
         "query",
@@ -73,9 +77,8 @@ _AUDIT = {
 @output_option(
     cls=Renamed,
     earlier="--evidence",
-    default=EVIDENCE,
-    show_default=True,
-    help="Where evidence goes; `-` prints it.",
+    help="Where evidence goes: NAME.json is a file, another name the folder of a store, `-` "
+    "prints it. If not given, build/evidence.json for one log, build/evidence for several.",
 )
 @click.option("--annotate", is_flag=True, help="Also write its verdicts as a log, for Foxglove.")
 @path_option(
@@ -115,6 +118,7 @@ _AUDIT = {
     show_default=True,
     help="Of what all logs together say of a requirement with a probability.",
 )
+@label_option
 @jobs_option
 @click.option(
     "--engine",
@@ -132,19 +136,26 @@ _AUDIT = {
 @click.option("--log-time", metavar="TIME", help="For each log at most: 90s, 5min.")
 @click.option("--time", "whole_time", metavar="TIME", help="For all logs at most: 6h.")
 @click.option(
+    "--rehash", is_flag=True, help="Know a log by its SHA-256, not by its size and times."
+)
+@click.option(
     "--notify", "command", metavar="CMD", help="Give CMD a summary on standard input, as JSON."
 )
-@click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
 @path_option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
+@click.option("--resume", is_flag=True, hidden=True)
 @click.option(
     "--summary", is_flag=True, help="How many of which verdict, worst runs, slowest answers."
 )
-@click.option("--query", metavar="SQL", help="The answer to SQL of DuckDB; the table is `results`.")
+@click.option(
+    "--query",
+    metavar="SQL",
+    help="The answer to SQL of DuckDB; the tables are `results`, `violations`, `runs`.",
+)
 def audit(
     paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
-    output: str,
+    output: str | None,
     annotate: bool,
     annotations: str | None,
     form: str,
@@ -152,6 +163,7 @@ def audit(
     evaluation: str,
     integrity: str,
     confidence: float,
+    labels: tuple[str, ...],
     jobs: int,
     engine: str,
     since: str | None,
@@ -159,9 +171,10 @@ def audit(
     seed: int,
     log_time: str | None,
     whole_time: str | None,
+    rehash: bool,
     command: str | None,
-    resume: bool,
     parquet: str | None,
+    resume: bool,
     summary: bool,
     query: str | None,
 ) -> None:
@@ -178,22 +191,30 @@ def audit(
     if summary or query is not None:
         summarize(paths, query, form)
     began = time.perf_counter()
-    _check_outputs(output, parquet, resume=resume)
+    if resume:
+        say_line("`--resume` is not needed any more: what a stopped audit has finished is known")
     from compiler.project.folder import load
     from compiler.project.paths import beside, companions, requirement_files
     from fretc.audit.log_paths import files_of
+    from fretc.audit.outputs.totals import Marks
     from fretc.audit.plan import Plan, planned
+    from fretc.commands import audit_outputs as outputs
+    from fretc.logs.labels import given
     from fretc.logs.signals.integrity import Integrity
 
     hook = None if command is None else words(command)
+    given_labels = given(labels)
+    if isinstance(given_labels, Diagnostic):
+        stop(given_labels)
     logs, selection = selected(paths, since, sample, seed)
     limits = time_limits(log_time, whole_time, logs, engine)
+    target = outputs.target(output, selection.named if selection else len(logs))
+    outputs.check(target, parquet)
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-    outputs = [Path(path) for path in (output, f"{output}.journal", parquet) if path]
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
-    protect(outputs, inputs)
+    protect([target.path, *([Path(parquet)] if parquet else [])], inputs)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
     say_briefly(project.diagnostics, requirements)
     if has_errors(project.general):
@@ -201,84 +222,88 @@ def audit(
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         stop(*(reason for reason in plan if reason not in project.diagnostics))
-    plan = replace(plan, selection=selection)
-    journal = _journal(output, plan) if output != "-" and len(logs) > 1 else None
+    plan = replace(plan, labels=given_labels, selection=selection)
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refusals, project.diagnostics)
-    result = audit_all(plan, logs, _engine(engine, jobs, limits), journal, resume=resume)
-    result = replace(result, diagnostics=project.answered(result.diagnostics))
-    say_also(result.diagnostics, (*project.diagnostics, *refusals))
-    if result.read:  # a mistyped name must not cost the evidence of the last audit
-        annotation_files = (
-            _annotation_files(result, project, annotations) if annotate or annotations else {}
+    with ExitStack() as stack:
+        if target.is_store:
+            session = stack.enter_context(_session(target.path, plan, logs, rehash=rehash))
+            result: outputs.Outcome = audit_into(session, _engine(engine, jobs, limits))
+        else:
+            result = audit_in_memory(plan, logs, _engine(engine, jobs, limits))
+        diagnostics = project.answered(result.diagnostics)
+        say_also(diagnostics, (*project.diagnostics, *refusals))
+        if result.read:  # a mistyped name must not cost the evidence of the last audit
+            wanted = annotate or annotations is not None
+            made = outputs.annotation_files(result, project, annotations) if wanted else {}
+            if parquet is not None:
+                made[Path(parquet)] = outputs.table(result)
+            _deliver(result, target, made, inputs)
+        source, not_judged = result.source, {one.id for one in plan.refused}
+        marks = Marks.of((each for _, each in source.briefs()), result.estimates, not_judged)
+        is_bad = plan.refused or has_errors((*project.diagnostics, *diagnostics))
+        status = BAD if is_bad else _status(marks)
+        from fretc.commands.audit_text import Places, Subject, lines
+        from fretc.commands.audit_text import summary as summary_of
+
+        subject = Subject(
+            source,
+            marks,
+            result.estimates,
+            project,
+            not_judged,
+            Places(requirements, bindings, str(target.path)),
+            time.perf_counter() - began,
         )
-        forms: dict[Path, str | bytes] = {Path(output): result.evidence}
-        if parquet is not None:
-            forms[Path(parquet)] = _table(result)
-        if {*map(os.path.realpath, forms)} & {*map(os.path.realpath, annotation_files)}:
-            stop(not_written(output, "two outputs would go there"))
-        deliver({**forms, **annotation_files}, inputs)
-        if journal is not None:
-            journal.remove()
-    from fretc.commands.audit_text import Places, Subject, lines
-    from fretc.commands.audit_text import summary as summary_of
+        if form == "text":
+            from fretc.terminal.screen import screen
 
-    places, not_judged = Places(requirements, bindings, output), {one.id for one in plan.refused}
-    subject = Subject(result, project, not_judged, places, time.perf_counter() - began)
-    if form == "text":
-        from fretc.terminal.screen import screen
-
-        click.echo(painted(lines(subject, screen(), every=verbose)), nl=False)
-    else:
-        click.echo(_text(result, project, refusals, form), nl=False)
-    is_bad = plan.refused or has_errors((*project.diagnostics, *result.diagnostics))
-    status = BAD if is_bad else _status(result)
-    if hook is not None:
-        notify(hook, summary_of(subject, status))
+            click.echo(painted(lines(subject, screen(), every=verbose)), nl=False)
+        else:
+            click.echo(outputs.text(result, project, refusals, form), nl=False)
+        notice = summary_of(subject, status) if hook is not None else {}
+    if hook is not None:  # when the store is free again: the command may read it
+        notify(hook, notice)
     raise SystemExit(status)
 
 
-def _status(result: Audit) -> int:
-    return VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN
+def _status(marks: Marks) -> int:
+    return VIOLATION if marks.violated else SHOWN if marks.shown else NOT_SHOWN
 
 
-def _journal(evidence: str, plan: Plan) -> Journal | None:
-    """None where there is no key of the user: then nothing is kept for `--resume`."""
+def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> Session:
     from compiler.files.user_key import user_key
-    from fretc.audit.journal import Journal
+    from fretc.audit.into_store import Session, busy
 
     key = user_key()
     if isinstance(key, Diagnostic):
         say([key])
-        return None
-    return Journal(Path(evidence), plan, key)
+    known = None if isinstance(key, Diagnostic) else key
+    try:
+        return Session(folder, plan, logs, known, rehash=rehash)
+    except BlockingIOError:
+        stop(busy(folder))
+    except OSError as error:
+        stop(not_written(str(folder), error.strerror or str(error)))
 
 
-def _annotation_files(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
-    from fretc.audit.evidence.declared_units import without_samples
-    from fretc.audit.outputs.annotations import sidecars
+def _deliver(
+    result: Outcome, target: Target, others: Mapping[Path, bytes], inputs: Sequence[str]
+) -> None:
+    """Write everything but a store, which is written."""
+    from fretc.audit.many_logs import Audit
+    from fretc.commands.audit_outputs import remove_other
 
-    results = without_samples(result.results, project.declarations)
-    return sidecars(results, project.rules, Path(folder or "build/annotations"))
-
-
-def _text(result: Audit, project: Project, refusals: Sequence[Diagnostic], form: str) -> str:
-    from fretc.audit.evidence.declared_units import without_samples
-    from fretc.audit.outputs.junit import github, junit
-    from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
-
-    if form == "json":
-        return result.as_json
-    results = without_samples(result.results, project.declarations)
-    if form == "junit":
-        return junit(results, result.estimates, project.requirements)
-    if form == "github":
-        return github(results, project.requirements, result.estimates)
-    assert form == "sarif", "a choice of --format"
-    diagnostics = (*project.diagnostics, *refusals, *result.diagnostics)
-    together = [AllRuns.of(one) for one in result.estimates]
-    each = [OneRun.of(one) for one in results]
-    return sarif(each, project.rules, diagnostics, together, project.without_rule)
+    own: dict[Path, str | bytes] = {}
+    if not target.is_store:
+        assert isinstance(result, Audit), "what is no store is in memory"
+        own = {target.path: result.evidence}
+    if {*map(os.path.realpath, own)} & {*map(os.path.realpath, others)}:
+        stop(not_written(str(target.path), "two outputs would go there"))
+    deliver({**own, **others}, inputs)
+    if target.is_store:
+        say_line(visible(f"wrote {target.path}"))
+    remove_other(target)
 
 
 def _engine(name: str, jobs: int, limits: Limits) -> Engine:
@@ -292,37 +317,3 @@ def _engine(name: str, jobs: int, limits: Limits) -> Engine:
     if isinstance(engine, Diagnostic):
         stop(engine)
     return engine
-
-
-def _check_outputs(evidence: str, parquet: str | None, *, resume: bool) -> None:
-    """Stop where they cannot be written, before hours of audit have gone by."""
-    if resume and evidence == "-":
-        stop(_nothing_kept())
-    if parquet == "-":
-        stop(not_written(parquet, "a table is a file"))
-    for path in (evidence, parquet):
-        if path not in ("-", None) and os.path.exists(path) and not os.path.isfile(path):
-            stop(not_written(path, "it is no regular file"))
-    if parquet is not None:
-        from fretc.audit.outputs.table import missing
-
-        absent = missing()
-        if absent is not None:
-            stop(absent)
-        if os.path.realpath(parquet) == os.path.realpath(evidence):
-            stop(not_written(parquet, "two outputs would go there"))
-
-
-def _table(result: Audit) -> bytes:
-    from compiler.files.edition import __version__
-    from fretc.audit.outputs.table import parquet
-
-    return parquet(result.results, __version__)
-
-
-def _nothing_kept() -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        "`--resume` goes on with evidence in a file, and this is printed",
-        help="name a file with `-o`",
-    )

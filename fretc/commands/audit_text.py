@@ -10,24 +10,24 @@ from typing import Any
 
 from compiler.formalization.record import wording
 from compiler.project.folder import Project
+from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.declared_units import without_samples
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result, Threshold, Violation
 from fretc.audit.evidence.verdicts import SHOWN, VERDICTS
-from fretc.audit.many_logs import Audit
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretc.audit.outputs.totals import (
     COUNTED,
+    Marks,
     Total,
     longest,
     runs,
     totals,
     word_of,
-    worst,
 )
 from fretc.audit.outputs.violated_values import values
 from fretc.commands.audit_table import Line, table
-from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER
+from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE
 from fretc.terminal.screen import Screen, padded, titled, width
 from fretish.bindings.amounts import exact, instant, seconds, value
 from fretish.diagnostics.rendering import visible
@@ -54,7 +54,8 @@ class Places:
         folder = self._option("--requirements", self.requirements, REQUIREMENTS_FOLDER)
         project = f"{folder}{self._option('--bindings', self.bindings, None)}"
         if self.evidence != "-":
-            evidence = self._option("--evidence", self.evidence, EVIDENCE)
+            default = self.evidence if self.evidence in (EVIDENCE, STORE) else None
+            evidence = self._option("--evidence", self.evidence, default)
             yield f"fretc report{project}{evidence}"
         yield f"fretc explain {quote(id)}{project}"
 
@@ -67,7 +68,9 @@ class Places:
 class Subject:
     """An audit, and what its text needs beside it."""
 
-    audit: Audit
+    source: EvidenceSource
+    marks: Marks
+    estimates: Sequence[Estimated]
     project: Project
     refused: Collection[str]
     """The ids of requirements that could not be held against any run."""
@@ -84,28 +87,27 @@ def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
         screen: where.
         every: list each result also where a table would have them.
     """
-    audit, refused = subject.audit, subject.refused
     titles = {each.id: each.title for each in subject.project.requirements}
-    if every or len(runs(audit.results)) == 1:
-        yield from _listed(audit.results, titles, screen)
+    if every or len(subject.marks.names) == 1:
+        yield from _listed(subject, titles, screen)
     else:
-        yield from table(audit.results, audit.estimates, refused, screen, titles)
-    for one in audit.estimates:
+        yield from table(subject.marks, screen, titles)
+    for one in subject.estimates:
         yield from _estimate(one, named(one.requirement, titles.get(one.requirement, "")))
     for text in _first_to_look_at(subject):
         yield ((visible(text), None),)
     yield _last(subject)
 
 
-def _listed(results: Sequence[Result], titles: Mapping[str, str], screen: Screen) -> Iterator[Line]:
+def _listed(subject: Subject, titles: Mapping[str, str], screen: Screen) -> Iterator[Line]:
     """The name of each run, and a line for each of its results."""
     most = max(_LONGEST_NAME, screen.width // 3)
     names = {
         id: titled(screen.text(id), screen.text(titles.get(id, "")), most)
-        for id in dict.fromkeys(result.requirement for result in results)
+        for id in subject.marks.ids
     }
     room = max(map(width, names.values()), default=0)
-    for run in runs(results):
+    for run in runs(brief for _, brief in subject.source.briefs()):
         yield ((visible(run[0].run), None),)
         for result in run:
             verdict = VERDICTS[result.verdict]
@@ -125,24 +127,24 @@ def _estimate(one: Estimated, name: str) -> Iterator[Line]:
 
 def summary(subject: Subject, status: int) -> dict[str, Any]:
     """What `--notify` tells: a text for a person, and its numbers for a program."""
-    results, refused = subject.audit.results, subject.refused
     last = "".join(text for text, _ in _last(subject)).rsplit("  ", 1)[0]
     worst_first = [*_first_to_look_at(subject, commands=False)]
-    counts = totals(results, subject.audit.estimates, refused)
+    marks = subject.marks
     return {
         "text": "\n".join(map(visible, [last, *worst_first[1:]])),
         "status": status,
-        "runs": len(runs(results)),
-        "requirements": len({result.requirement for result in results}),
-        "counts": {each.word: each.results for each in counts},
+        "runs": len(marks.names),
+        "requirements": len(marks.ids),
+        "counts": {each.word: each.results for each in totals(marks)},
         "evidence": subject.places.evidence,
     }
 
 
 def _first_to_look_at(subject: Subject, *, commands: bool = True) -> Iterator[str]:
     """The worst result, and the commands that show more; nothing where all is shown."""
-    result = worst(subject.audit.results, subject.refused)
-    refuted = next((one for one in subject.audit.estimates if one.answer == REFUTED), None)
+    place = subject.marks.worst
+    ((_, result),) = subject.source.details([place]) if place is not None else ((0, None),)
+    refuted = next((one for one in subject.estimates if one.answer == REFUTED), None)
     if refuted is not None and (result is None or longest(result) is None):
         id, where, details = refuted.requirement, f"{REFUTED} over all runs", [refuted.lines[0]]
     elif result is not None:
@@ -218,13 +220,11 @@ def _limit(threshold: Threshold) -> str:
 
 def _last(subject: Subject) -> Line:
     """`16 runs x 15 requirements: 12 violated (3 requirements in 4 runs), 228 satisfied  2.1 s`."""
-    results = subject.audit.results
-    ids = {result.requirement for result in results}
-    of_runs = runs(results)
-    counts = totals(results, subject.audit.estimates, subject.refused)
-    parts = [_count(total, many=len(of_runs) > 1) for total in counts]
+    marks = subject.marks
+    counts = totals(marks)
+    parts = [_count(total, many=len(marks.names) > 1) for total in counts]
     times = "\N{MULTIPLICATION SIGN}"
-    head = f"{_times(len(of_runs), 'run')} {times} {_times(len(ids), 'requirement')}"
+    head = f"{_times(len(marks.names), 'run')} {times} {_times(len(marks.ids), 'requirement')}"
     text = f"{head}: {', '.join(parts)}  {subject.seconds:.1f} s"
     return ((text, counts[0].colour if counts else None),)
 

@@ -15,7 +15,7 @@ import tomli_w
 
 from compiler.files import settings
 from compiler.project import hazards
-from fretc.report.traceability import lock, waivers
+from fretc.report.traceability import lock, texts, waivers
 from fretc.report.traceability.chain import Node
 from fretish.bindings import declarations as d
 from fretish.bindings import interceptor, reader
@@ -37,6 +37,21 @@ REVIEW = lock.Review(
     "first review",
     {Node("sentence", "R1"): "0" * 64},
     {"traces/a.mcap": "satisfied"},
+    texts.Texts(
+        sentence="whenever too_close the rover shall within 200 milliseconds satisfy stopped",
+        canonical="whenever too_close rover shall within 200 milliseconds satisfy stopped",
+        title="Stop near obstacles",
+        status="approved",
+        parents=("HAZ-001",),
+        params={"too_close": "5 cm"},
+        hazards={"HAZ-001": texts.HazardTexts("The robot hits a drum", severity="catastrophic")},
+        bindings=texts.Bindings(
+            {"tick": "100 ms"},
+            {"clearance": {"path": "/clearance.data", "unit": "m", "max_age": "300 ms"}},
+            {"too_close": {"expr": "clearance < 5 cm", "role": "input"}},
+        ),
+        fretc="0.1.0",
+    ),
 )
 
 
@@ -84,6 +99,7 @@ TABLES = {
     "variable.NAME": reader._VARIABLE,
     "interceptor": interceptor._INTERCEPTOR,
     "assume": interceptor._ASSUME,
+    "run": reader._RUN,
     "hazards.toml": hazards._FIELDS,
     "waivers.toml": waivers._FIELDS,
     "fretc.toml": settings._FIELDS,
@@ -116,7 +132,8 @@ def test_each_field_has_its_row(name: str) -> None:
 def test_the_fields_of_a_lock_are_those_that_are_written() -> None:
     written = tomllib.loads(lock.text(lock.Lock({"R1": REVIEW})))
     found = {row[0].strip("`") for row in rows(section(TEXT, "## `fretc.lock`"))}
-    assert found == {"schema", *written["review"]["R1"]}
+    kept = {f"texts.{name}" for name in texts.Texts.__struct_fields__}
+    assert found == {"schema", *written["review"]["R1"], *kept}
 
 
 @pytest.mark.parametrize(("name", "field"), CHOICES)
@@ -135,6 +152,7 @@ LEAST: Mapping[str, Table] = {
     "variable.NAME": {},
     "interceptor": {"stop": "/s", "command": "/c", "output": "/o", "period": "10 ms"},
     "assume": {"stands": "stopped", "latency": "1 s", "braking": "1 s"},
+    "run": {},
     "hazards.toml": {"title": "t"},
     "waivers.toml": {
         "verdict": "vacuous", "reason": "r", "by": "b", "role": "r",

@@ -6,11 +6,14 @@ sorts them reads briefs, and asks for the few results that it shows in full.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from bisect import bisect_right
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from statistics import median
 from typing import Protocol
 
+from compiler.files.records import UnsetType
+from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import (
     Bindings,
@@ -23,6 +26,9 @@ from fretc.audit.evidence.schema import (
 )
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
+
+Recorded = tuple[str | UnsetType, ...]
+"""SHA-256 of each of `fretc.audit.evidence.basis.KINDS`; unset where it was not known then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +52,8 @@ class Brief:
     violated_ticks: int
     first_violation_ns: int | None
     first_violation_s: float | None
+    unknown: int
+    """Stretches of ticks at which it cannot be known whether a demand was broken."""
     unknown_ticks: int
     latency_median_s: float | None
     latency_max_s: float | None
@@ -56,6 +64,21 @@ class Brief:
     """SHA-256 of the verdict and the ticks that it is about, as a review accepts it."""
     trials: Trials | None
     """Of a requirement with a probability, where the log could be read."""
+
+    @property
+    def log(self) -> str:
+        """SHA-256 of the log; empty where it was not read whole, or could not be read."""
+        return self.fingerprints.log or ""
+
+    @property
+    def rests_on(self) -> Recorded:
+        """The fingerprints of what the verdict rests on beside the log."""
+        return tuple(getattr(self.fingerprints, kind) for kind in KINDS)
+
+    @property
+    def content(self) -> str:
+        """What tells its log from another one: copies have the same."""
+        return self.log or self.fingerprints.log_summary or self.run
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +96,28 @@ class RunFacts:
     health: Health
     assumptions: tuple[str, ...]
     """Of all its results, each once."""
+    labels: Mapping[str, str] = field(default_factory=dict)
+    """What is known of the run beside its messages: version, scenario and others."""
+
+
+Span = tuple[float, float]
+"""From and to, in seconds from the first tick of a run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretches:
+    """When a requirement was violated, unknown or open in one run: for a picture of many runs.
+
+    A tick lasts until the next one. Where the clock ticks by message, ends of ticks of which the
+    evidence has no time lie evenly between those of which it has one.
+    """
+
+    length: float
+    """Seconds from the first tick to the end of the last one."""
+    violations: tuple[Span, ...]
+    unknown: tuple[Span, ...]
+    open: tuple[float, ...]
+    """The triggers whose demand is open at the end."""
 
 
 class EvidenceSource(Protocol):
@@ -115,11 +160,33 @@ class EvidenceSource(Protocol):
     def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
         """The whole results at some places, in order."""
 
-    def latencies(self, requirement: str) -> Iterator[tuple[int, Sequence[float]]]:
-        """The latencies in seconds of each result of a requirement, with its place, in order."""
+    def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
+        """Latencies in seconds of each result of some requirements, with its place, in order.
 
-    def thresholds(self, requirement: str) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of a requirement, with its place, in order."""
+        A store is read once for all of them.
+        """
+
+    def thresholds(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+        """The thresholds of each result of some requirements, with its place, in order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Briefs:
+    """All results of some evidence in brief, and the evidence, which has the rest."""
+
+    source: EvidenceSource
+    by_requirement: Mapping[str, Sequence[tuple[int, Brief]]]
+    """Those of each requirement that has any, with their places, in order."""
+
+    @classmethod
+    def of(cls, source: EvidenceSource) -> Briefs:
+        """Those of the evidence, read once."""
+        groups: dict[str, list[tuple[int, Brief]]] = {}
+        for placed in source.briefs():
+            groups.setdefault(placed[1].requirement, []).append(placed)
+        return cls(source, groups)
 
 
 def brief(result: Result) -> Brief:
@@ -143,6 +210,7 @@ def brief(result: Result) -> Brief:
         violated_ticks=sum(v.last_tick - v.first_tick + 1 for v in violations),
         first_violation_ns=first.start_ns if first else None,
         first_violation_s=first.start_s if first else None,
+        unknown=len(result.unknown),
         unknown_ticks=sum(last - first + 1 for first, last in result.unknown),
         latency_median_s=median(latencies) if latencies else None,
         latency_max_s=max(latencies, default=None),
@@ -184,4 +252,49 @@ def run_facts(results: Sequence[Result]) -> RunFacts:
         log_summary=first.fingerprints.log_summary or "",
         health=first.health,
         assumptions=tuple(assumptions),
+        labels=first.labels or {},
     )
+
+
+def stretches(result: Result) -> Stretches:
+    """The stretches of a result."""
+    at = _seconds(result)
+    return Stretches(
+        length=at(result.ticks),
+        violations=tuple(
+            (v.start_s, max(v.start_s, at(v.last_tick + 1))) for v in result.violations
+        ),
+        unknown=tuple((at(first), at(last + 1)) for first, last in result.unknown),
+        open=tuple(moment.seconds for moment in result.open),
+    )
+
+
+def _seconds(result: Result) -> Callable[[int], float]:
+    """The time at which a tick begins; behind the last tick, when that one ends."""
+    moments = [*result.triggers, *result.open, *(v.first for v in result.violations)]
+    moments += [v.last for v in result.violations]
+    times = {0: 0.0} | {moment.tick: moment.seconds for moment in moments}
+    times |= {state.tick: state.seconds for state in result.states}
+    times |= {answer.tick: answer.seconds for answer in result.answers}
+    known = sorted(times)
+    rate = times[known[-1]] / known[-1] if known[-1] else _mean_tick(result)
+
+    def at(tick: int) -> float:
+        place = bisect_right(known, tick) - 1
+        before = known[place]
+        if before == tick:
+            return times[tick]
+        if place + 1 == len(known):
+            return round(times[before] + (tick - before) * rate, 9)
+        after = known[place + 1]
+        share = (tick - before) / (after - before)
+        return round(times[before] + (times[after] - times[before]) * share, 9)
+
+    return at
+
+
+def _mean_tick(result: Result) -> float:
+    """Seconds of a tick of which only the run is known."""
+    if result.start_ns is None or result.end_ns is None or not result.ticks:
+        return 0.0
+    return max(0, result.end_ns - result.start_ns) / 1e9 / result.ticks

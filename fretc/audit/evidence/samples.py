@@ -32,10 +32,10 @@ class Series(Record, frozen=True):
 
     def __post_init__(self) -> None:
         """Raise ValueError where it is no series."""
-        _check(self.times_ns, self.values)
+        check_series(self.times_ns, self.values)
 
 
-def _check(times: Sequence[int], values: Sequence[object]) -> None:
+def check_series(times: Sequence[int], values: Sequence[object]) -> None:
     """Raise ValueError where they are no series."""
     if len(times) != len(values):
         raise ValueError("Expected as many times as values")
@@ -51,7 +51,7 @@ class WordSeries(Record, frozen=True):
 
     def __post_init__(self) -> None:
         """Raise ValueError where it is no series."""
-        _check(self.times_ns, self.words)
+        check_series(self.times_ns, self.words)
 
 
 class Surroundings(Record, frozen=True):

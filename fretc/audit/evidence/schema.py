@@ -8,14 +8,15 @@ intervals include both ends.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from itertools import pairwise
 from typing import Annotated, Any, Final, Literal
 
 from compiler.files.records import (
     UNSET,
     Count,
     Distance,
+    Duration,
     Meta,
     Name,
     Number,
@@ -29,16 +30,25 @@ from compiler.files.records import (
     field,
     json_schema,
     plain,
-    replace,
 )
 from fretc.audit.evidence.probabilities import Estimated, Outcomes
-from fretc.audit.evidence.samples import Reading, Surroundings, Window, Word, window
+from fretc.audit.evidence.samples import (
+    Reading,
+    Surroundings,
+    Window,
+    Word,
+    check_series,
+    window,
+)
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.measurements.trials import Trials
 from fretc.audit.measurements.violations import Moment as Moment
 
 SCHEMA: Final = "fretc-evidence-1"
 Verdict = Literal["satisfied", "violated", "inconclusive", "vacuous", "no data"]
+LabelName = Annotated[str, Meta(min_length=1, max_length=50)]
+LabelText = Annotated[str, Meta(min_length=1, max_length=200)]
+"""Texts of a stranger's log: whoever shows one escapes it."""
 StateWord = Literal["idle", "open", "violated", "unknown"]
 Comparison = Literal["true", "false", "crossed"]
 Part = Annotated[
@@ -159,9 +169,9 @@ class Topic(Record, frozen=True):
     count: Count
     first_ns: Annotated[Whole | None, about("null: the topic has no message")]
     last_ns: Whole | None
-    longest_gap_ns: Count | None
+    longest_gap_ns: Duration | None
     median_period_ns: Annotated[
-        Count | None, about("from a message to the next; null: there are less than two")
+        Duration | None, about("from a message to the next; null: there are less than two")
     ]
     out_of_order: Annotated[Count | None, about("messages that are earlier than one before them")]
     equal_stamps: Annotated[Count | None, about("messages with the time of another")]
@@ -251,6 +261,59 @@ class Hashes(Record, frozen=True, kw_only=True):
             "logs that share it are copies of one run"
         ),
     ] = UNSET
+
+
+# The course of a run ---------------------------------------------------------------------------
+
+
+MOST_POINTS, MOST_WORDS = 300, 300
+"""Points of the way, and changes of one signal of words, that evidence keeps of a run."""
+
+
+class Way(Record, frozen=True):
+    """Where the robot was, as lines with few points, for a map; no verdict depends on it."""
+
+    times_ns: Annotated[tuple[Whole, ...], Meta(max_length=MOST_POINTS)]
+    x: Annotated[tuple[Number, ...], Meta(max_length=MOST_POINTS), about("in metres")]
+    y: Annotated[tuple[Number, ...], Meta(max_length=MOST_POINTS), about("in metres")]
+    starts: Annotated[
+        tuple[Count, ...],
+        Meta(max_length=MOST_POINTS),
+        about("where a new line begins: between two lines the place is unknown"),
+    ]
+    error: Annotated[
+        Distance, about("metres: no place that was recorded is farther from the lines")
+    ]
+    lines_left_out: Annotated[Count, about("lines that are not kept, because there are too many")]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError where it is no way."""
+        if not len(self.times_ns) == len(self.x) == len(self.y):
+            raise ValueError("Expected as many times as places")
+        if any(late < early for early, late in pairwise(self.times_ns)):
+            raise ValueError("Expected times in their order")
+        ordered = all(early < late for early, late in pairwise(self.starts))
+        if not ordered or any(start >= len(self.x) for start in self.starts):
+            raise ValueError("Expected the places of points, in their order")
+
+
+class Words(Record, frozen=True):
+    """When a signal of words changed, and to which; null: it is unknown from then on."""
+
+    times_ns: Annotated[tuple[Whole, ...], Meta(max_length=MOST_WORDS)]
+    words: Annotated[tuple[Word | None, ...], Meta(max_length=MOST_WORDS)]
+    changes_left_out: Annotated[Count, about("changes after these, of which there are too many")]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError where it is no series."""
+        check_series(self.times_ns, self.words)
+
+
+class Course(Record, frozen=True):
+    """What the pictures of a run show beside its results; the same in each result of the run."""
+
+    way: Annotated[Way | None, about("null: the bindings declare no map, or nothing is known")]
+    words: Annotated[dict[str, Words], about("each signal of words that the requirements read")]
 
 
 # Results ---------------------------------------------------------------------------------------
@@ -359,6 +422,18 @@ class Result(Record, frozen=True, kw_only=True):
         PhaseVerdicts | UnsetType,
         about("absent: the clock ticks by message, or the log could not be read"),
     ] = UNSET
+    course: Annotated[
+        Course | UnsetType,
+        about("absent: the bindings declare no map, and no signal of words is read"),
+    ] = UNSET
+    labels: Annotated[
+        Annotated[dict[LabelName, LabelText], Meta(min_length=1, max_length=32)] | UnsetType,
+        about(
+            "what is known of the run beside its messages: robot, version, commit, scenario, date "
+            "and others, as `[run.label]` of the bindings or `--label` says; no verdict rests on "
+            "them. Absent: there is none"
+        ),
+    ] = UNSET
 
     @property
     def hashes(self) -> Mapping[str, str]:
@@ -438,39 +513,6 @@ class Document(Record, frozen=True):
     selection: Annotated[
         Selection | UnsetType, about("absent: all logs that were named were audited")
     ] = UNSET
-
-
-@dataclass(frozen=True, slots=True)
-class Evidence:
-    """A file of evidence, with its name and its SHA-256."""
-
-    file: str
-    sha256: str
-    document: Document
-
-    @property
-    def fretc(self) -> str:
-        """Version of the tool that audited."""
-        return self.document.fretc
-
-    @property
-    def results(self) -> tuple[Result, ...]:
-        """Each of a run and a requirement."""
-        return self.document.results
-
-    @property
-    def probabilities(self) -> tuple[Estimated, ...]:
-        """What all runs say of each requirement with a probability."""
-        return self.document.probabilities or ()
-
-    @property
-    def selection(self) -> Selection | None:
-        """Which of the named logs were audited; None: all."""
-        return self.document.selection or None
-
-    def with_results(self, results: Sequence[Result]) -> Evidence:
-        """The same with other results."""
-        return Evidence(self.file, self.sha256, replace(self.document, results=tuple(results)))
 
 
 def schema() -> dict[str, Any]:

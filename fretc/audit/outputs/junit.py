@@ -7,7 +7,7 @@ GitHub, Workflow commands for GitHub Actions.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from xml.etree import ElementTree
 
 from fretc.audit.evidence import verdicts
@@ -26,7 +26,7 @@ _GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
 
 
 def junit(
-    results: Sequence[Result],
+    results: Iterable[Result],
     estimates: Sequence[Estimated] = (),
     requirements: Sequence[Requirement] = (),
 ) -> str:
@@ -108,7 +108,7 @@ def valid(text: str) -> str:
 
 
 def github(
-    results: Sequence[Result],
+    results: Iterable[Result],
     requirements: Sequence[Requirement],
     estimates: Sequence[Estimated] = (),
 ) -> str:

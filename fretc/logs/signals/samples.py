@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf
 from typing import Any, TypeVar
@@ -157,3 +157,9 @@ class Recording:
     findings: tuple[Diagnostic, ...]
     intact: bool
     checked: Checked = EVERYTHING
+    described: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """What the metadata of the log says, as far as labels ask for it: `build.version` → values."""
+    derived: dict[tuple[object, ...], Any] = field(
+        default_factory=dict, init=False, compare=False, repr=False
+    )
+    """What several readers compute of it, so that each of it is computed once."""

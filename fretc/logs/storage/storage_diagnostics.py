@@ -179,6 +179,17 @@ def is_a_directory(place: Span) -> Diagnostic:
     return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the logs in it")
 
 
+def grown(size: int, place: Span) -> Diagnostic:
+    """F431: what was read is what there was when it was opened."""
+    return Diagnostic(
+        Code.GROWN,
+        f"it grew while it was read: what is judged are the first {size:,} bytes",
+        place,
+        "audit it again when its recording, or its copy, is complete",
+        severity=Severity.WARNING,
+    )
+
+
 def not_a_file(place: Span) -> Diagnostic:
     """The path names a device, a pipe or the like."""
     return Diagnostic(

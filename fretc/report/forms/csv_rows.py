@@ -14,7 +14,7 @@ import re
 from collections.abc import Iterator
 
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT
-from fretc.report.model.views import Mark, Report, RequirementView, ResultView
+from fretc.report.model.views import Mark, Report, RequirementView, ResultRow
 
 HEAD = (
     "hazards", "requirement", "title", "status", "coverage", "verdict", "currency",
@@ -62,8 +62,8 @@ def _rows(
         yield (*head, "", "", "", "", "", "; ".join(view.reasons), *(None,) * 6)
 
 
-def _run(result: ResultView, hashes: dict[str, str]) -> tuple[Cell, ...]:
-    late = result.latency
+def _run(result: ResultRow, hashes: dict[str, str]) -> tuple[Cell, ...]:
+    median = result.latency_median_s
     return (
         result.run_file,
         hashes.get(result.run, ""),
@@ -72,11 +72,11 @@ def _run(result: ResultView, hashes: dict[str, str]) -> tuple[Cell, ...]:
         "; ".join(result.suspicions),
         result.reason,
         result.triggers,
-        late.answered if late else 0,
-        result.open.total,
+        result.answers,
+        result.open,
         result.violations_total,
-        late.median_s if late else None,
-        late.longest_s if late else None,
+        None if median is None else round(median, 9),
+        result.latency_max_s,
     )
 
 

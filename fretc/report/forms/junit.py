@@ -16,7 +16,7 @@ from xml.etree import ElementTree
 from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.audit.outputs.junit import as_text, counted, valid
-from fretc.report.model.views import Report, RequirementView, ResultView
+from fretc.report.model.views import Report, RequirementView, ResultRow
 from fretc.report.sections.proofs import is_refuted, refutations
 
 
@@ -60,7 +60,7 @@ def _by_run(views: Sequence[RequirementView]) -> dict[str, list[_Case]]:
     return cases
 
 
-def _of_run(view: RequirementView, result: ResultView) -> _Case:
+def _of_run(view: RequirementView, result: ResultRow) -> _Case:
     kind = _kind_of_run(view, result)
     if not kind:
         return _Case(view.name, "")
@@ -69,7 +69,7 @@ def _of_run(view: RequirementView, result: ResultView) -> _Case:
     return _Case(view.name, kind, f"{waived}{result.mark.text}: {why}", view.sentence)
 
 
-def _kind_of_run(view: RequirementView, result: ResultView) -> str:
+def _kind_of_run(view: RequirementView, result: ResultRow) -> str:
     """A waiver covers what a run shows, and who is retired claims nothing."""
     kind = verdicts.junit(result.mark.word, suspect=result.mark.suspect)
     return "skipped" if kind and (_is_waived(view) or view.mark.word == RETIRED) else kind

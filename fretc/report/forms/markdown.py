@@ -10,19 +10,22 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from itertools import chain
 from typing import TypeVar
 
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED, SUSPECT
 from fretc.report.model import phrases
+from fretc.report.model.changes import Change, follows
 from fretc.report.model.views import (
-    Change,
     Mark,
     Report,
     RequirementView,
+    ResultRow,
     ResultView,
     worst_first,
 )
+from fretc.report.sections.details import Details
 from fretc.report.sections.proofs import is_refuted, refutations
 from fretc.report.sections.signatures import BROKEN as DOES_NOT_VERIFY
 from fretish.diagnostics import signs
@@ -35,21 +38,22 @@ _LONGEST = 240
 T = TypeVar("T")
 
 
-def markdown(report: Report) -> str:
+def markdown(report: Report, details: Details) -> str:
     """The whole comment."""
-    return "".join(f"{line}\n" for line in _lines(report))
+    return "".join(f"{line}\n" for line in _lines(report, details))
 
 
-def _lines(report: Report) -> Iterator[str]:
+def _lines(report: Report, details: Details) -> Iterator[str]:
     claimed = [view for view in worst_first(report.requirements) if view.mark.word != RETIRED]
     violated = [view for view in claimed if _is_violated(view)]
     not_shown = [view for view in claimed if not _is_violated(view) and not view.mark.shows]
+    claim = partial(_claim, details)
     blocks = (
         [f"## {report.overall.mark.glyph} {_plain(report.overall.headline)}"],
         _figures(report, len(claimed), len(violated), len(not_shown)),
         [" ".join(_plain(sentence) for sentence in report.overall.sentences)],
-        _list("Violated", violated, _claim, _VIOLATED),
-        _list("Not shown", not_shown, _claim, _NOT_SHOWN),
+        _list("Violated", violated, claim, _VIOLATED),
+        _list("Not shown", not_shown, claim, _NOT_SHOWN),
         _list("Changed since the review", _changes(report), str, _CHANGED),
         _accepted(report),
         _signatures(report),
@@ -83,14 +87,14 @@ def _list(heading: str, things: Sequence[T], line: Callable[[T], str], most: int
 # What is violated, and what is not shown -------------------------------------------------------
 
 
-def _claim(view: RequirementView) -> str:
-    """Verdict, title, run and cause: `violated **No contact (R14)** in runs/06.mcap: ...`."""
-    where, why = _worst(view)
+def _claim(details: Details, view: RequirementView) -> str:
+    """Verdict, title, run and cause: `✘ violated **No contact (R14)** in runs/06.mcap: ...`."""
+    where, why = _worst(details, view)
     waived = f" ({_plain(view.waiver.reason)})" if view.waiver else ""
     return f"{_verdict(view.mark)} **{_plain(view.name)}**{waived}{where}: {_plain(why)}"
 
 
-def _worst(view: RequirementView) -> tuple[str, str]:
+def _worst(details: Details, view: RequirementView) -> tuple[str, str]:
     """The worst run, with how many more there are, and its cause; else what no single run says."""
     open_ones = [result for result in view.results if not result.mark.shows]
     if view.mark.word not in BROKEN and is_refuted(view):
@@ -102,16 +106,24 @@ def _worst(view: RequirementView) -> tuple[str, str]:
     first = min(open_ones, key=lambda result: result.mark.severity)
     runs = {result.run for result in open_ones if result.mark.word == first.mark.word}
     more = f" and {phrases.times(len(runs) - 1, 'more run')}" if len(runs) > 1 else ""
-    return f" in {_plain(first.run_file)}{more}", _cause(first)
+    return f" in {_plain(first.run_file)}{more}", _cause(details, first)
 
 
-def _cause(result: ResultView) -> str:
-    """The reason of the verdict, and what the signals were at the first broken tick."""
+def _cause(details: Details, row: ResultRow) -> str:
+    """The reason of the verdict, and why: in words, or what the signals were."""
+    (result,) = (view for _, view in details.results([row]))
+    because = f" ({'; '.join(row.suspicions)})" if row.suspicions else ""
+    return f"{row.reason}{_at_first(result)}{because}"
+
+
+def _at_first(result: ResultView) -> str:
+    """The first broken tick."""
     first = next(iter(result.violations), None)
-    values = [f"{name} {value}" for name, value in first.values[:_OTHERS]] if first else []
-    at = f"; at {first.start} {phrases.joined(values)}" if first and values else ""
-    because = f" ({'; '.join(result.suspicions)})" if result.suspicions else ""
-    return f"{result.reason}{at}{because}"
+    if first is None:
+        return ""
+    values = [f"{name} {value}" for name, value in first.values]
+    why = [*first.causes[:_OTHERS]] or values[:_OTHERS]
+    return f"; at {first.start} {phrases.joined(why)}" if why else ""
 
 
 def _verdict(mark: Mark) -> str:
@@ -123,24 +135,30 @@ def _verdict(mark: Mark) -> str:
 
 
 def _changes(report: Report) -> list[str]:
-    """What changed, and which verdicts with it: where something is violated now comes first."""
+    """What has become of verdicts first, where something is violated now; then each change."""
     names = {view.id: view.name for view in report.requirements}
-    ordered = sorted(report.changes, key=lambda change: not _is_red_now(change))
-    return [
-        _change(change, names.get(change.requirement, change.requirement)) for change in ordered
+    followed = sorted(
+        ((change, follows(change)) for change in report.changes if follows(change)),
+        key=lambda pair: not _is_red_now(pair[0]),
+    )
+    consequences = [
+        _change(names.get(one.requirement, one.requirement), texts) for one, texts in followed
     ]
+    changes = [
+        _change(_some([names.get(id, id) for id, _ in group.requirements]), [group.change.text])
+        for group in report.change_groups
+    ]
+    return [*consequences, *changes]
 
 
 def _is_red_now(change: Change) -> bool:
     return any(now.startswith(BROKEN) for _, _, now in change.verdicts)
 
 
-def _change(change: Change, name: str) -> str:
-    flips = [f"{now} in {run}, it was {then}" for run, then, now in change.verdicts]
-    parts = [*change.lines[:_OTHERS], *flips[:1]]
-    left = len(change.lines) + len(flips) - len(parts)
+def _change(name: str, texts: Sequence[str]) -> str:
+    left = len(texts) - _OTHERS
     more = f" (and {left} more)" if left > 0 else ""
-    return f"**{_plain(name)}**: {_plain('; '.join(parts))}{more}"
+    return f"**{_plain(name)}**: {_plain('; '.join(texts[:_OTHERS]))}{more}"
 
 
 def _accepted(report: Report) -> Iterator[str]:

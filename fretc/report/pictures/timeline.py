@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 from math import floor, log10
 from types import MappingProxyType
 
+from compiler.formalization.formalized import Formalized
 from fretc.audit.evidence.schema import Moment, Result, Violation
+from fretc.report.model.causes import causes, falsity, in_words
 from fretc.report.model.first_tick import reading
 from fretc.report.model.phrases import duration, joined, seconds, times, value
 from fretc.report.model.pictures import Flag, Lane, Panel, SpanMark, Timeline, WordLane
@@ -30,7 +32,10 @@ class Stretch:
 
 
 def timelines(
-    result: Result, tick: float, ages: Mapping[str, float] = MappingProxyType({})
+    result: Result,
+    tick: float,
+    ages: Mapping[str, float] = MappingProxyType({}),
+    rule: Formalized | None = None,
 ) -> tuple[Timeline, ...]:
     """A timeline for each of the first violations; without violations, one for the whole run.
 
@@ -38,6 +43,7 @@ def timelines(
         result: one run, one requirement.
         tick: seconds of a tick; an average where the clock ticks by message.
         ages: age limit of each signal in seconds; a signal without one has no limit.
+        rule: that the result was judged by; None: it is not known.
     """
     if not result.ticks:
         return ()
@@ -45,20 +51,27 @@ def timelines(
     if not result.violations:
         return (events.timeline("The whole run", Stretch(0.0, result.ticks * tick)),)
     return tuple(
-        _explained(events.timeline(f"Violation {number}", stretch), violation, result, tick, ages)
+        _explained(
+            events.timeline(f"Violation {number}", stretch), violation, result, tick, ages, rule
+        )
         for number, violation in enumerate(result.violations[:DRAWN], 1)
         for stretch in [_around(violation, tick)]
     )
 
 
 def _explained(
-    plain: Timeline, violation: Violation, result: Result, tick: float, ages: Mapping[str, float]
+    plain: Timeline,
+    violation: Violation,
+    result: Result,
+    tick: float,
+    ages: Mapping[str, float],
+    rule: Formalized | None,
 ) -> Timeline:
     """The timeline with signals, trigger, deadline, the violating stretch, and the cause."""
     drawings = panels(violation, result, ages, plain.start, plain.end)
     lanes = word_lanes(violation, ages, plain.start, plain.end)
     broken = _violated(violation, tick)
-    why = cause(violation, result, ages)
+    why = cause(violation, result, ages, rule)
     sentences = [
         why,
         plain.text,
@@ -83,8 +96,25 @@ def _flags(violation: Violation) -> Iterable[Flag]:
             yield Flag(kind, round(moment.seconds, 6))
 
 
-def cause(violation: Violation, result: Result, ages: Mapping[str, float]) -> str:
-    """The cause of a violation: the response that did not come, and the signals then."""
+def cause(
+    violation: Violation, result: Result, ages: Mapping[str, float], rule: Formalized | None = None
+) -> str:
+    """The cause of a violation: the response that did not come, and why it did not.
+
+    Where the evidence leaves that open, the signals then.
+    """
+    what = falsity(violation, rule) or _missing(violation)
+    at = seconds(violation.first.seconds)
+    found = causes(violation, result, rule)
+    if found:
+        return f"{what}: at {at} {in_words(found)}."
+    values = [
+        f"{name} was {reading(name, violation, result, ages)}" for name in sorted(violation.values)
+    ]
+    return f"{what}; at {at} {joined(values)}." if values else f"{what}."
+
+
+def _missing(violation: Violation) -> str:
     start, end = violation.first.seconds, violation.last.seconds
     when = f"at {seconds(start)}" if start == end else f"from {seconds(start)} to {seconds(end)}"
     missing = violation.missing or "the response"
@@ -94,10 +124,7 @@ def cause(violation: Violation, result: Result, ages: Mapping[str, float]) -> st
         what = f"`{missing}` did not hold {when}"
     if violation.trigger is not None:
         what += f", triggered at {seconds(violation.trigger.seconds)}"
-    values = [
-        f"{name} was {reading(name, violation, result, ages)}" for name in sorted(violation.values)
-    ]
-    return f"{what}; at {seconds(start)} {joined(values)}." if values else f"{what}."
+    return what
 
 
 def _panel_in_words(panel: Panel) -> str:

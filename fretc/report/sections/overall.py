@@ -33,6 +33,7 @@ def overall(
     reservations: Sequence[str],
     withdrawn: Sequence[WithdrawnRequirement],
     signatures: Signatures,
+    changed: Sequence[str] = (),
 ) -> Overall:
     """Mark, headline and sentences.
 
@@ -44,6 +45,7 @@ def overall(
         reservations: about requirements that are shown.
         withdrawn: requirements that were reviewed and are claimed no more.
         signatures: all of them.
+        changed: what has changed since the review, in sentences.
     """
     active = [one for one in assessments if one.verdict != RETIRED]
     active_views = [view for view in sections if view.status != RETIRED]
@@ -59,6 +61,7 @@ def overall(
             None,
             (
                 *((stale,) if red else ()),
+                *changed,
                 *_held(active, good, len(runs)),
                 *(f"{one.text}." for one in withdrawn),
                 _refuted(refuted),
@@ -167,8 +170,8 @@ def _forged(signatures: Signatures) -> str:
 def _unplanned(missing: Sequence[Planned], names: Mapping[str, str]) -> str:
     if not missing:
         return ""
-    names = phrases.some([f"{plan.method} for {names[plan.requirement]}" for plan in missing])
-    return f"No result is known of {phrases.times(len(missing), 'planned method')}: {names}."
+    methods = phrases.some([f"{plan.method} for {names[plan.requirement]}" for plan in missing])
+    return f"No result is known of {phrases.times(len(missing), 'planned method')}: {methods}."
 
 
 def _uncovered(project: Project, assessments: Sequence[Assessment]) -> str:

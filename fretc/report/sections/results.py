@@ -18,11 +18,13 @@ from fretc.audit.evidence.verdicts import (
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.audits import ProbabilityAudit, SingleAudit
+from fretc.report.model.causes import causes
 from fretc.report.model.first_tick import reading
 from fretc.report.model.suspicions import since_review
 from fretc.report.model.views import (
     Latency,
     Listing,
+    ResultRow,
     ResultView,
     ThresholdView,
     ViolationView,
@@ -45,13 +47,34 @@ _NAMED = 10
 """The most runs among the reasons why a requirement is not shown."""
 
 
-def result_views(
-    assessment: Assessment, runs: dict[RunKey, Run], declared: Declarations | None
-) -> tuple[ResultView, ...]:
-    """The view of each audit of a requirement, in the order of the runs."""
+def result_rows(assessment: Assessment, runs: Mapping[RunKey, Run]) -> tuple[ResultRow, ...]:
+    """A row for each audit of a requirement, in the order of the runs."""
     return tuple(
-        _view(audit, assessment, number, runs[run_key(audit.result)], declared)
+        _row(audit, assessment, number, runs[run_key(audit.result)])
         for number, audit in enumerate(assessment.reviewed_audits, 1)
+    )
+
+
+def _row(audit: SingleAudit, assessment: Assessment, number: int, run: Run) -> ResultRow:
+    result = audit.result
+    return ResultRow(
+        place=audit.place,
+        number=number,
+        requirement=assessment.anchor,
+        anchor=result_anchor(assessment, number),
+        run=run.anchor,
+        run_label=run.label,
+        run_file=phrases.place(result.run),
+        mark=audit.mark,
+        suspicions=audit.suspicions,
+        reason=result.reason,
+        triggers=result.triggers,
+        answers=result.answers,
+        at_once=result.at_once,
+        open=result.open,
+        violations_total=result.violations,
+        latency_median_s=result.latency_median_s,
+        latency_max_s=result.latency_max_s,
     )
 
 
@@ -60,30 +83,38 @@ def result_anchor(assessment: Assessment, number: int) -> str:
     return f"{assessment.anchor.replace('req-', 'result-', 1)}.{number}"
 
 
-def _view(
-    audit: SingleAudit, assessment: Assessment, number: int, run: Run, declared: Declarations | None
+def result_view(
+    result: Result, row: ResultRow, assessment: Assessment, declared: Declarations | None
 ) -> ResultView:
-    result = audit.result
+    """The view of a result.
+
+    Args:
+        result: in declared units.
+        row: of the same result.
+        assessment: of its requirement.
+        declared: the bindings.
+    """
     # A stale result was judged by other bindings: the clock and the ages of now are not its own.
-    bindings = None if assessment.audits[number - 1].is_stale else declared
+    is_stale = assessment.audits[row.number - 1].is_stale
+    bindings, rule = (None, None) if is_stale else (declared, assessment.rule)
     tick, ages = _tick(result, bindings.clock if bindings else None), _ages(bindings)
     return ResultView(
-        anchor=result_anchor(assessment, number),
-        run=run.anchor,
-        run_label=run.label,
-        run_file=phrases.place(result.run),
-        mark=audit.mark,
-        suspicions=audit.suspicions,
-        reason=result.reason,
-        triggers=len(result.triggers),
+        anchor=row.anchor,
+        run=row.run,
+        run_label=row.run_label,
+        run_file=row.run_file,
+        mark=row.mark,
+        suspicions=row.suspicions,
+        reason=row.reason,
+        triggers=row.triggers,
         exercised=_exercised(result),
         latency=_latency(result, assessment.rule),
         thresholds=tuple(map(_threshold, result.thresholds)),
-        violations=tuple(_violation(v, result, ages) for v in result.violations[:LISTED]),
+        violations=tuple(_violation(v, result, ages, rule) for v in result.violations[:LISTED]),
         violations_total=len(result.violations),
         open=_open(result),
         unknown=_unknown(result),
-        timelines=timelines(result, tick, ages),
+        timelines=timelines(result, tick, ages, rule),
     )
 
 
@@ -145,11 +176,16 @@ def _latency(result: Result, rule: Formalized | None) -> Latency | None:
         median=phrases.duration(median(result.latencies), bounds),
         longest=f"{phrases.duration(longest, bounds)}{after}",
         longest_s=longest,
-        is_bounded=rule is None or not syntax.is_eventual(rule.sentence.timing),
+        is_bounded=is_bounded(rule),
         bound=_bound(rule),
         waits=_waits(result),
         median_s=round(median(result.latencies), 9),
     )
+
+
+def is_bounded(rule: Formalized | None) -> bool:
+    """Whether the sentence allows an answer only for some time, as far as is known."""
+    return rule is None or not syntax.is_eventual(rule.sentence.timing)
 
 
 def _bound(rule: Formalized | None) -> str:
@@ -189,7 +225,9 @@ def _wait(starts: Sequence[float], end: float) -> str:
 # Stretches -------------------------------------------------------------------------------------
 
 
-def _violation(violation: Violation, result: Result, ages: Mapping[str, float]) -> ViolationView:
+def _violation(
+    violation: Violation, result: Result, ages: Mapping[str, float], rule: Formalized | None
+) -> ViolationView:
     first, last, trigger = violation.first, violation.last, violation.trigger
     ticks = f"{first.tick}" if first.tick == last.tick else f"{first.tick} to {last.tick}"
     return ViolationView(
@@ -202,6 +240,7 @@ def _violation(violation: Violation, result: Result, ages: Mapping[str, float]) 
         values=tuple(
             (name, reading(name, violation, result, ages)) for name in sorted(violation.values)
         ),
+        causes=tuple(dict.fromkeys(each.text for each in causes(violation, result, rule))),
     )
 
 
@@ -266,22 +305,26 @@ def _unknown(result: Result) -> Listing:
 # Reasons ---------------------------------------------------------------------------------------
 
 
-def reasons(assessment: Assessment, runs: dict[RunKey, Run], *, audited: bool) -> tuple[str, ...]:
+def reasons(
+    assessment: Assessment, runs: Mapping[RunKey, Run], *, audited: bool
+) -> tuple[str, ...]:
     """Why a requirement is not shown, the worst first; empty where it is, or is retired."""
     if assessment.is_shown or assessment.unwaived == RETIRED:
         return ()
     lines = [(severity(UNFORMALIZED), text) for text in _unformalized(assessment)]
+    left = len(lines) - _NAMED
     if assessment.probability is not None:
         probability = assessment.probability
         lines.append((probability.mark.severity, _probability_reason(probability)))
     else:
         audits = [audit for audit in assessment.audits if not audit.mark.shows]
-        lines += [(audit.mark.severity, _run_reason(audit, runs)) for audit in audits]
+        left += len(audits)
+        worst = sorted(audits, key=lambda audit: audit.mark.severity)[:_NAMED]
+        lines += [(audit.mark.severity, _run_reason(audit, runs)) for audit in worst]
         if not assessment.audits and assessment.rule is not None:
             why = "the audit did not cover it" if audited else "no run has been audited"
             lines.append((severity(NOT_EXERCISED), why))
     texts = [text for _, text in sorted(lines, key=lambda line: line[0])]
-    left = len(texts) - _NAMED
     few = (*texts[:_NAMED], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(texts)
     return (*few, *since_review(assessment.standing))
 
@@ -296,7 +339,7 @@ def _probability_reason(probability: ProbabilityAudit) -> str:
     return f"over all runs: {estimation.answer}, {estimation.reason}{why}"
 
 
-def _run_reason(audit: SingleAudit, runs: dict[RunKey, Run]) -> str:
+def _run_reason(audit: SingleAudit, runs: Mapping[RunKey, Run]) -> str:
     result = audit.result
     label = runs[run_key(result)].label
     return f"{label}: {audit.verdict}, {result.reason}{_because(audit.suspicions)}"

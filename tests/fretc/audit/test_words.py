@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.audit.evidence.reader import read
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.reader import Evidence, read
 from tests.command import Fretc
 from tests.command import write as put
 from tests.fretc.logs.logs import MS, S, Sent, payload, write
@@ -65,7 +64,7 @@ def test_a_violation_shows_the_words_that_caused_it(fretc: Fretc) -> None:
     assert {*violation.window.samples} == {"low"}
     assert fretc("report", "--evidence", "e.json", "--html", "r.html").status == 0
     page = Path("r.html").read_text("utf-8")
-    assert "mode was &#34;drive&#34;" in page
+    assert "<code>mode</code> was &#34;drive&#34;, <code>docking</code> is required" in page
     assert "mode is &#34;drive&#34;." in page
     assert "<title>drive</title>" in page
     junit = fretc("audit", "log.mcap", "--evidence", "f.json", "--format", "junit").out

@@ -17,6 +17,7 @@ from fretc.commands.audit_table import MOST_NAMES, MOST_REQUIREMENTS, MOST_RUNS,
 from fretc.terminal.screen import Screen, width
 from tests.command import Fretc, untimed, write
 from tests.fretc.audit.outputs.test_totals import audits
+from tests.fretc.audit.outputs.test_totals import marks as marks_of
 from tests.fretc.audit.results import result
 from tests.fretc.logs import logs
 
@@ -25,7 +26,7 @@ ROOT = Path(__file__).parents[3]
 
 def shown(results: list[Result], columns: int = 80, encoding: str = "utf-8") -> list[str]:
     screen = Screen(columns, encoding)
-    lines = table(results, (), (), screen)
+    lines = table(marks_of(results), screen)
     return [screen.signs("".join(text for text, _ in line)) for line in lines]
 
 

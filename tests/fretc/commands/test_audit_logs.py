@@ -2,12 +2,16 @@
 
 import json
 import os
+import shutil
 import stat
 import sys
 from pathlib import Path
 
 import pytest
 
+from fretc.audit.evidence.writer import text
+from fretc.audit.store.anywhere import read
+from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
 from tests.fretc.logs import logs
 from tests.json_schemas import validate
@@ -35,8 +39,11 @@ def robot(fretc: Fretc) -> Fretc:
     return fretc
 
 
-def evidence() -> dict[str, object]:
-    content: dict[str, object] = json.loads(Path("build/evidence.json").read_text())
+def evidence(path: str = "build/evidence") -> dict[str, object]:
+    """That of a store, if no file is named."""
+    found = read(path)
+    assert not isinstance(found, Diagnostic), found.message
+    content: dict[str, object] = json.loads(text(found.document))
     validate("evidence.schema.json", content)
     return content
 
@@ -51,29 +58,32 @@ def test_since_takes_the_later_logs_and_evidence_says_so(robot: Fretc) -> None:
     assert runs() == ["runs/2.mcap"]
     since = "2026-11-20T00:00:00+00:00"
     assert f"1 of 3 logs: 2 are from before {since}" in run.err
-    assert evidence()["selection"] == {
+    selection = {
         "named": 3, "since": since, "older": 2, "sample_of": None, "seed": None, "audited": 1
     }  # fmt: skip
+    assert evidence()["selection"] == selection
+    robot("audit", "runs", "--since", "2026-11-20", "-o", "e.json")
+    assert evidence("e.json")["selection"] == selection
     assert robot("audit", "runs").status == 1
     assert "selection" not in evidence()
 
 
 def test_where_no_log_is_left_nothing_is_shown_and_evidence_stays(robot: Fretc) -> None:
     robot("audit", "runs")
-    before = Path("build/evidence.json").read_bytes()
+    before = Path("build/evidence/manifest.json").read_bytes()
     run = robot("audit", "runs", "--since", "2030-01-01")
     assert run.status == 3
     assert "nothing is audited" in run.err
-    assert Path("build/evidence.json").read_bytes() == before
+    assert Path("build/evidence/manifest.json").read_bytes() == before
 
 
 def test_a_sample_is_reported_as_one(robot: Fretc) -> None:
     run = robot("audit", "runs", "--sample", "2", "--seed", "5")
     assert "2 of 3 logs: a sample of 3 by chance, seed 5" in run.err
     assert len(runs()) == 2
-    first = Path("build/evidence.json").read_bytes()
+    first = evidence()
     robot("audit", "runs", "--sample", "2", "--seed", "5")
-    assert Path("build/evidence.json").read_bytes() == first
+    assert evidence() == first
     assert robot("report", "--json", "r.json").status == 0
     claims = json.loads(Path("r.json").read_text())["claims"]
     assert claims.endswith(
@@ -86,7 +96,22 @@ def test_a_log_for_which_there_is_no_time_is_no_data(robot: Fretc) -> None:
     assert run.status == 3
     assert run.err.count("F440 warning: the audit of `runs/") == 2
     assert run.out.splitlines()[-1].count("2 no data") == 1
-    assert not Path("build/evidence.json").exists()  # no log was read: that of before would stay
+    assert not Path("build/evidence").exists()  # no log was read: that of before would stay
+
+
+def test_a_log_for_which_there_was_no_time_is_audited_when_there_is(robot: Fretc) -> None:
+    robot("audit", "runs/0.mcap", "-o", "build/evidence")
+    run = robot("audit", "runs", "--log-time", "1ns")
+    assert run.status == 3
+    assert "1 of 3 logs are unchanged" in run.err
+    assert [one["verdict"] for one in evidence()["results"]] == [  # type: ignore[attr-defined]
+        "satisfied", "no data", "no data"
+    ]  # fmt: skip
+    run = robot("audit", "runs")
+    assert run.status == 1
+    assert "1 of 3 logs are unchanged" in run.err
+    assert "F440" not in run.err
+    assert robot("audit", "runs").err.startswith("3 of 3 logs are unchanged")
 
 
 def test_what_the_time_of_an_audit_does_not_reach_is_no_data(robot: Fretc) -> None:
@@ -99,14 +124,13 @@ def test_what_the_time_of_an_audit_does_not_reach_is_no_data(robot: Fretc) -> No
     assert codes == {"F441"}
 
 
-def test_a_violation_is_one_whatever_there_was_no_time_for(
-    robot: Fretc, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_limits_that_are_not_reached_change_nothing(robot: Fretc) -> None:
     whole = robot("audit", "runs", "--time", "1h", "--log-time", "1h")
     assert whole.status == 1
-    timed = Path("build/evidence.json").read_bytes()
+    timed = evidence()
+    shutil.rmtree("build")
     robot("audit", "runs")
-    assert Path("build/evidence.json").read_bytes() == timed
+    assert evidence() == timed
 
 
 @pytest.mark.parametrize(
@@ -155,8 +179,18 @@ def test_a_command_gets_the_summary_and_no_shell_sees_it(robot: Fretc) -> None:
         "runs": 3,
         "requirements": 1,
         "counts": {"violated": 1, "satisfied": 2},
-        "evidence": "build/evidence.json",
+        "evidence": "build/evidence",
     }
+
+
+def test_the_store_is_free_when_the_command_reads_it(robot: Fretc) -> None:
+    lock = hook(
+        "lock",
+        "import fcntl, os\n"
+        "folder = os.open('build/evidence', os.O_RDONLY)\n"
+        "fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)",
+    )
+    assert "notified by" in robot("audit", "runs", "--notify", lock).err
 
 
 @pytest.mark.parametrize(
@@ -173,7 +207,8 @@ def test_a_command_that_fails_is_told_and_changes_nothing(
     hook("fails", "sys.stdin.read(); print('noise'); sys.exit(7)")
     hook("deaf", "sys.exit(3)")
     plain = robot("audit", "runs", "--format", "json")
+    shutil.rmtree("build")
     run = robot("audit", "runs", "--format", "json", "--notify", command)
     assert (run.status, run.out) == (plain.status, plain.out)
     assert f"F922 warning: `{command}` {how}: the summary did not arrive" in run.err
-    assert os.path.exists("build/evidence.json")
+    assert os.path.exists("build/evidence/manifest.json")

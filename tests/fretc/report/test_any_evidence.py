@@ -187,15 +187,16 @@ def is_suspect(one: Mapping[str, Any], known: Project) -> bool:
 
 def forms(build: ReportBuild, results: Sequence[dict[str, Any]], known: Project) -> dict[str, Any]:
     assert build.report is not None, build.diagnostics[0].message
+    assert build.details is not None
     whole = build.report
-    log = json.loads(sarif(whole, build.results, known.rules, []))["runs"][0]["results"]
+    log = json.loads(sarif(whole, build.details, known.rules, []))["runs"][0]["results"]
     return {
         "marks": {v.id: (v.mark.word, v.mark.suspect) for v in whole.requirements},
         "status": _status(whole),
         "junit": outcomes_of(junit(whole), whole.project),
         "sarif": [(one["ruleId"], one["level"]) for one in log],
         "csv": list(csv.DictReader(io.StringIO(csv_text(whole)))),
-        "markdown": markdown(whole),
+        "markdown": markdown(whole, build.details),
         "gsn": yaml.safe_load(gsn(whole)),
     }
 

@@ -498,6 +498,7 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
             ["clearance", "unknown: 0.0318 m is 400 ms old, and counts for 300 ms"],
             ["vx", "unknown"],
         ],
+        "causes": [],
     }
     assert (view["violations"][1]["ticks"], view["violations"][1]["trigger"]) == ("60", "none")
     assert view["open"] == {

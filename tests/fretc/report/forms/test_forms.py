@@ -19,7 +19,9 @@ from hypothesis import strategies as st
 
 from fretc.report.forms.csv_rows import _harmless
 from fretc.report.forms.markdown import markdown
-from fretc.report.model.views import Change, Listing, Remark, Report, verdict_mark
+from fretc.report.model.changes import Change
+from fretc.report.model.views import Remark, Report, verdict_mark
+from fretc.report.sections.details import Details
 from tests.command import Fretc, write
 from tests.fretc.report import junit_schema
 from tests.fretc.report.cases import (
@@ -167,16 +169,20 @@ MARKS = ("violated", "refuted", "no data", "inconclusive", "vacuous", "satisfied
     st.sampled_from(["", "x" * 10_000]),
 )
 def test_markdown_is_one_screen_and_what_it_leaves_out_is_counted_and_never_worse(
-    plain_report: Report, marks: list[tuple[str, bool]], changes: int, accepted: int, long: str
+    plain: tuple[Report, Details],
+    marks: list[tuple[str, bool]],
+    changes: int,
+    accepted: int,
+    long: str,
 ) -> None:
+    plain_report, details = plain
     (view,) = plain_report.requirements
     views = [
         replace(view, id=f"R{n}", title=f"T{n}{long}", mark=verdict_mark(word, suspect=suspect))
         for n, (word, suspect) in enumerate(marks)
     ]
-    change = Change(
-        "R0", "", "", (long,) * 9, Listing((), 0), (("a.mcap", "satisfied", "violated"),)
-    )
+    flip = (("a.mcap", "satisfied", "violated"),)
+    change = Change("R0", "", "", "", "", (), (long,) * 9, (long,), (), "", flip)
     remark = Remark("F203", "warning", long, accepted=long or "meant")
     text = markdown(
         replace(
@@ -184,7 +190,8 @@ def test_markdown_is_one_screen_and_what_it_leaves_out_is_counted_and_never_wors
             requirements=tuple(views),
             changes=(change,) * changes,
             remarks=(remark,) * accepted,
-        )
+        ),
+        details,
     )
     lines = text.splitlines()
     assert len(lines) <= 40
@@ -215,12 +222,13 @@ def test_markdown_is_one_screen_and_what_it_leaves_out_is_counted_and_never_wors
 
 
 @pytest.fixture(scope="module")
-def plain_report(tmp_path_factory: pytest.TempPathFactory) -> Report:
+def plain(tmp_path_factory: pytest.TempPathFactory) -> tuple[Report, Details]:
     folder = tmp_path_factory.mktemp("plain")
     known = project(folder)
     build = report_of(known, folder, result(known, "violated", violations=[violation(14, 20, 11)]))
     assert build.report is not None
-    return build.report
+    assert build.details is not None
+    return build.report, build.details
 
 
 def cases(suite: ElementTree.Element) -> list[tuple[str, list[str]]]:

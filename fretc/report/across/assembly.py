@@ -1,0 +1,164 @@
+"""The pictures of all runs, from the requirements and what the evidence says of each run."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from math import inf
+
+from fretc.audit.evidence.briefs import stretches
+from fretc.audit.evidence.schema import Result, Threshold
+from fretc.report.across.lanes import Known, LanePlan, RunStretches, plan, with_marks
+from fretc.report.across.uses import RunNumbers, uses
+from fretc.report.model import phrases
+from fretc.report.model.across import Across, RequirementAcross
+from fretc.report.model.assessments import Assessment
+from fretc.report.model.audits import SingleAudit
+from fretc.report.model.pictures import WordLane
+from fretc.report.pictures.histograms import is_answered, seconds_allowed
+from fretc.report.sections.details import Details, Thresholds
+from fretc.report.sections.results import result_anchor
+from fretc.report.sections.runs import Run, RunKey, run_key
+
+_ROWS, _MARKS = 180, 1_500
+"""Of the pictures of all requirements together."""
+PICTURED = 16
+"""The most requirements with pictures of their own in a page; `--json` has those of all."""
+_FEWEST, _MOST = 3, 20
+"""Rows of one picture of a requirement."""
+
+
+def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> Across:
+    """The lanes of all requirements, and the lanes and the used bounds of the worst.
+
+    Args:
+        details: requirements, runs and the evidence; those that are retired have no lanes.
+        worst: the anchors of the requirements, the worst first.
+        pictured: how many of these have pictures of their own.
+    """
+    active = [a for a in details.assessments.values() if a.requirement.status != "retired"]
+    most = max(_FEWEST, min(_MOST, _ROWS // max(1, len(active))))
+    marks = max(10 * _FEWEST, _MARKS // max(1, len(active)))
+    in_force = {assessment.anchor for assessment in active}
+    chosen = {*[anchor for anchor in worst if anchor in in_force][:pictured]}
+    several = [each for each in active if each.anchor in chosen and len(each.audits) > 1]
+    of_all = plan(
+        "All requirements, a lane for each run",
+        _in_order([one for each in active for one in _results(each, details)], details.runs),
+    )
+    plans = {each.anchor: _plan(each, details, most, marks) for each in several}
+    known = _known(details, [at for each in (of_all, *plans.values()) for at in each.places])
+    uses_of = {
+        each.anchor: uses(*_numbers(each, details, thresholds, most))
+        for each, thresholds in details.thresholds(plans)
+    }
+    return Across(
+        of_all.lanes(known),
+        tuple(
+            RequirementAcross(
+                each.id,
+                each.anchor,
+                plans[each.anchor].lanes(known) if each.anchor in plans else None,
+                uses_of.get(each.anchor),
+            )
+            for each in active
+            if each.anchor in chosen
+        ),
+    )
+
+
+def _plan(assessment: Assessment, details: Details, most: int, marks: int) -> LanePlan:
+    """Of the runs that have anything to mark; the others are counted."""
+    of = _results(assessment, details)
+    marked = with_marks(of)
+    calm = len(of) - len(marked)
+    note = f"No lane: {phrases.times(calm, 'run')} with nothing of it." if calm else ""
+    return plan(f"{assessment.id} in its runs", marked, most, marks, note)
+
+
+def _in_order(
+    results: Sequence[RunStretches], runs: Mapping[RunKey, Run]
+) -> Sequence[RunStretches]:
+    """In the order of runs."""
+    places = {run.anchor: run.number for run in runs.values()}
+    return sorted(results, key=lambda each: places[each.run])
+
+
+# What the evidence says ------------------------------------------------------------------------
+
+
+def _results(assessment: Assessment, details: Details) -> list[RunStretches]:
+    return [
+        RunStretches(
+            run.anchor,
+            run.label,
+            phrases.place(audit.result.run),
+            assessment.id,
+            assessment.anchor,
+            result_anchor(assessment, number),
+            audit.mark,
+            audit.place,
+            audit.result.ticks > 0,
+            (audit.result.violations, audit.result.unknown, audit.result.open),
+        )
+        for number, audit in enumerate(assessment.reviewed_audits, 1)
+        for run in [details.runs[run_key(audit.result)]]
+    ]
+
+
+def _numbers(
+    assessment: Assessment, details: Details, thresholds: Thresholds, most: int
+) -> tuple[list[RunNumbers], float | None, int, int]:
+    """The runs whose results are current, the time allowed, the rows, and the other runs."""
+    of = _results(assessment, details)
+    current = [
+        _run_numbers(audit, each, tuple(thresholds[audit.place]))
+        for audit, each in zip(assessment.audits, of, strict=True)
+        if not audit.is_stale
+    ]
+    allowed = seconds_allowed(assessment.rule) if is_answered(assessment.rule) else None
+    return current, allowed, most, len(of) - len(current)
+
+
+def _run_numbers(
+    audit: SingleAudit, each: RunStretches, thresholds: tuple[Threshold, ...]
+) -> RunNumbers:
+    result = audit.result
+    return RunNumbers(
+        each.label,
+        each.file,
+        each.section,
+        each.anchor,
+        audit.mark,
+        result.triggers,
+        result.violations,
+        result.latency_max_s,
+        thresholds,
+    )
+
+
+def _known(details: Details, places: Collection[int]) -> Mapping[int, Known]:
+    """What there is to see of some results."""
+    found = details.evidence.details(places) if details.evidence else ()
+    return {place: (stretches(result), word_lanes(result)) for place, result in found}
+
+
+def word_lanes(result: Result) -> tuple[WordLane, ...]:
+    """The signals of words over the whole run; behind changes that are left out it is unknown."""
+    if not result.course or result.start_ns is None:
+        return ()
+    end = stretches(result).length
+    origin = result.states[0].ns if result.states else result.start_ns
+    found = []
+    for name, series in sorted(result.course.words.items()):
+        times = [(ns - origin) / 1e9 for ns in series.times_ns]
+        words = list(series.words)
+        if series.changes_left_out and times:
+            words[-1] = None
+        ends = [*times[1:], inf]
+        pieces = tuple(
+            (round(max(0.0, start), 6), round(min(end, after), 6), word)
+            for start, after, word in zip(times, ends, words, strict=True)
+            if after > 0 and start < end
+        )
+        found.append(WordLane(name, pieces))
+    return tuple(found)

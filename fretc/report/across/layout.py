@@ -1,0 +1,274 @@
+"""The layout of pictures of many runs, in units of a drawing 720 wide."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+
+from fretc.report.across.uses import percent
+from fretc.report.model.across import LaneMark, Lanes, Use, UseRow, Uses
+from fretc.report.model.marks import Mark
+from fretc.report.model.phrases import decimal
+from fretc.report.pictures.plots import WIDTH, places
+
+_LEFT, _RIGHT = 196, 24
+_TOP, _AXIS, _ROW, _WORDS = 20, 26, 20, 15
+_KINDS = {"violated": (1, 7), "unknown": (9, 4), "open": (14, 3)}
+"""Of each kind of mark the place in its lane, and its height."""
+_THINNEST = 2.5
+_LETTER = 5.8
+_NAME = 27
+"""Letters of a name that fit beside a lane."""
+_SHARES = 470
+"""The right end of the scale of shares; their words stand behind it."""
+_BEYOND = 1.5
+"""The end of the scale of shares; what is above it stands there, with its number."""
+
+_Place = Callable[[float], float]
+"""From seconds to their place."""
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnMark:
+    """A mark of a lane with its link, and what it says."""
+
+    kind: str
+    x: float
+    y: int
+    width: float
+    height: int
+    link: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnWord:
+    """A stretch of a lane of words."""
+
+    x: float
+    width: float
+    word: str
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnWords:
+    """A lane of words."""
+
+    name: str
+    y: int
+    words: tuple[DrawnWord, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnRun:
+    """The lane of a run; `name` is as much of its name as fits."""
+
+    y: int
+    name: str
+    file: str
+    mark: Mark
+    link: str
+    width: float
+    marks: tuple[DrawnMark, ...]
+    words: tuple[DrawnWords, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnLanes:
+    """The picture with a lane a run."""
+
+    id: str
+    title: str
+    text: str
+    width: int
+    height: int
+    left: int
+    right: int
+    top: int
+    axis: int
+    row: int
+    runs: tuple[DrawnRun, ...]
+    ticks: tuple[tuple[float, str], ...]
+
+
+def drawn_lanes(content: Lanes, id: str, anchors: Collection[str]) -> DrawnLanes:
+    """The layout of lanes.
+
+    Args:
+        content: the lanes.
+        id: of the picture.
+        anchors: of the results, runs and pictures in the page; other links lead to a section.
+    """
+    scale = (WIDTH - _LEFT - _RIGHT) / content.end
+
+    def x(seconds: float) -> float:
+        return round(_LEFT + min(max(seconds, 0.0), content.end) * scale, 1)
+
+    names = _short([run.file for run in content.lanes])
+    runs: list[DrawnRun] = []
+    y = _TOP
+    for run, name in zip(content.lanes, names, strict=True):
+        words = tuple(
+            DrawnWords(
+                lane.signal,
+                y + _ROW + _WORDS * row,
+                tuple(
+                    DrawnWord(x(start), wide, word or "", _fitting(word or "unknown", wide))
+                    for start, end, word in lane.words
+                    for wide in [round(max(_THINNEST, x(end) - x(start)), 1)]
+                ),
+            )
+            for row, lane in enumerate(run.words)
+        )
+        marks = tuple(_mark(mark, y, x, anchors) for mark in run.marks)
+        link = run.anchor if run.anchor in anchors else "runs"
+        runs.append(
+            DrawnRun(
+                y, name, run.file, run.mark, link, round(x(run.length) - _LEFT, 1), marks, words
+            )
+        )
+        y += _ROW + _WORDS * len(words) + (4 if words else 0)
+    return DrawnLanes(
+        id=id,
+        title=content.title,
+        text=content.text,
+        width=WIDTH,
+        height=y + _AXIS,
+        left=_LEFT,
+        right=WIDTH - _RIGHT,
+        top=_TOP,
+        axis=y + 2,
+        row=_ROW,
+        runs=tuple(runs),
+        ticks=tuple((x(place), decimal(place)) for place in places(0.0, content.end)),
+    )
+
+
+def _mark(mark: LaneMark, y: int, x: _Place, anchors: Collection[str]) -> DrawnMark:
+    below, height = _KINDS[mark.kind]
+    start = min(x(mark.start), WIDTH - _RIGHT - _THINNEST)
+    picture = f"picture-{mark.anchor}.{mark.number}"
+    links = [picture if mark.number else "", mark.anchor]
+    link = next((one for one in links if one in anchors), mark.section)
+    width = round(max(_THINNEST, x(mark.end) - start), 1)
+    return DrawnMark(mark.kind, start, y + below, width, height, link, mark.text)
+
+
+def _short(files: Sequence[str]) -> list[str]:
+    """As much of each name as fits: its end, where the names begin alike."""
+    stems = [file.removesuffix(".mcap").removesuffix(".bag") for file in files]
+    folders = {stem.rpartition("/")[0] for stem in stems}
+    own = [stem.rpartition("/")[2] for stem in stems] if len(folders) == 1 else stems
+    return [name if len(name) <= _NAME else f"…{name[1 - _NAME :]}" for name in own]
+
+
+def _fitting(word: str, width: float) -> str:
+    most = int((width - 4) / _LETTER)
+    return word if len(word) <= most else f"{word[: most - 1]}…" if most > 3 else ""
+
+
+# Shares of bounds ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Dot:
+    """What a run has used of one bound."""
+
+    x: float
+    letter: str
+    is_crossed: bool
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnRow:
+    """A run with its dots; the bar ends at the first one."""
+
+    y: int
+    name: str
+    file: str
+    mark: Mark
+    link: str
+    end: float
+    is_crossed: bool
+    dots: tuple[Dot, ...]
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnUses:
+    """The ranking of runs."""
+
+    id: str
+    title: str
+    text: str
+    width: int
+    height: int
+    left: int
+    right: int
+    labels: int
+    """Where the words of each row begin."""
+    top: int
+    axis: int
+    row: int
+    bound: float
+    rows: tuple[DrawnRow, ...]
+    ticks: tuple[tuple[float, str], ...]
+
+
+def drawn_uses(content: Uses, id: str, anchors: Collection[str]) -> DrawnUses:
+    """The layout of a ranking; arguments as of `drawn_lanes`."""
+    names = _short([row.file for row in content.rows])
+    axis = _TOP + _ROW * len(content.rows) + 2
+    return DrawnUses(
+        id=id,
+        title=content.title,
+        text=content.text,
+        width=WIDTH,
+        height=axis + _AXIS,
+        left=_LEFT,
+        right=_SHARES,
+        labels=_SHARES + 14,
+        top=_TOP,
+        axis=axis,
+        row=_ROW,
+        bound=_share(1.0),
+        rows=tuple(
+            _row(row, name, _TOP + _ROW * place, anchors)
+            for place, (row, name) in enumerate(zip(content.rows, names, strict=True))
+        ),
+        ticks=tuple((_share(n / 4), f"{n * 25} %") for n in range(5)),
+    )
+
+
+def _share(share: float) -> float:
+    part = min(max(share, 0.0), _BEYOND) / _BEYOND
+    return round(_LEFT + part * (_SHARES - _LEFT), 1)
+
+
+def _end(use: Use) -> float:
+    """A crossed bound is right of the bound, whatever its share is rounded to."""
+    if not use.is_crossed:
+        return min(_share(use.share or 0.0), _share(1.0))
+    return max(_share(_BEYOND if use.share is None else use.share), _share(1.0) + 7)
+
+
+def _row(row: UseRow, name: str, y: int, anchors: Collection[str]) -> DrawnRow:
+    dots = tuple(Dot(_end(use), use.measure, use.is_crossed, _words_of(use)) for use in row.uses)
+    first, end = row.uses[0], dots[0].x
+    return DrawnRow(
+        y=y,
+        name=name,
+        file=row.file,
+        mark=row.mark,
+        link=row.anchor if row.anchor in anchors else row.section,
+        end=end,
+        is_crossed=first.is_crossed,
+        dots=dots,
+        label=_fitting(first.text, (WIDTH - _SHARES - 14) * 1.05),
+    )
+
+
+def _words_of(use: Use) -> str:
+    return f"{percent(use.share)}: {use.text}" if use.share is not None else use.text

@@ -1,0 +1,290 @@
+"""How much of each bound the runs of a requirement have used: of a deadline, and of thresholds.
+
+A threshold counts as a bound only while no run that satisfies the requirement is beyond it: what a
+trigger compares is crossed in good runs, too. The share is the latency by the time allowed, and for
+a threshold 1 less the least distance to it by its own size (by the greatest value of all runs where
+the threshold is 0). Runs beyond a bound come first; what is unknown has no share, and is counted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf, isfinite
+
+from fretc.audit.evidence.samples import number
+from fretc.audit.evidence.schema import Threshold
+from fretc.report.model import phrases
+from fretc.report.model.across import Use, UseRow, Uses
+from fretc.report.model.marks import Mark
+from fretish.bindings.amounts import exact
+from monitors import kernel
+
+_LETTERS = "abcdefgh"
+"""Of the measures of one picture; others are counted."""
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class RunNumbers:
+    """What one run says of the bounds of a requirement."""
+
+    label: str
+    file: str
+    section: str
+    anchor: str
+    mark: Mark
+    triggers: int
+    violations: int
+    latency: float | None
+    """The longest, in seconds; None: there is no answer."""
+    thresholds: tuple[Threshold, ...]
+
+    @property
+    def is_good(self) -> bool:
+        """Whether it satisfies the requirement."""
+        return self.mark.word == kernel.SATISFIED
+
+    @property
+    def is_bad(self) -> bool:
+        """Whether it violates it."""
+        return self.mark.word == kernel.VIOLATED
+
+
+_Key = tuple[str, str, str, float, str]
+
+
+def uses(
+    runs: Sequence[RunNumbers], allowed: float | None, most: int, suspect: int = 0
+) -> Uses | None:
+    """The ranking; None where less than two runs have anything to rank.
+
+    Args:
+        runs: those whose results are current, in their order.
+        allowed: seconds to the deadline of the response; None: there is none.
+        most: rows.
+        suspect: how many runs are left out, because their results are not current.
+    """
+    grouped = _grouped(runs)
+    bounds = {key: bound for key, of in grouped.items() if (bound := _bound(of)) is not None}
+    letters = _lettered(allowed, bounds)
+    rows = [_row(run, allowed, bounds, letters) for run in runs]
+    known = sorted((row for row in rows if row.uses), key=_rank)
+    if len(known) < 2:
+        return None
+    shown, left = known[:most], known[most:]
+    notes = tuple(
+        filter(
+            None,
+            [
+                _left_out(left),
+                _unknown([row for row in rows if not row.uses]),
+                _not_bounds([key for key in grouped if key not in bounds]),
+                _more_bounds(len(bounds) + bool(allowed) - len(letters)),
+                f"{phrases.times(suspect, 'suspect run')} left out." if suspect else "",
+            ],
+        )
+    )
+    measures = tuple((letter, _named(key, allowed)) for key, letter in letters.items())
+    return Uses(
+        "Share of the bounds that each run has used",
+        measures,
+        tuple(shown),
+        notes,
+        _in_words(shown, measures, notes),
+    )
+
+
+def _grouped(runs: Sequence[RunNumbers]) -> dict[_Key, list[tuple[RunNumbers, Threshold]]]:
+    """The thresholds of all runs, by what they compare."""
+    grouped: dict[_Key, list[tuple[RunNumbers, Threshold]]] = {}
+    for run in runs:
+        for each in run.thresholds:
+            grouped.setdefault(_key(each), []).append((run, each))
+    return grouped
+
+
+def _key(each: Threshold) -> _Key:
+    return each.proposition, each.signal, each.operator, each.bound, each.unit
+
+
+@dataclass(frozen=True, slots=True)
+class _Bound:
+    """What all runs say of one threshold."""
+
+    side: str | None
+    """The truth value that it keeps in runs that satisfy the requirement; None: there is none."""
+    scale: float
+    """That distances are parts of."""
+
+
+def _bound(of: Sequence[tuple[RunNumbers, Threshold]]) -> _Bound | None:
+    """None where runs that satisfy the requirement are on both sides: then it is no bound of it."""
+    kept = {each.comparison for run, each in of if run.is_good and each.comparison is not None}
+    if "crossed" in kept or len(kept) > 1 or not any(each.comparison for _, each in of):
+        return None
+    scale = abs(of[0][1].bound) or max(_reach(each) for _, each in of)
+    return _Bound(next(iter(kept), None), scale)
+
+
+def _lettered(allowed: float | None, bounds: Mapping[_Key, object]) -> dict[_Key | None, str]:
+    """A letter for each measure; None is the latency."""
+    keys: list[_Key | None] = [*([None] if allowed else []), *bounds]
+    return dict(zip(keys, _LETTERS, strict=False))
+
+
+def _named(key: _Key | None, allowed: float | None) -> str:
+    if key is None:
+        return f"latency within {phrases.seconds(allowed or 0.0)}"
+    proposition, signal, operator, bound, unit = key
+    return f"{signal} {operator} {exact(bound, unit)} ({proposition})"
+
+
+def _row(
+    run: RunNumbers,
+    allowed: float | None,
+    bounds: Mapping[_Key, _Bound],
+    letters: Mapping[_Key | None, str],
+) -> UseRow:
+    found = list(_of_latency(run, allowed, letters))
+    for each in run.thresholds:
+        key = _key(each)
+        if key in bounds and key in letters and each.comparison is not None:
+            found.append(_of_threshold(each, bounds[key], letters[key]))
+    found.sort(key=_most_used)
+    return UseRow(run.label, run.file, run.mark, run.anchor, run.section, tuple(found))
+
+
+def _most_used(use: Use) -> tuple[bool, float, str]:
+    return not use.is_crossed, -(inf if use.share is None else use.share), use.measure
+
+
+def _rank(row: UseRow) -> tuple[bool, bool, float]:
+    first = row.uses[0]
+    return (
+        row.mark.word != kernel.VIOLATED,
+        not first.is_crossed,
+        -(inf if first.share is None else first.share),
+    )
+
+
+# Latency ---------------------------------------------------------------------------------------
+
+
+def _of_latency(
+    run: RunNumbers, allowed: float | None, letters: Mapping[_Key | None, str]
+) -> Iterator[Use]:
+    if not allowed or None not in letters:
+        return
+    limit = phrases.seconds(allowed)
+    if run.latency is not None and run.latency > allowed + _ROUNDING:
+        text = f"answered after {phrases.seconds(run.latency)}, {limit} are allowed"
+        yield Use(letters[None], run.latency / allowed, True, text)
+    elif run.violations and run.triggers:
+        yield Use(letters[None], None, True, f"no answer within {limit}")
+    elif run.latency is not None:
+        text = f"answered after {phrases.seconds(run.latency)} of {limit}"
+        yield Use(letters[None], max(0.0, run.latency / allowed), False, text)
+
+
+# Thresholds ------------------------------------------------------------------------------------
+
+
+def _of_threshold(each: Threshold, of: _Bound, letter: str) -> Use:
+    side = of.side or (each.comparison if each.comparison != "crossed" else None)
+    beyond = each.comparison != side
+    worst = _worst(each, side)
+    distance = _beyond(each, side) if beyond else each.margin
+    bound = exact(each.bound, each.unit)
+    if worst is None:
+        text = f"crossed {bound}"
+    else:
+        text = f"{phrases.value(worst, each.unit, [each.bound])}, bound {bound}"
+    if distance is None or not of.scale or not isfinite(distance / of.scale):
+        share = None if beyond else 0.0
+    else:
+        share = 1 + distance / of.scale if beyond else max(0.0, 1 - distance / of.scale)
+    return Use(letter, share, beyond, text)
+
+
+def _reach(each: Threshold) -> float:
+    ends = (number(each.least), number(each.greatest))
+    return max((abs(end) for end in ends if end is not None and isfinite(end)), default=0.0)
+
+
+def _worst(each: Threshold, side: str | None) -> float | None:
+    """The value nearest to the bound, or farthest beyond it; None where the side is not known."""
+    if side is None:
+        return None
+    is_upper = (each.operator in ("<", "<=")) == (side == "true")
+    return number(each.greatest if is_upper else each.least)
+
+
+def _beyond(each: Threshold, side: str | None) -> float | None:
+    worst = _worst(each, side)
+    return None if worst is None else abs(worst - each.bound)
+
+
+# Words -----------------------------------------------------------------------------------------
+
+
+def _left_out(left: Sequence[UseRow]) -> str:
+    if not left:
+        return ""
+    violated = sum(row.mark.word == kernel.VIOLATED for row in left)
+    crossed = sum(row.uses[0].is_crossed for row in left)
+    shares = [row.uses[0].share for row in left if not row.uses[0].is_crossed]
+    most = max((share for share in shares if share is not None), default=None)
+    parts = [
+        f"{phrases.whole(violated)} of them violated" if violated else "",
+        f"{phrases.whole(crossed)} beyond a bound" if crossed else "",
+        f"the others used {percent(most)} at most" if most is not None and crossed else "",
+        f"they used {percent(most)} at most" if most is not None and not crossed else "",
+    ]
+    return f"{phrases.times(len(left), 'more run')}: {', '.join(filter(None, parts))}."
+
+
+def percent(share: float) -> str:
+    """`63 %`; never 100 for what is not, and digits only as far as they say something."""
+    whole = f"{share * 100:.0f}"
+    if share < 1 and float(whole) >= 100:
+        return "just below 100 %"
+    if share > 1 and float(whole) <= 100:
+        return "just above 100 %"
+    return f"{whole} %" if share < 100 else "more than 10 000 %"
+
+
+def _unknown(rows: Sequence[UseRow]) -> str:
+    """Runs that say nothing of any bound: unknown, never triggered, or without an answer."""
+    if not rows:
+        return ""
+    named = [f"{row.label} ({row.mark.text})" for row in rows]
+    return f"Nothing is known of the use in {phrases.some(named)}."
+
+
+def _not_bounds(keys: Sequence[_Key]) -> str:
+    if not keys:
+        return ""
+    named = [
+        f"`{signal} {operator} {exact(bound, unit)}`" for _, signal, operator, bound, unit in keys
+    ]
+    return (
+        f"Not ranked, because runs that satisfy the requirement are on both sides, or nothing is "
+        f"known: {phrases.some(list(dict.fromkeys(named)))}."
+    )
+
+
+def _more_bounds(count: int) -> str:
+    return f"{phrases.times(count, 'more bound')} not ranked." if count > 0 else ""
+
+
+def _in_words(
+    rows: Sequence[UseRow], measures: Sequence[tuple[str, str]], notes: Sequence[str]
+) -> str:
+    named = [f"{row.label}: {row.uses[0].text}{_share(row.uses[0])}" for row in rows[:3]]
+    bounds = phrases.joined([f"{letter} is {name}" for letter, name in measures])
+    return " ".join([f"The most used first. {'; '.join(named)}. Bounds: {bounds}.", *notes])
+
+
+def _share(use: Use) -> str:
+    return f" ({percent(use.share)})" if use.share is not None else ""
