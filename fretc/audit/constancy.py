@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from fretc.audit.evidence.schema import Result
-from fretc.audit.measurements.tallies import NOTHING, Tally
+from fretc.audit.measurements.tallies import Tally
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
@@ -25,12 +25,20 @@ def totals(runs: Iterable[Mapping[str, Tally]]) -> dict[str, Total]:
     Args:
         runs: the tally of each proposition in each run.
     """
-    found: dict[str, Total] = {}
+    of_name: dict[str, list[Tally]] = {}
     for tallies in runs:
         for name, tally in tallies.items():
-            before = found.get(name, Total(NOTHING, 0))
-            found[name] = Total(before.ticks + tally, before.runs + 1)
-    return found
+            of_name.setdefault(name, []).append(tally)
+    return {name: Total(_sum(some), len(some)) for name, some in of_name.items()}
+
+
+def _sum(tallies: Sequence[Tally]) -> Tally:
+    return Tally(
+        sum(each.true for each in tallies),
+        sum(each.false for each in tallies),
+        sum(each.unknown for each in tallies),
+        sum(each.changes for each in tallies),
+    )
 
 
 def tallies_of(results: Iterable[Result]) -> dict[str, Tally]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import fcntl
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -28,14 +28,14 @@ from fretc.audit.many_logs import (
     estimates_of,
     labelled,
 )
-from fretc.audit.plan import Plan
+from fretc.audit.plan import Plan, keys
 from fretc.audit.store.anywhere import StoreError
 from fretc.audit.store.manifest import FILE, REUSE, SCHEMA, UNFINISHED, Manifest, Part
 from fretc.audit.store.parts import parts
 from fretc.audit.store.reader import Store, manifest, opened
+from fretc.audit.store.recordings import KnownBy
 from fretc.audit.store.register import (
     Entry,
-    KnownBy,
     diagnostic,
     diagnostic_text,
     marks,
@@ -90,6 +90,19 @@ class _Known:
     results: int
 
 
+@dataclass(frozen=True, slots=True)
+class _Some:
+    """A log of an audit by a plan that has some of the claims."""
+
+    store: Store
+    claims: Collection[str]
+    part: range
+    """The places of all results of its part."""
+    first: int
+    """Where in these its own begin."""
+    count: int
+
+
 class Earlier:
     """What earlier audits of this plan have shown, and this user's key vouches for."""
 
@@ -109,6 +122,11 @@ class Earlier:
         self._plan, self._rehash = plan, rehash
         self._logs: dict[str, tuple[Store, Entry, int, int, int]] = {}
         self._parts: dict[tuple[str, ...], tuple[Store, Part]] = {}
+        self.claims: set[str] = set()
+        """Those of another plan that are claims of this one, to the letter."""
+        self._some: dict[str, _Some] = {}
+        self._last: tuple[Store, range, list[Result]] | None = None
+        """The results of one part: its logs are asked for one after the other."""
         for name in (FILE, UNFINISHED) if key is not None else ():
             assert key is not None
             self._read(folder, name, key)
@@ -123,9 +141,29 @@ class Earlier:
             return
         if about["plan"] != self._plan.key:
             self.stale = True
+            claims = keys(self._plan)
+            same = {id for id, key in about["claims"].items() if claims.get(id) == key}
+            with suppress(StoreError):
+                self._add_some(store, same)
             return
         with suppress(StoreError):
             self._add(store, alike=about["labels"] == dict(self._plan.labels))
+
+    def _add_some(self, store: Store, same: Collection[str]) -> None:
+        """Results by claims that are what they were, though others are not."""
+        entries, counts = store.register(), [*store.counts()]
+        if not same or len(entries) != len(counts):
+            return
+        self.claims |= {*same}
+        row = place = 0
+        for part in store.manifest.parts:
+            stop, at = place + part.results, place
+            for entry, count in zip(
+                entries[row : row + part.runs], counts[row : row + part.runs], strict=True
+            ):
+                self._some[entry.log] = _Some(store, same, range(place, stop), at - place, count)
+                at += count
+            row, place = row + part.runs, stop
 
     def _add(self, store: Store, *, alike: bool) -> None:
         entries, counts = store.register(), [*store.counts()]
@@ -148,6 +186,20 @@ class Earlier:
         store, entry, part, place, count = self._logs[log]
         by = entry.known_by_now(rehash=self._rehash)
         return None if by is None else _Known(store, entry, by, part, place, count)
+
+    def results(self, log: str) -> tuple[Result, ...]:
+        """Those of a log by claims that are what they were, though the plan is not."""
+        some = self._some.get(log)
+        if some is None:
+            return ()
+        if self._last is None or self._last[0] is not some.store or self._last[1] != some.part:
+            try:
+                found = [each for _, each in some.store.details(some.part)]
+            except StoreError:
+                found = []
+            self._last = some.store, some.part, found
+        of_log = self._last[2][some.first : some.first + some.count]
+        return tuple(each for each in of_log if each.requirement in some.claims)
 
     def part(self, logs: Sequence[str], known: Mapping[str, _Known]) -> Part | None:
         """A part that has just these logs, with all that all runs have."""
@@ -215,6 +267,7 @@ class Session:
         """
         self.folder, self._plan, self._key = folder, plan, key
         destination(folder / FILE)
+        self._new_folder = None if folder.parent.exists() else folder.parent
         folder.mkdir(parents=True, exist_ok=True)
         self._lock = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:
@@ -248,6 +301,9 @@ class Session:
             found = [manifest(self.folder, name) for name in names]
             if not any(each is None or each.parts for each in found):
                 remove(self.folder)
+                if self._new_folder is not None:
+                    with suppress(OSError):  # something else is in it by now
+                        self._new_folder.rmdir()
             else:
                 others = set() if self._is_finished else self._before
                 remove_others(self.folder, *filter(None, found), kept=others)
@@ -310,7 +366,7 @@ class Session:
             run=first.run,
             log=log,
             place=os.path.realpath(log),
-            known_by="read",
+            known_by=own.known_by,
             sha256=first.fingerprints.log or "",
             **marks(own.stamp if own.read else None),
             labels=first.labels or {},
@@ -385,7 +441,8 @@ class Session:
         digest = _right(write_manifest(self.folder, made, name))
         if self._key is not None:
             plan = self._plan
-            content = vouched(self.folder, plan.key, plan.labels, digest, self._key)
+            names = self.folder, plan.key, keys(plan)
+            content = vouched(*names, plan.labels, digest, self._key)
             wrong = write({self.folder / REUSE[name]: content})
             if wrong is not None:
                 raise _WriteError(wrong)

@@ -127,8 +127,9 @@ def _below(path: Path, visited: dict[str, None] | None = None) -> Iterator[str |
     if isinstance(run, Folder) and (len(run.files) > 1 or run.compressed):
         yield str(path)
         files = [file for file in files if file.name not in run.files]
+    own = {*files}
     for entry in entries:
-        if entry in files:
+        if entry in own:
             yield str(entry)
         elif entry.is_dir():
             yield from _below(entry, visited)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from types import MappingProxyType
 
@@ -18,20 +18,30 @@ from fretc.audit.evidence.briefs import Brief, EvidenceSource, brief
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import Evidence
-from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Requirement, Result
-from fretc.audit.evidence.writer import as_record, unjudged, unread
+from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Hashes, Requirement, Result
+from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged, unread
 from fretc.audit.evidence.writer import text as written
 from fretc.audit.measurements.judgement import Engine as Evaluation
 from fretc.audit.measurements.tallies import Tally
-from fretc.audit.one_log import audit, examined, signals_of
+from fretc.audit.one_log import (
+    MonitoredRequirement,
+    audit,
+    examined,
+    hash_of,
+    hash_of_messages,
+    signals_of,
+)
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
 from fretc.audit.pool import ENDLESS, Killed, Late, Limits, each, was_killed, was_late
+from fretc.audit.store.recordings import Kept, KnownBy
 from fretc.logs.labels import NO_METADATA, labels, over
 from fretc.logs.reader import read
+from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.inputs import STDIN
 from fretc.logs.storage.inputs import shown as called
 from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.reading.memory import remembered
 from monitors import kernel
 
 
@@ -80,6 +90,8 @@ class LogAudit:
     """Whether the log could be read."""
     stamp: Stamp | None = None
     """The file's before its audit; None where it is no file, or has changed since."""
+    known_by: KnownBy = field(default="read", compare=False)
+    """Whether the log was read, or by what it is known to be what it was when it was."""
 
 
 LogAudits = Generator[tuple[str, LogAudit] | Diagnostic, None, None]
@@ -89,15 +101,34 @@ Engine = Callable[[Plan, Sequence[str]], LogAudits]
 """Where logs are audited. Closing what it gives ends all work at once."""
 
 
-def locally(jobs: int, limits: Limits = ENDLESS) -> Engine:
-    """On this machine, in some processes; standard input only where there are no limits."""
+def _nothing(_: str) -> Sequence[Result]:
+    return ()
+
+
+def locally(
+    jobs: int,
+    kept: Kept | None = None,
+    known: Callable[[str], Sequence[Result]] = _nothing,
+    limits: Limits = ENDLESS,
+) -> Engine:
+    """On this machine, in some processes.
+
+    Args:
+        jobs: how many.
+        kept: where the samples of logs are kept.
+        known: of a log, the results that `audited` may take over.
+        limits: of time; standard input only where there are none.
+    """
+
+    def judged(plan: Plan, log: str) -> LogAudit:
+        return audited(plan, log, known(log), kept)
 
     def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
         monitored_requirements(plan)  # before the processes are born: they inherit it
         if STDIN in logs:  # another process does not have it
             yield STDIN, audited(plan, STDIN)
         files = [log for log in logs if log != STDIN]
-        with closing(each(partial(audited, plan), files, jobs, limits)) as done:
+        with closing(each(partial(judged, plan), files, jobs, limits)) as done:
             for place, result in done:
                 log = files[place]
                 if isinstance(result, Killed):
@@ -202,25 +233,83 @@ def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
     return replace(diagnostic, message=f"{diagnostic.message} ({which})")
 
 
-def audited(plan: Plan, log: str) -> LogAudit:
-    """Audit one log; all that is needed for it is in the plan."""
+def audited(
+    plan: Plan, log: str, known: Sequence[Result] = (), kept: Kept | None = None
+) -> LogAudit:
+    """Audit one log; all that is needed for it is in the plan.
+
+    Args:
+        plan: what it is judged by.
+        log: its path.
+        known: results of an earlier audit of it, by claims whose `keys` were what they are now.
+            They are taken over where the log still is what they were found in; what the log shows
+            to all claims alike is found again.
+        kept: where the samples of logs are kept: an unchanged one is not read again.
+    """
     declarations, requirements = plan.declarations, monitored_requirements(plan)
     before = stamp(log)
-    names = tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
-    recording = read(log, declarations, signals_of(declarations, names), plan.integrity)
+    names = _propositions(requirements)
+    recording, by = _read(plan, log, names, kept, before)
     if isinstance(recording, Diagnostic):
         return _unread(plan, log, recording, before)
     recording = examined(recording, declarations, names)
-    evidence = audit(recording, declarations, requirements, EVALUATIONS[plan.evaluation])
-    phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
-    records = [as_record(e) for e in evidence]
+    taken = {each.requirement: each for each in _taken_over(known, recording)}
+    new = [each for each in requirements if each.monitor.REQUIREMENTS[0].id not in taken]
+    evidence = audit(recording, declarations, new, EVALUATIONS[plan.evaluation]) if new else ()
+    of_claim = {e.requirement: as_record(e) for e in evidence} | taken
+    records = [of_claim[claim.id] for claim in plan.claims]
+    phased = {each.requirement: phases_of(each.phases) for each in records if each.phases}
     own = LogAudit(
         (*records, *_refused_results(plan, records[0])),
         (*recording.findings, *findings(phased, declarations)),
         read=True,
         stamp=before if before == stamp(log) else None,
+        known_by=by,
     )
     return _with_own_labels(plan, own, recording.described)
+
+
+@remembered
+def _propositions(requirements: Sequence[MonitoredRequirement]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
+
+
+def _read(
+    plan: Plan, log: str, names: Sequence[str], kept: Kept | None, before: Stamp | None
+) -> tuple[Recording | Diagnostic, KnownBy]:
+    """The recording of a log with all signals of the propositions, read or kept."""
+    declarations, integrity = plan.declarations, plan.integrity
+    signals = signals_of(declarations, names)
+    known = kept.recording(log, declarations, signals, integrity) if kept else None
+    if known is not None:
+        return known
+    recording = read(log, declarations, signals, integrity)
+    if kept is not None and isinstance(recording, Recording) and before == stamp(log):
+        kept.keep(log, before, recording, declarations, signals, integrity)
+    return recording, "read"
+
+
+def _taken_over(known: Sequence[Result], recording: Recording) -> Iterator[Result]:
+    """The results that an audit of the recording would give again.
+
+    Why there is no data may be the fault of another claim's topic: such a result is taken over only
+    where everything that was found in the log is the same.
+    """
+    if not known:
+        return
+    now, log = health(recording), hash_of(recording)
+    messages = hash_of_messages(recording)
+    for one in known:
+        then, hashes = one.health, {**one.hashes}
+        same_log = one.run == recording.name and log.items() <= hashes.items()
+        same_time = (one.start_ns, one.end_ns) == (recording.start_ns, recording.end_ns)
+        same_loss = (then.intact, then.gaps) == (now.intact, now.gaps)
+        same_cause = one.verdict != kernel.NO_DATA or then == now
+        if same_log and same_time and same_loss and same_cause:
+            if hashes.pop("messages", None) is not None or one.outcomes is not UNSET:
+                hashes |= messages
+            alike = {"health": now, "labels": UNSET, "course": UNSET}
+            yield record_with(one, fingerprints=Hashes(**hashes), **alike)
 
 
 def _with_own_labels(
@@ -298,7 +387,7 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogA
 def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogAudit:
     """The results of a log for which there was no time: no data. It is not even hashed."""
     records = [unread(called(log), each.id, why, each.basis) for each in plan.named]
-    return LogAudit(tuple(records), (why,), read=False)
+    return _with_own_labels(plan, LogAudit(tuple(records), (why,), read=False))
 
 
 def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:

@@ -42,17 +42,18 @@ from fretc.terminal.output import (
     say_line,
     stop,
 )
-from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from fretc.audit.into_store import Session
+    from fretc.audit.into_store import Earlier, Session
     from fretc.audit.many_logs import Engine
     from fretc.audit.outputs.totals import Marks
     from fretc.audit.plan import Plan
     from fretc.audit.pool import Limits
+    from fretc.audit.store.recordings import Kept
     from fretc.commands.audit_outputs import Outcome, Target
 
 
@@ -60,7 +61,16 @@ _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
     "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
     "Which logs": ("since", "sample", "seed"),
-    "Many logs": ("labels", "jobs", "log_time", "whole_time", "engine", "rehash", "command"),
+    "Many logs": (
+        "labels",
+        "jobs",
+        "log_time",
+        "whole_time",
+        "engine",
+        "rehash",
+        "keep_columns",
+        "command",
+    ),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
         "query",
@@ -136,6 +146,11 @@ _AUDIT = {
 @click.option("--log-time", metavar="TIME", help="For each log at most: 90s, 5min.")
 @click.option("--time", "whole_time", metavar="TIME", help="For all logs at most: 6h.")
 @click.option(
+    "--keep-columns",
+    is_flag=True,
+    help="Keep samples of all logs beside the evidence; an unchanged log is not read again.",
+)
+@click.option(
     "--rehash", is_flag=True, help="Know a log by its SHA-256, not by its size and times."
 )
 @click.option(
@@ -172,6 +187,7 @@ def audit(
     log_time: str | None,
     whole_time: str | None,
     rehash: bool,
+    keep_columns: bool,
     command: str | None,
     parquet: str | None,
     resume: bool,
@@ -225,12 +241,15 @@ def audit(
     plan = replace(plan, labels=given_labels, selection=selection)
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refusals, project.diagnostics)
+    kept = _samples(target, rehash=rehash) if keep_columns else None
     with ExitStack() as stack:
         if target.is_store:
             session = stack.enter_context(_session(target.path, plan, logs, rehash=rehash))
-            result: outputs.Outcome = audit_into(session, _engine(engine, jobs, limits))
+            result: outputs.Outcome = audit_into(
+                session, _engine(engine, jobs, limits, kept, session.earlier)
+            )
         else:
-            result = audit_in_memory(plan, logs, _engine(engine, jobs, limits))
+            result = audit_in_memory(plan, logs, _engine(engine, jobs, limits, kept))
         diagnostics = project.answered(result.diagnostics)
         say_also(diagnostics, (*project.diagnostics, *refusals))
         if result.read:  # a mistyped name must not cost the evidence of the last audit
@@ -306,11 +325,37 @@ def _deliver(
     remove_other(target)
 
 
-def _engine(name: str, jobs: int, limits: Limits) -> Engine:
+def _samples(target: Target, *, rehash: bool) -> Kept | None:
+    """Where samples are kept; None where there is no key of the user, which says who kept them."""
+    from compiler.files.user_key import user_key
+    from fretc.audit.store.recordings import SUFFIX, Kept
+
+    if str(target.path) == "-":
+        stop(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
+    key = user_key()
+    if isinstance(key, Diagnostic):
+        say([key])
+        return None
+    return Kept(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
+
+
+def _no_place_for_columns(why: str, mend: str) -> Diagnostic:
+    message = f"`--keep-columns` keeps samples beside the evidence of this machine, and {why}"
+    return Diagnostic(Code.BAD_USAGE, message, help=mend)
+
+
+def _engine(
+    name: str, jobs: int, limits: Limits, kept: Kept | None, earlier: Earlier | None = None
+) -> Engine:
     if name == "local":
         from fretc.audit.many_logs import locally
 
-        return locally(jobs, limits)
+        if earlier is None:
+            return locally(jobs, kept, limits=limits)
+        return locally(jobs, kept, earlier.results, limits)
+    if kept is not None:
+        why = f"`--engine {name}` reads the logs elsewhere"
+        stop(_no_place_for_columns(why, "leave out one of the two"))
     from fretc.audit import fleet
 
     engine = fleet.engine(name, jobs)

@@ -37,6 +37,11 @@ def audit_into(session: Session, engine: Engine) -> StoredAudit:
     if session.known:
         count = len(session.known) + len(session.new)
         say_line(f"{len(session.known)} of {count} logs are unchanged: their results are known")
+    elif session.earlier.claims:
+        say_line(
+            "requirements or bindings have changed: results of unchanged logs by "
+            f"{len(session.earlier.claims)} unchanged requirements are taken over"
+        )
     elif session.earlier.stale:
         say_line("requirements, bindings or fretc have changed: all logs are audited again")
     if session.earlier.foreign:

@@ -236,12 +236,7 @@ _CUSTOM = "custom_data"
 
 
 def _beginning(
-    path: str,
-    log: Input,
-    asked: Collection[str],
-    sink: Sink,
-    integrity: Integrity,
-    place: Span,
+    path: str, log: Input, asked: Collection[str], sink: Sink, integrity: Integrity, place: Span
 ) -> _Run | Diagnostic:
     """What there was of a file that has become longer since."""
     run = _file(path, log, asked, sink, integrity, place)

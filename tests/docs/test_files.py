@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pytest
 import tomli_w
 
 from compiler.files import settings
 from compiler.project import hazards
+from fretc.audit.store import tables
+from fretc.audit.store.register import types
 from fretc.report.traceability import lock, texts, waivers
 from fretc.report.traceability.chain import Node
 from fretish.bindings import declarations as d
@@ -61,6 +64,8 @@ REVIEW = lock.Review(
 def table(name: str) -> str:
     if name == "lock":
         return f"```toml\n{lock.text(lock.Lock({'R1': REVIEW}))}```"
+    if name == "store":
+        return "\n".join(["| table | a row for each | columns |", "|---|---|---|", *store_rows()])
     assert name == "acceptances"
     lines = ["| where | warnings |", "|---|---|"]
     for about, (place, example) in ACCEPTANCES.items():
@@ -68,6 +73,32 @@ def table(name: str) -> str:
         written = example.format(codes[0]).replace("[accept]\n", "")
         lines.append(f"| {place}: `{written}` | {', '.join(codes)} |")
     return "\n".join(lines)
+
+
+ROWS_OF_STORES = {
+    "results": "run and requirement",
+    "events": "run and requirement",
+    "violations": "stretch of violated ticks",
+    "samples": "violation with samples",
+    "runs": "run",
+    "register": "run",
+}
+
+
+def store_rows() -> Iterator[str]:
+    schemas = {**{name: tables.schema(name) for name in tables.TABLES}, "register": types()}
+    for name, schema in schemas.items():
+        columns = ", ".join(f"`{column.name}` {kind(column.type)}" for column in schema)
+        yield f"| `{name}` | {ROWS_OF_STORES[name]} | {columns} |"
+
+
+def kind(of: pa.DataType) -> str:
+    """A type in few words."""
+    if pa.types.is_list(of):
+        return f"list of {kind(of.value_type)}"
+    if pa.types.is_map(of):
+        return f"map to {kind(of.item_type)}"
+    return "struct" if pa.types.is_struct(of) else str(of)
 
 
 def test_the_page_is_current(request: pytest.FixtureRequest) -> None:

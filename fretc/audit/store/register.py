@@ -13,7 +13,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import pyarrow as pa
 
@@ -22,11 +22,11 @@ from compiler.files.records import Record, Whole, about, decoded
 from compiler.files.text_files import Stamp, file_sha256, stamp
 from compiler.files.text_files import read as read_text
 from fretc.audit.store.columns import fields_of, objects
+from fretc.audit.store.recordings import KnownBy
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
 
 _CODES = {code.number: code for code in Code}
-KnownBy = Literal["read", "stamp", "sha256"]
 
 
 class Entry(Record, frozen=True, kw_only=True):
@@ -38,8 +38,8 @@ class Entry(Record, frozen=True, kw_only=True):
     known_by: Annotated[
         KnownBy,
         about(
-            "`read`: by this audit; its results were taken over as its size and times are as they "
-            "were (`stamp`), or its SHA-256"
+            "`read`: by this audit; its results, or its samples, were taken over as its size and "
+            "times are as they were (`stamp`), or its SHA-256"
         ),
     ]
     sha256: Annotated[str, about("empty: it was not read whole, or could not be")]
@@ -106,17 +106,30 @@ def entries(found: pa.Table) -> list[Entry]:
 # Who vouches -------------------------------------------------------------------------------------
 
 
-def vouched(folder: Path, plan: str, labels: Mapping[str, str], manifest: str, key: bytes) -> str:
+def vouched(
+    folder: Path,
+    plan: str,
+    claims: Mapping[str, str],
+    labels: Mapping[str, str],
+    manifest: str,
+    key: bytes,
+) -> str:
     """The file that vouches for a store.
 
     Args:
         folder: of the store.
         plan: the key of what its logs were judged by.
+        claims: the key of each claim of it.
         labels: that all runs were given.
         manifest: its SHA-256.
         key: of the user.
     """
-    content = {"plan": plan, "labels": dict(labels), "manifest": manifest}
+    content = {
+        "plan": plan,
+        "claims": dict(claims),
+        "labels": dict(labels),
+        "manifest": manifest,
+    }
     return f"{json.dumps({**content, 'check': _check(folder, content, key)})}\n"
 
 

@@ -63,8 +63,7 @@ class Input:
     changed: Callable[[], bool] = lambda: False
     """Whether it was written to since it was opened, or its name now belongs to another file."""
     beginning: Callable[[], Input | None] = lambda: None
-    """A copy of the bytes that were there when it was opened, where it has only become longer;
-    None where that is not so."""
+    """A copy of the bytes that were there when it was opened; None where it has not just grown."""
 
 
 def is_url(path: str) -> bool:
@@ -140,6 +139,7 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         return copy if (copy.size, copy.sha256()) == (size, sha256()) else None
 
     file, size = stream.fileno(), before.st_size
+    sha256: Callable[[], str]
     same = f"/proc/self/fd/{file}"
     sha256: Callable[[], str]
     if content is not None:

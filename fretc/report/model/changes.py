@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from monitors import kernel
+
 
 @dataclass(frozen=True, slots=True)
 class ChangeText:
@@ -62,3 +64,8 @@ def only_change(group: ChangeGroup, changes: Sequence[Change]) -> Change | None:
     """The requirement that nothing but this change touches, and that no other is touched by."""
     own = [change for change in changes if change.texts == (group.change,)]
     return own[0] if len(group.requirements) == len(own) == 1 else None
+
+
+def new_violations(change: Change) -> int:
+    """The runs that violate it now, and did not at its review."""
+    return sum(now == kernel.VIOLATED for _, _, now in change.verdicts)

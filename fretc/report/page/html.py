@@ -13,6 +13,7 @@ from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from fretc.report.across.layout import drawn_lanes, drawn_uses
+from fretc.report.model.changes import Change, follows, new_violations
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Report
 from fretc.report.page.matrix import Picture, picture
@@ -23,8 +24,8 @@ from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
 from fretc.report.sections.details import Details
 
-_MOST_CHANGES = 100
-"""The most changes, and the most runs with another verdict, in one list."""
+_MOST_CHANGES, _MOST_RUNS = 100, 20
+"""The most changes in a list, and the most runs of one requirement with another verdict."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
@@ -54,10 +55,22 @@ def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> 
         argument=visible_texts(_argument(report)),
         across=visible_texts(_across(report, choice, _links(choice))),
         changes=visible_texts({each.anchor: asdict(each) for each in page.changes if each.anchor}),
+        consequences=visible_texts(_consequences(page.changes)),
         most=_MOST_CHANGES,
+        most_runs=_MOST_RUNS,
         script_hash=hash_source(script),
         style_hash=hash_source(style),
     )
+
+
+def _consequences(changes: Sequence[Change]) -> list[dict[str, Any]]:
+    """The requirements of which something follows, those with the most violations first."""
+    found = [
+        {**asdict(each), "new_violations": new_violations(each), "follows": follows(each)}
+        for each in changes
+        if follows(each)
+    ]
+    return sorted(found, key=lambda each: -int(each["new_violations"]))
 
 
 def hash_source(text: str) -> str:
@@ -108,7 +121,7 @@ def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[st
 
 
 def _histograms(choice: Selection, details: Details) -> dict[str, list[dict[str, Any]]]:
-    whole = [anchor for anchor, section in choice.by_anchor.items() if not section.is_short]
+    whole = [] if choice.is_compact else [*choice.by_anchor]
     drawn: dict[str, list[dict[str, Any]]] = {anchor: [] for anchor in choice.by_anchor}
     for anchor, some in details.histograms(whole):
         drawn[anchor] = [

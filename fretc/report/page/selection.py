@@ -71,7 +71,7 @@ class SectionRuns:
     left_out: tuple[str, ...]
     """Sentences about what the page leaves out, and where that is."""
     is_short: bool
-    """Whether formulas, propositions, artefacts and histograms are left out."""
+    """Whether formulas, propositions and artefacts are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,12 +147,12 @@ def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
     yield (
         f"This page is compact, because {phrases.whole(total)} results are more than "
         f"{phrases.whole(COMPACT)}: runs that satisfy a requirement have a mark in the matrix and "
-        "no row of their own, and requirements are not drawn."
+        "no row of their own, and there are neither diagrams nor histograms."
     )
     if requirements > _WHOLE:
         yield (
-            f"With more than {_WHOLE} requirements, their formulas, propositions, artefacts and "
-            "histograms are left out as well."
+            f"With more than {_WHOLE} requirements, their formulas, propositions and artefacts are "
+            "left out as well."
         )
     yield "`fretc report --json` and `--csv` write all of it; the evidence file has every event."
 

@@ -11,14 +11,20 @@ from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.changes import Change, ChangeGroup, ChangeText, follows, only_change
+from fretc.report.model.changes import (
+    Change,
+    ChangeGroup,
+    ChangeText,
+    follows,
+    new_violations,
+    only_change,
+)
 from fretc.report.model.views import ReviewView, WaiverView, sign_mark
 from fretc.report.sections.signatures import of_review, of_waiver
 from fretc.report.traceability.changes import Change as TextChange
 from fretc.report.traceability.comparison import OTHER_TEXTS, Difference, difference
 from fretc.report.traceability.lock import Review, WithdrawnRequirement
 from fretish.diagnostics import signs
-from monitors import kernel
 
 _ACCEPTED = sign_mark("reviewed", signs.GOOD)
 _UNSIGNED = sign_mark("reviewed", signs.OPEN)
@@ -83,7 +89,7 @@ def change_groups(
 
     One that may be why its requirements have the most new violations each comes first.
     """
-    violations = {change.anchor: _new_violations(change) for change in changes}
+    violations = {change.anchor: new_violations(change) for change in changes}
     touched: dict[ChangeText, list[tuple[str, str]]] = {}
     links: Counter[ChangeText] = Counter()
     judged: set[ChangeText] = set()
@@ -114,17 +120,13 @@ def change_sentences(changes: Sequence[Change], groups: Sequence[ChangeGroup]) -
     left = len(groups) - _SENTENCES
     if left > 0:
         yield f"{phrases.times(left, 'more change')} since the review."
-    grouped = sum(_new_violations(change) for change in changes)
+    grouped = sum(new_violations(change) for change in changes)
     if grouped:
         runs = "is" if grouped == 1 else "are"
         yield f"{phrases.times(grouped, 'violation')} {runs} new since the review."
 
 
 _SENTENCES = 3
-
-
-def _new_violations(change: Change) -> int:
-    return sum(now == kernel.VIOLATED for _, _, now in change.verdicts)
 
 
 def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[Change, ...]:

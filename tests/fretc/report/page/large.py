@@ -98,7 +98,10 @@ def page(
     """The page of such a report."""
     assert build.report is not None
     assert build.details is not None
-    return html(enlarged(build.report, requirements, groups, choose), build.details)
+    report = enlarged(build.report, requirements, groups, choose)
+    (one,) = build.details.assessments.values()
+    assessments = {view.anchor: one for view in report.requirements}
+    return html(report, replace(build.details, assessments=assessments))
 
 
 def small(folder: Path) -> ReportBuild:

@@ -117,6 +117,26 @@ def test_texts_of_a_lock_are_shown_and_not_followed(page: Path) -> None:
     assert len(changes) < 20_000, "of a long text only what is around the difference"
 
 
+def test_of_many_runs_the_violated_ones_come_first_and_the_rest_is_counted(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    runs = [f"logs/{n:02}.mcap" for n in range(30)]
+    audited = written(tmp_path, known, *(result(known, "satisfied", run=run) for run in runs))
+    lock = locked(known, audited, tmp_path)
+    now = [
+        result(known, "violated", run=run, violations=[violation(14, 20, 11)])
+        if run >= "logs/05"
+        else result(known, "vacuous", run=run)
+        for run in runs
+    ]
+    html = make(known, written(tmp_path, known, *now), lock=lock).html
+    (tmp_path / "report.html").write_text(html or "", encoding="utf-8")
+    changes = section(tmp_path / "report.html")
+    assert "25 verdicts became violated" in changes
+    assert "5 verdicts became vacuous" in changes
+    assert changes.count("<td><bdi>violated</bdi></td>") == 20
+    assert "And 10 more runs, 5 of them violated" in changes
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     pytest.importorskip("playwright", reason="needs Playwright: pip install -e '.[dev]'")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fretc.report.page.html import html
+from compiler.project.folder import load
+from fretc.report.make import make
 from tests.fretc.report.cases import project, report_of, requirement, result, violation
 from tests.fretc.report.page.large import MARKS, mostly_satisfied, small
 from tests.fretc.report.page.large import page as page_of
@@ -26,12 +26,7 @@ Visit = Callable[..., "Page"]
 
 def empty(folder: Path) -> str:
     """A project without a requirement."""
-    (folder / "none.fret").write_text("", encoding="utf-8")
-    build = report_of(project(folder, "", hazards=None), folder)
-    assert build.report is not None
-    assert build.details is not None
-    report = replace(build.report, requirements=(), matrix=(), hazards=())
-    return html(report, build.details)
+    return make(load([], None, None), str(folder / "evidence.json")).html or ""
 
 
 def nothing_audited(folder: Path) -> str:
@@ -92,10 +87,10 @@ PAGES: dict[str, Callable[[Path], str]] = {
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     paths = {}
-    for name, make in PAGES.items():
+    for name, page_for in PAGES.items():
         folder = tmp_path_factory.mktemp("page")
         paths[name] = folder / "report.html"
-        paths[name].write_text(make(folder), encoding="utf-8")
+        paths[name].write_text(page_for(folder), encoding="utf-8")
     return paths
 
 
