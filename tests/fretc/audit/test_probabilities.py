@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import pytest
 from mcap.writer import CompressionType
 
-from tests.command import Fretc, untimed, write
+from tests.command import Fretc, Run, untimed, write
 from tests.fretc.audit.measurements.test_count_trials import fillings
 from tests.fretc.logs.logs import MS, S, number
 from tests.fretc.logs.logs import write as write_log
@@ -44,7 +44,14 @@ def fretc(fretc: Fretc) -> Fretc:
     """Run the command in a folder with bindings of c and r, and one requirement."""
     write("requirements/bindings.toml", BINDINGS)
     require(WITHIN)
-    return fretc
+
+    def run(command: str, *arguments: str) -> Run:
+        """With evidence of several logs in one file, too."""
+        named = {"-o", "--evidence", "--summary"} & {*arguments}
+        more = () if command != "audit" or named else ("-o", "build/evidence.json")
+        return fretc(command, *arguments, *more)
+
+    return run
 
 
 def require(sentence: str, id: str = "R7") -> None:
@@ -303,12 +310,12 @@ def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:
         assert estimate() == first
 
 
-def test_what_was_kept_of_a_stopped_audit_counts(fretc: Fretc) -> None:
+def test_a_log_that_is_written_anew_counts_anew(fretc: Fretc) -> None:
     logs(3, "1000", "0100")
-    fretc("audit", "runs", "--resume")
+    fretc("audit", "runs")
     content = Path("build/evidence.json").read_bytes()
     log("runs/001.mcap", "10000", "00000")
-    fretc("audit", "runs", "--resume")
+    fretc("audit", "runs")
     assert Path("build/evidence.json").read_bytes() != content
     assert counts() == (2, 1, 0)
 
