@@ -71,8 +71,8 @@ def values(kind: Any, *, held: bool) -> st.SearchStrategy[Any]:
         case types.TupleType(item_types=items):
             return st.tuples(*(values(item, held=held) for item in items)).map(list)
         case types.DictType(key_type=key, value_type=item, min_length=least):
-            names, items = values(key, held=held), values(item, held=held)
-            return st.dictionaries(names, items, min_size=least or 0, max_size=2)
+            key_values, item_values = values(key, held=held), values(item, held=held)
+            return st.dictionaries(key_values, item_values, min_size=least or 0, max_size=2)
         case types.StructType() | types.DataclassType():
             return records(kind, held=held)
     raise AssertionError(kind)
