@@ -10,10 +10,12 @@ from types import MappingProxyType
 
 from compiler.files.edition import __version__
 from compiler.files.records import UNSET, plain
+from compiler.files.records import replace as with_fields
 from compiler.files.templating import to_json
 from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
+from fretc.audit.evidence.courses import course, no_way
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Requirement, Result
@@ -220,16 +222,21 @@ def audited(plan: Plan, log: str) -> LogAudit:
     declarations, requirements = plan.declarations, monitored_requirements(plan)
     before = stamp(log)
     names = tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
-    recording = read(log, declarations, signals_of(declarations, names), plan.integrity)
+    drawn = declarations.map
+    beside = (drawn.x, drawn.y) if drawn else ()
+    wanted = signals_of(declarations, names)
+    recording = read(log, declarations, wanted, plan.integrity, beside)
     if isinstance(recording, Diagnostic):
         return _unread(plan, log, recording, before)
     recording = examined(recording, declarations, names)
     evidence = audit(recording, declarations, requirements, EVALUATIONS[plan.evaluation])
     phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
     records = [as_record(e) for e in evidence]
+    results = (*records, *_refused_results(plan, records[0]))
+    seen = course(recording, declarations)
     return LogAudit(
-        (*records, *_refused_results(plan, records[0])),
-        (*recording.findings, *findings(phased, declarations)),
+        (with_fields(results[0], course=seen), *results[1:]) if seen else results,
+        (*recording.findings, *findings(phased, declarations), *no_way(recording, declarations)),
         read=True,
         stamp=before if before == stamp(log) else None,
     )

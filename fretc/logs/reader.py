@@ -68,6 +68,7 @@ def read(
     declarations: Declarations,
     wanted: Collection[str],
     integrity: Integrity = Integrity.HASH,
+    beside: Sequence[Signal] = (),
 ) -> Recording | Diagnostic:
     """Read a log.
 
@@ -77,6 +78,8 @@ def read(
         wanted: names of declared signals.
         integrity: what is looked at beyond the messages of the topics that the bindings name. A
             log that is not as its index says is looked at in full.
+        beside: further signals, of topics that a wanted one reads, too. Nothing else of the
+            recording depends on them.
 
     Returns:
         The recording, with findings about single topics and damaged places; or what keeps the
@@ -87,18 +90,22 @@ def read(
         KeyError: a wanted signal is not declared.
     """
     signals = [declarations.signals[name] for name in dict.fromkeys(wanted)]
-    reading = partial(_read_log, path, declarations, signals, integrity)
+    reading = partial(_read_log, path, declarations, signals, integrity, beside)
     return within(0, Source(shown(path), "").span(), reading)
 
 
 def _read_log(
-    path: str, declarations: Declarations, signals: Sequence[Signal], integrity: Integrity
+    path: str,
+    declarations: Declarations,
+    signals: Sequence[Signal],
+    integrity: Integrity,
+    beside: Sequence[Signal],
 ) -> Recording | Diagnostic:
-    found = _opened(path, lambda: Columns(declarations, signals), integrity)
+    found = _opened(path, lambda: Columns(declarations, signals, beside), integrity)
     if isinstance(found, Diagnostic):
         return found
     place, run, columns, examples = found
-    recording = _recording(place, run, columns, examples, signals)
+    recording = _recording(place, run, columns, examples, signals, beside)
     return _too_long(recording, columns.clock, place) or recording
 
 
@@ -284,7 +291,12 @@ def _too_long(recording: Recording, clock: Clock, place: Span) -> Diagnostic | N
 
 
 def _recording(
-    place: Span, run: _Run, columns: Columns, examples: Examples, wanted: Sequence[Signal]
+    place: Span,
+    run: _Run,
+    columns: Columns,
+    examples: Examples,
+    wanted: Sequence[Signal],
+    beside: Sequence[Signal] = (),
 ) -> Recording:
     lost = [gap for _, _, gap in run.damages if gap is not None]
     gaps = tuple(sorted({columns.on_clock(gap) for gap in lost}))
@@ -292,10 +304,13 @@ def _recording(
     damages = [
         log_diagnostics.damaged(damage, gap, origin, file) for file, damage, gap in run.damages
     ]
-    samples = {
-        signal.name: Samples(*columns.samples(signal), signal.scale, signal.values)
-        for signal in wanted
-    }
+    samples, others = (
+        {
+            signal.name: Samples(*columns.samples(signal), signal.scale, signal.values)
+            for signal in signals
+        }
+        for signals in (wanted, beside)
+    )
     start, end = columns.span((min(a for a, _ in run.spans), max(b for _, b in run.spans)))
     return Recording(
         name=place.source.name,
@@ -317,4 +332,5 @@ def _recording(
         ),
         intact=not run.damages,
         checked=run.checked,
+        beside=others,
     )

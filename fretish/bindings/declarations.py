@@ -282,6 +282,14 @@ class Assumed:
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
+@dataclass(frozen=True, slots=True)
+class Map:
+    """`[map]`: where the robot is, for the pictures of a report; no verdict depends on it."""
+
+    x: Signal
+    y: Signal
+
+
 Part = tuple[str, str]
 """`("signal", "vx")`, `("proposition", "near")` or `("clock", "")`."""
 
@@ -311,6 +319,7 @@ class Declarations:
     mistakes: Mapping[Part, tuple[Diagnostic, ...]] = field(default_factory=dict)
     """Each signal and proposition that is declared and cannot be used, and why; the mistakes of a
     signal are those of the propositions that read it, too."""
+    map: Map | None = None
 
     @property
     def signal_names(self) -> tuple[str, ...]:

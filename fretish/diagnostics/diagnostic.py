@@ -130,6 +130,7 @@ class Code(Enum):
     PHASE_DEPENDENT = ("F425", "a verdict depends on where the grid of ticks begins")
     PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")
     PHASE_PROPOSED = ("F427", "another phase of the ticks keeps its verdicts more firmly")
+    NO_WAY = ("F428", "the map has nothing to draw")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")

@@ -280,7 +280,11 @@ class Way(Record, frozen=True):
         about("where a new line begins: between two lines the place is unknown"),
     ]
     error: Annotated[
-        Distance, about("metres: no place that was recorded is farther from the lines")
+        Distance,
+        about(
+            "metres: at the time of no sample the robot was farther from the place that the line "
+            "has at that time"
+        ),
     ]
     lines_left_out: Annotated[Count, about("lines that are not kept, because there are too many")]
 
@@ -308,7 +312,7 @@ class Words(Record, frozen=True):
 
 
 class Course(Record, frozen=True):
-    """What the pictures of a run show beside its results; the same in each result of the run."""
+    """What the pictures of a run show beside its results; it stands in the first of them."""
 
     way: Annotated[Way | None, about("null: the bindings declare no map, or nothing is known")]
     words: Annotated[dict[str, Words], about("each signal of words that the requirements read")]
@@ -422,7 +426,10 @@ class Result(Record, frozen=True, kw_only=True):
     ] = UNSET
     course: Annotated[
         Course | UnsetType,
-        about("absent: the bindings declare no map, and no signal of words is read"),
+        about(
+            "in the first result of the run; absent, too, where the bindings declare no map, and "
+            "no signal of words is read"
+        ),
     ] = UNSET
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import inf
 from typing import Any, TypeVar
@@ -157,3 +157,5 @@ class Recording:
     findings: tuple[Diagnostic, ...]
     intact: bool
     checked: Checked = EVERYTHING
+    beside: Mapping[str, Samples] = field(default_factory=dict)
+    """Signals that were read for pictures; no verdict and no finding depends on them."""

@@ -8,9 +8,10 @@ from math import inf
 from fretc.audit.evidence.briefs import stretches
 from fretc.audit.evidence.schema import Result
 from fretc.report.across.lanes import RunStretches, lanes, with_marks
+from fretc.report.across.maps import MOST_MAPS, RunResult, run_map
 from fretc.report.across.uses import RunNumbers, uses
 from fretc.report.model import phrases
-from fretc.report.model.across import Across, Lanes, RequirementAcross
+from fretc.report.model.across import Across, Lanes, RequirementAcross, RunMap
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.audits import SingleAudit
 from fretc.report.model.pictures import WordLane
@@ -37,9 +38,47 @@ def across(assessed: Sequence[Assessment], runs: Mapping[RunKey, Run]) -> Across
     of_each = {each.anchor: _results(each, runs) for each in active}
     of_all = _in_order([one for of in of_each.values() for one in of], runs)
     words = _words(active, runs)
+    maps, maps_left_out = _maps(active, of_each, runs)
     return Across(
         lanes("All requirements, a lane for each run", of_all, words=words),
         tuple(_requirement(each, of_each[each.anchor], most, marks) for each in active),
+        maps,
+        maps_left_out,
+    )
+
+
+def _maps(
+    active: Sequence[Assessment],
+    of_each: Mapping[str, Sequence[RunStretches]],
+    runs: Mapping[RunKey, Run],
+) -> tuple[tuple[RunMap, ...], str]:
+    """The maps of the worst runs, and how many runs with a way have none."""
+    grouped: dict[str, list[RunResult]] = {run.anchor: [] for run in runs.values()}
+    for assessment in active:
+        for audit, of in zip(assessment.audits, of_each[assessment.anchor], strict=True):
+            grouped[of.run].append(RunResult(of, audit.result))
+    with_way = [of for of in grouped.values() if any(_has_way(one.result) for one in of)]
+    ranked = sorted(with_way, key=_badness)
+    left = ranked[MOST_MAPS:]
+    maps = tuple(filter(None, map(run_map, ranked[:MOST_MAPS])))
+    if not left:
+        return maps, ""
+    violations = sum(len(one.result.violations) for of in left for one in of)
+    worst = min((one.of.mark for of in left for one in of), key=lambda mark: mark.severity)
+    return maps, (
+        f"{phrases.times(len(left), 'run')} without a map, none of them worse: the worst is "
+        f"{worst.text}, with {phrases.times(violations, 'violation')}."
+    )
+
+
+def _has_way(result: Result) -> bool:
+    return bool(result.course and result.course.way and result.course.way.times_ns)
+
+
+def _badness(of: Sequence[RunResult]) -> tuple[tuple[int, bool], int]:
+    return (
+        min(one.of.mark.severity for one in of),
+        -sum(len(one.result.violations) for one in of),
     )
 
 
@@ -147,7 +186,7 @@ def word_lanes(result: Result) -> tuple[WordLane, ...]:
         words = list(series.words)
         if series.changes_left_out and times:
             words[-1] = None
-        ends = [*times[1:], inf]
+        ends = [*times[1:], inf][: len(times)]
         pieces = tuple(
             (round(max(0.0, start), 6), round(min(end, after), 6), word)
             for start, after, word in zip(times, ends, words, strict=True)
