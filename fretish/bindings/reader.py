@@ -54,6 +54,7 @@ _OF_NUMBERS = ("unit", "valid", "invalid", "reduce", "footprint", "sensor")
 _MOST_WORDS, _LONGEST_WORD = 1000, 100
 _EXACT = 2**53
 """Numbers of words below it are exact in every field."""
+_MAP = ("x", "y")
 _NOWHERE = Path("", ())
 _PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
 _INVALID = {
@@ -138,7 +139,7 @@ class _Reader(Fields):
                 'write `[map]`, and below it `x = "/odom.pose.pose.position.x"`',
             )
             return None
-        self._check_keys(table, ("x", "y"), "[map]", "map")
+        self._check_keys(table, _MAP, "[map]", "map")
         x, y = self._coordinate(table, "x"), self._coordinate(table, "y")
         return Map(x, y) if x is not None and y is not None else None
 

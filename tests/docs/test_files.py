@@ -84,6 +84,7 @@ TABLES = {
     "variable.NAME": reader._VARIABLE,
     "interceptor": interceptor._INTERCEPTOR,
     "assume": interceptor._ASSUME,
+    "map": reader._MAP,
     "hazards.toml": hazards._FIELDS,
     "waivers.toml": waivers._FIELDS,
     "fretc.toml": settings._FIELDS,
@@ -135,6 +136,7 @@ LEAST: Mapping[str, Table] = {
     "variable.NAME": {},
     "interceptor": {"stop": "/s", "command": "/c", "output": "/o", "period": "10 ms"},
     "assume": {"stands": "stopped", "latency": "1 s", "braking": "1 s"},
+    "map": {"x": "/at.x", "y": "/at.y"},
     "hazards.toml": {"title": "t"},
     "waivers.toml": {
         "verdict": "vacuous", "reason": "r", "by": "b", "role": "r",
