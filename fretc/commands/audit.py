@@ -227,9 +227,12 @@ def _journal(evidence: str, plan: Plan) -> Journal | None:
 def _annotation_files(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
     from fretc.audit.evidence.declared_units import without_samples
     from fretc.audit.outputs.annotations import sidecars
+    from fretc.audit.outputs.foxglove_layout import layout_file
 
     results = without_samples(result.results, project.declarations)
-    return sidecars(results, project.rules, Path(folder or "build/annotations"))
+    place = Path(folder or "build/annotations")
+    logs = sidecars(results, project.rules, place)
+    return {**logs, **layout_file(results, project.rules, place)}
 
 
 def _text(result: Audit, project: Project, refusals: Sequence[Diagnostic], form: str) -> str:
