@@ -56,16 +56,22 @@ def run_map(results: Sequence[RunResult]) -> RunMap | None:
 def extent(points: Iterable[tuple[float, float]]) -> float:
     """The longer side of the box around some points; a metre at least."""
     xs, ys = zip(*points, strict=True)
-    return max(max(xs) - min(xs), max(ys) - min(ys), 1.0)
+    return float(max(max(xs) - min(xs), max(ys) - min(ys), 1.0))
 
 
 def _marks(one: RunResult, way: Way) -> Iterable[PlaceMark]:
     for number, violation in enumerate(one.result.violations, 1):
         at = place(way, violation.start_ns)
         if at is not None:
-            of = ((one.of.requirement,), one.of.anchor, one.of.section)
-            text = phrases.seconds(violation.start_s)
-            yield PlaceMark(*at, 1, *of, number, text)
+            yield PlaceMark(
+                *at,
+                count=1,
+                requirements=(one.of.requirement,),
+                anchor=one.of.anchor,
+                section=one.of.section,
+                number=number,
+                text=phrases.seconds(violation.start_s),
+            )
 
 
 def _merged(marks: Iterable[PlaceMark], near: float) -> list[PlaceMark]:

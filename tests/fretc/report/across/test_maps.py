@@ -6,7 +6,8 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from compiler.files.records import replace
+from compiler.files.records import decoded, replace
+from fretc.audit.evidence.briefs import stretches
 from fretc.audit.evidence.schema import Course, Way
 from fretc.report.across.lanes import RunStretches
 from fretc.report.across.layout import drawn_map
@@ -26,9 +27,7 @@ WAY: dict[str, Any] = {
 
 
 def of_run(*seconds: float) -> RunResult:
-    from fretc.audit.evidence.briefs import stretches
-
-    way = Way(**{key: tuple(v) if isinstance(v, list) else v for key, v in WAY.items()})
+    way = decoded(WAY, Way)
     ns = [10**9 + round(s * 1e9) for s in seconds]
     broken = [{"start_ns": n, "start_s": s} for n, s in zip(ns, seconds, strict=True)]
     found = replace(record(violations=broken), course=Course(way, {}))
@@ -60,7 +59,7 @@ def test_a_metre_is_as_long_upwards_as_to_the_right() -> None:
 
 def test_the_page_has_the_map_with_links_and_says_it_in_words(tmp_path: Path) -> None:
     known = project(tmp_path, R1)
-    bad = {"violations": [violation(10, 12), violation(60, 60)]}
+    bad: Any = {"violations": [violation(10, 12), violation(60, 60)]}
     course = {"way": WAY, "words": {"mode": {"times_ns": [], "words": [], "changes_left_out": 0}}}
     build = report_of(known, tmp_path, result(known, "violated", **bad, course=course))
     assert build.report is not None
