@@ -201,6 +201,8 @@ def run_facts(results: Sequence[Result]) -> RunFacts:
 
 def stretches(result: Result) -> Stretches:
     """The stretches of a result."""
+    if not (result.violations or result.unknown or result.open):
+        return Stretches(_length(result), (), (), ())
     at = _seconds(result)
     return Stretches(
         length=at(result.ticks),
@@ -234,6 +236,15 @@ def _seconds(result: Result) -> Callable[[int], float]:
         return round(times[before] + (times[after] - times[before]) * share, 9)
 
     return at
+
+
+def _length(result: Result) -> float:
+    """When the last tick ends, of a result without stretches."""
+    last = [events[-1] for events in (result.triggers, result.states, result.answers) if events]
+    known = max(last, key=lambda event: event.tick, default=None)
+    if known is None or not known.tick:
+        return round(result.ticks * _mean_tick(result), 9)
+    return round(known.seconds + (result.ticks - known.tick) * (known.seconds / known.tick), 9)
 
 
 def _mean_tick(result: Result) -> float:

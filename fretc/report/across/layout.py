@@ -90,6 +90,8 @@ class DrawnLanes:
     top: int
     axis: int
     row: int
+    is_calm: bool
+    """Whether nothing was violated; the lanes of a requirement are then left out of print."""
     runs: tuple[DrawnRun, ...]
     ticks: tuple[tuple[float, str], ...]
 
@@ -142,6 +144,7 @@ def drawn_lanes(content: Lanes, id: str, anchors: Collection[str]) -> DrawnLanes
         top=_TOP,
         axis=y + 2,
         row=_ROW,
+        is_calm=not any(m.kind == "violated" for run in content.lanes for m in run.marks),
         runs=tuple(runs),
         ticks=tuple((x(place), decimal(place)) for place in places(0.0, content.end)),
     )
@@ -213,6 +216,8 @@ class DrawnUses:
     axis: int
     row: int
     bound: float
+    is_calm: bool
+    """Whether no bound was crossed; it is then left out of print."""
     rows: tuple[DrawnRow, ...]
     ticks: tuple[tuple[float, str], ...]
 
@@ -234,6 +239,7 @@ def drawn_uses(content: Uses, id: str, anchors: Collection[str]) -> DrawnUses:
         axis=axis,
         row=_ROW,
         bound=_share(1.0),
+        is_calm=not any(use.is_crossed for row in content.rows for use in row.uses),
         rows=tuple(
             _row(row, name, _TOP + _ROW * place, anchors)
             for place, (row, name) in enumerate(zip(content.rows, names, strict=True))

@@ -21,7 +21,7 @@ from fretc.report.pictures.plots import drawing, histogram
 from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
 
-_ACROSS = 16
+_ACROSS = 12
 """The most requirements with pictures of all their runs; `--json` has those of all."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 

@@ -169,7 +169,8 @@ def test_a_requirement_that_no_run_can_violate_says_so_beside_its_verdict(tmp_pa
 
 def test_a_violation_has_its_picture_and_its_values(tmp_path: Path) -> None:
     text = Page(page(tmp_path)).text
-    cause = "stopped did not come by 1.4 s, triggered at 1.1 s; at 1.4 s clearance was unknown"
+    what = "stopped was false from 1.1 s to 2 s, it had to be true by 1.4 s"
+    cause = f"{what}; at 1.4 s clearance was unknown"
     old = "0.0318 m is 0.4 s old, and counts for 0.3 s"
     assert f"Violation 1. {cause}: {old} and vx was unknown." in text
     assert "From 0.1 s to 2 s: 2 ticks with a trigger (1 s to 1.2 s)" in text
