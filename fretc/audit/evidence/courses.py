@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from heapq import heapify, heappop, heappush
-from itertools import count
+from itertools import count, pairwise
 from math import ceil, floor, log10
 
 import numpy as np
@@ -195,7 +195,7 @@ def place(way: Way, ns: int) -> tuple[float, float] | None:
     begin, until = way.times_ns[0], way.times_ns[-1]
     if not way.lines_left_out and begin - _HOLD <= ns <= until + _HOLD:
         ns = min(max(ns, begin), until)
-    for first, end in zip(way.starts, (*way.starts[1:], len(way.times_ns)), strict=True):
+    for first, end in pairwise((*way.starts, len(way.times_ns))):
         times = way.times_ns[first:end]
         if times and times[0] <= ns <= times[-1]:
             own = np.array([time - times[0] for time in times], np.float64)

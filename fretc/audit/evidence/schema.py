@@ -268,12 +268,16 @@ MOST_POINTS, MOST_WORDS = 300, 300
 """Points of the way, and changes of one signal of words, that evidence keeps of a run."""
 
 
+_FAR = 10**9
+Metre = Annotated[int, Meta(ge=-_FAR, le=_FAR)] | Annotated[float, Meta(ge=-_FAR, le=_FAR)]
+
+
 class Way(Record, frozen=True):
     """Where the robot was, as lines with few points, for a map; no verdict depends on it."""
 
     times_ns: Annotated[tuple[Whole, ...], Meta(max_length=MOST_POINTS)]
-    x: Annotated[tuple[Number, ...], Meta(max_length=MOST_POINTS), about("in metres")]
-    y: Annotated[tuple[Number, ...], Meta(max_length=MOST_POINTS), about("in metres")]
+    x: Annotated[tuple[Metre, ...], Meta(max_length=MOST_POINTS), about("in metres")]
+    y: Annotated[tuple[Metre, ...], Meta(max_length=MOST_POINTS), about("in metres")]
     starts: Annotated[
         tuple[Count, ...],
         Meta(max_length=MOST_POINTS),

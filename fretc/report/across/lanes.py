@@ -114,7 +114,7 @@ def lanes(
     drawn = _drawn(chosen, end, marks)
     left_out = " ".join(filter(None, [_left_out(left), note.strip()]))
     text = " ".join(filter(None, [_in_words(chosen), left_out]))
-    return Lanes(title, round(end, 6), drawn, left_out, text)
+    return Lanes(title, max(round(end, 6), 1e-6), drawn, left_out, text)
 
 
 def with_marks(results: Sequence[RunStretches]) -> list[RunStretches]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import dist
 
 from fretc.audit.evidence.courses import place
@@ -35,10 +36,9 @@ def run_map(results: Sequence[RunResult]) -> RunMap | None:
     way = next((one.result.course.way for one in results if one.result.course), None)
     if way is None:
         return None
-    ends = (*way.starts[1:], len(way.times_ns))
     lines = tuple(
         tuple(zip(map(float, way.x[first:end]), map(float, way.y[first:end]), strict=True))
-        for first, end in zip(way.starts, ends, strict=True)
+        for first, end in pairwise((*way.starts, len(way.times_ns)))
     )
     points = [point for line in lines for point in line]
     if not points:
