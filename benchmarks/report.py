@@ -1,26 +1,36 @@
-"""How large the report is and how long it takes to make, from evidence that is there already."""
+"""How large the report is, and the time and memory it takes, from evidence that is there already.
+
+Each report is made in a process of its own, once from a JSON file and once from a store.
+"""
 
 from __future__ import annotations
 
 import argparse
 import json
 import random
-import resource
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from itertools import product
+from multiprocessing import get_context
 from pathlib import Path
 from statistics import median
 from typing import Any
 
 from compiler.files.edition import __version__
+from compiler.files.records import decoded
 from compiler.files.text_files import sha256
 from compiler.formalization.record import wording
 from compiler.project.folder import Project, load
 from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import BINDINGS as BOUND
 from fretc.audit.evidence.basis import of_all
-from fretc.audit.evidence.schema import SCHEMA
+from fretc.audit.evidence.schema import SCHEMA, Document, Result
+from fretc.audit.store.manifest import SCHEMA as STORES
+from fretc.audit.store.manifest import Manifest, Part
+from fretc.audit.store.parts import parts as parts_of
+from fretc.audit.store.tables import tabled
+from fretc.audit.store.writer import write_manifest, write_part
 from fretc.report.make import make
 
 BINDINGS = """\
@@ -83,23 +93,35 @@ def project(folder: Path, requirements: int) -> Project:
 
 def evidence(known: Project, runs: int, share: float) -> dict[str, Any]:
     """What an audit would have written: of each requirement a share of runs is violated."""
-    assert known.declarations is not None
-    choose = random.Random(1)
+    return {**head(known), "results": [each for run in results(known, runs, share) for each in run]}
+
+
+def head(known: Project) -> dict[str, Any]:
+    """The same without its results."""
     known_bases = bases(known)
-    rests_on = [known_bases[id(rule.requirement)] for rule in known.rules]
-    named = zip(known.rules, rests_on, strict=True)
-    bindings = of_all({rule.id: basis[BOUND] for rule, basis in named})
-    results = [
-        _result(choose, rule, basis, run, violated=choose.random() < share)
-        for run in range(runs)
-        for rule, basis in zip(known.rules, rests_on, strict=True)
-    ]
+    bound = {rule.id: known_bases[id(rule.requirement)][BOUND] for rule in known.rules}
     texts = [
         {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
         for rule in known.rules
     ]
-    head = {"schema": SCHEMA, "fretc": __version__, "bindings": {"file": "b", "sha256": bindings}}
-    return {**head, "requirements": texts, "results": results}
+    bindings = {"file": "b", "sha256": of_all(bound)}
+    return {"schema": SCHEMA, "fretc": __version__, "bindings": bindings, "requirements": texts}
+
+
+def results(known: Project, runs: int, share: float) -> Iterator[list[dict[str, Any]]]:
+    """The results of each run."""
+    choose, known_bases = random.Random(1), bases(known)
+    for run in range(runs):
+        yield [
+            _result(
+                choose,
+                rule,
+                known_bases[id(rule.requirement)],
+                run,
+                violated=choose.random() < share,
+            )
+            for rule in known.rules
+        ]
 
 
 def _moment(tick: int) -> dict[str, Any]:
@@ -208,28 +230,80 @@ def _violation(choose: random.Random, trigger: int, horizon: int) -> dict[str, A
     }
 
 
+# Each in a process of its own ---------------------------------------------------------------------
+
+JSON, STORE = "evidence.json", "evidence"
+SIZES = "50x20,50x20x1,50x100,1000x20,1000x100,15x10000"
+
+
+def written(folder: Path, requirements: int, runs: int, share: float, form: str) -> None:
+    """Write the project and its evidence, a run after the other."""
+    known = project(folder, requirements)
+    of_runs = results(known, runs, share)
+    if form == JSON:
+        with (folder / JSON).open("w", encoding="utf-8") as file:
+            file.write(json.dumps(head(known))[:-1] + ', "results": [')
+            for number, run in enumerate(of_runs):
+                file.write(("," if number else "") + json.dumps(run)[1:-1])
+            file.write("]}")
+        return
+    parts = []
+    for some in parts_of([f"runs/{run:04}.mcap" for run in range(runs)]):
+        of_part = [each for _ in some for each in decoded(next(of_runs), list[Result])]
+        part = write_part(folder / STORE, tabled(of_part, __version__))
+        assert isinstance(part, Part), part
+        parts.append(part)
+    document = decoded({**head(known), "results": []}, Document)
+    fields = (document.fretc, document.bindings, document.requirements, None, tuple(parts))
+    assert isinstance(write_manifest(folder / STORE, Manifest(STORES, *fields)), str)
+
+
+def report(folder: Path, requirements: int, form: str) -> tuple[float, float, float, float]:
+    """Make the page: seconds of CPU, MB of memory with nothing read and at most, MB of the page."""
+    paths = [str(folder / f"r{n}.fret") for n in range(requirements)]
+    known = load(paths, str(folder / "bindings.toml"), str(folder / "hazards.toml"))
+    before, start = _most_memory(), time.process_time()
+    page = make(known, str(folder / form)).html
+    assert page is not None
+    return time.process_time() - start, before, _most_memory(), len(page.encode()) / 1e6
+
+
+def _most_memory() -> float:
+    status = Path("/proc/self/status").read_text(encoding="ascii")
+    return int(status.partition("VmHWM:")[2].split()[0]) * 1024 / 1e6
+
+
 def main() -> None:
-    """Print a line for each size; each is made of evidence that is written first."""
+    """Print a line for each size and form."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--sizes", default="50x20,50x20x1,1000x100")
-    print(f"{'requirements x runs':>20} {'violated':>9} {'evidence':>10} {'page':>9} {'CPU':>8}")
-    for size in parser.parse_args().sizes.split(","):
-        requirements, runs, *share = (float(part) for part in size.split("x"))
-        violated = share[0] if share else 0.05
-        with tempfile.TemporaryDirectory() as folder:
-            known = project(Path(folder), int(requirements))
-            path = Path(folder, "evidence.json")
-            path.write_text(json.dumps(evidence(known, int(runs), violated)), encoding="utf-8")
-            start = time.process_time()
-            page = make(known, str(path)).html
-            took = time.process_time() - start
-            read = path.stat().st_size / 1e6
-        assert page is not None
-        named = f"{requirements:.0f} x {runs:.0f}"
-        written = len(page.encode()) / 1e6
-        print(f"{named:>20} {violated:>9.0%} {read:>7.1f} MB {written:>6.2f} MB {took:>6.1f} s")
-    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
-    print(f"most memory: {most:.1f} GB")
+    parser.add_argument("--sizes", default=SIZES, help="requirements x runs x violated share")
+    parser.add_argument("--forms", default=f"{JSON},{STORE}")
+    args = parser.parse_args()
+    print(
+        f"{'requirements x runs':>20} {'violated':>9}  {'evidence':>22} {'page':>8} {'CPU':>8}",
+        end="",
+    )
+    print(f" {'memory':>8}, before")
+    alone = get_context("spawn")
+    for size, form in product(args.sizes.split(","), args.forms.split(",")):
+        requirements, runs, *share = size.split("x")
+        violated = float(share[0]) if share else 0.05
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            with alone.Pool(1) as one:
+                one.apply(written, (folder, int(requirements), int(runs), violated, form))
+            read = sum(file.stat().st_size for file in _files(folder / form)) / 1e6
+            with alone.Pool(1) as one:
+                took, before, most, page = one.apply(report, (folder, int(requirements), form))
+        print(
+            f"{f'{requirements} x {runs}':>20} {violated:>9.0%}  {form:>13} {read:>5.0f} MB "
+            f"{page:>5.2f} MB {took:>6.1f} s {most:>5.0f} MB, {before:.0f} MB",
+            flush=True,
+        )
+
+
+def _files(path: Path) -> list[Path]:
+    return [each for each in path.rglob("*") if each.is_file()] if path.is_dir() else [path]
 
 
 if __name__ == "__main__":

@@ -18,23 +18,8 @@ from compiler.emit import TARGETS
 from compiler.files.edition import __version__
 from compiler.files.processes import shield
 from fretc.api.refusal import too_deep
-from fretc.commands.audit import audit
-from fretc.commands.bind import bind
-from fretc.commands.check import check
-from fretc.commands.completion import completion
-from fretc.commands.explain import explain
-from fretc.commands.formalize import compile_, fmt, import_
-from fretc.commands.info import info
-from fretc.commands.init import init
-from fretc.commands.report import report
-from fretc.commands.review import diff, lock
-from fretc.commands.sbom import sbom
-from fretc.commands.sign import sign
-from fretc.commands.simulate import simulate
-from fretc.commands.verify import verify
-from fretc.commands.verify_evidence import verify_evidence
 from fretc.terminal.completion import answered
-from fretc.terminal.group import DEFAULT, Commands
+from fretc.terminal.group import DEFAULT, Commands, Registry
 from fretc.terminal.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.limits import ExceededError, exceeded
@@ -46,8 +31,34 @@ _HELP = f"""From FRETish requirements to monitors, audited logs and a traceabili
 """
 
 
+_COMMANDS = Registry(
+    {
+        DEFAULT: "fretc.commands.formalize:compile_",
+        "init": "fretc.commands.init:init",
+        "fmt": "fretc.commands.formalize:fmt",
+        "import": "fretc.commands.formalize:import_",
+        "explain": "fretc.commands.explain:explain",
+        "info": "fretc.commands.info:info",
+        "bind": "fretc.commands.bind:bind",
+        "check": "fretc.commands.check:check",
+        "audit": "fretc.commands.audit:audit",
+        "report": "fretc.commands.report:report",
+        "trends": "fretc.commands.trends:trends",
+        "lock": "fretc.commands.review:lock",
+        "diff": "fretc.commands.review:diff",
+        "verify": "fretc.commands.verify:verify",
+        "verify-evidence": "fretc.commands.verify_evidence:verify_evidence",
+        "sign": "fretc.commands.sign:sign",
+        "simulate": "fretc.commands.simulate:simulate",
+        "sbom": "fretc.commands.sbom:sbom",
+        "completion": "fretc.commands.completion:completion",
+    }
+)
+
+
 @click.group(
     cls=Commands,
+    commands=_COMMANDS,
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     help=_HELP,
@@ -67,29 +78,6 @@ def cli(folders: tuple[str, ...]) -> None:
 
         before = OUTSIDE.set(folders)
         click.get_current_context().call_on_close(lambda: OUTSIDE.reset(before))
-
-
-for _command in (
-    compile_,
-    init,
-    fmt,
-    import_,
-    explain,
-    info,
-    bind,
-    check,
-    audit,
-    report,
-    lock,
-    diff,
-    verify,
-    verify_evidence,
-    sign,
-    simulate,
-    sbom,
-    completion,
-):
-    cli.add_command(_command)
 
 
 def main() -> None:
@@ -120,6 +108,10 @@ def main() -> None:
         _no_output(error)
         raise SystemExit(BAD) from None
     except Exception as error:
+        said = getattr(error, "diagnostic", None)  # as of a store that is damaged in the middle
+        if isinstance(said, Diagnostic):
+            say([said])
+            raise SystemExit(BAD) from None
         if "FRETC_TRACEBACK" in os.environ:
             raise
         say([_internal(error)])

@@ -49,6 +49,11 @@ class Requirement:
     """What is wrong with the header; its other fields are then not read."""
 
     @property
+    def name(self) -> str:
+        """As a person calls it: `No contact (R14)`; its id, where it has no title."""
+        return named(self.id, self.title)
+
+    @property
     def is_free_text(self) -> bool:
         """A text wholly in double quotes is kept, and not formalized."""
         return _FREE_TEXT.fullmatch(self.wording.text) is not None
@@ -63,6 +68,11 @@ class Requirement:
     def place(self, *path: str) -> Span:
         """Where a header field stands; the sentence where there is no header."""
         return self.header.value(*path) if self.header else self.wording
+
+
+def named(id: str, title: str) -> str:
+    """The title of a requirement, and its id behind it; the id, where it has no title."""
+    return f"{title} ({id})" if title else id
 
 
 def requirements(source: Source) -> tuple[tuple[Requirement, ...], tuple[Diagnostic, ...]]:

@@ -12,7 +12,6 @@ from contextvars import ContextVar
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
-from importlib.resources import files
 from typing import Any, cast
 
 from lark import Lark, ParseTree, Token, v_args
@@ -27,6 +26,7 @@ from fretish.diagnostics.mends import Mended
 from fretish.diagnostics.source import Span
 from fretish.mistakes.operators import unknown_character
 from fretish.mistakes.unexpected import Lexeme, Unexpected
+from fretish.reading.grammars import Grammar
 from fretish.syntax_errors import bad_duration, bad_probability, explain, no_sentence
 from fretish.units import NAMES, number
 from fretish.units import split as split_quantity
@@ -203,15 +203,7 @@ def _span(first: Token, last: Token | None = None) -> Span:
 
 @cache
 def _lark() -> Lark:
-    grammar = files("fretish").joinpath("grammar.lark").read_text(encoding="utf-8")
-    return Lark(
-        grammar + _QUANTITY,
-        start=["start", "value"],
-        parser="lalr",
-        lexer="basic",
-        propagate_positions=True,
-        maybe_placeholders=False,
-    )
+    return GRAMMAR.parser()
 
 
 _UNIT = "(?:" + "|".join(sorted((n for n in NAMES if n != "1"), key=len, reverse=True)) + ")"
@@ -222,6 +214,13 @@ _QUANTITY = (
     rf" *{_POWERED}(?:[*\/]{_POWERED})*/"
 )
 """A number and its unit: all units are known to the lexer, so no name is taken for one."""
+_OPTIONS = {
+    "start": ["start", "value"],
+    "lexer": "basic",
+    "propagate_positions": True,
+    "maybe_placeholders": False,
+}
+GRAMMAR = Grammar("fretish", "grammar", _OPTIONS, _QUANTITY)
 
 
 def _meta_span(meta: Any) -> Span:

@@ -12,7 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from decimal import Decimal
 from functools import cache
-from importlib.resources import files
 from typing import Literal, cast
 
 from lark import Lark, Token, Tree
@@ -27,6 +26,7 @@ from compiler.agents.gwendolen_errors import (
 )
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
+from fretish.reading.grammars import Grammar
 from fretish.reading.limits import within
 
 Sign = Literal["+", "-"]
@@ -108,8 +108,12 @@ def _read(source: Source) -> Agent | Diagnostic:
 
 @cache
 def _lark() -> Lark:
-    grammar = files("compiler.agents").joinpath("gwendolen.lark").read_text(encoding="utf-8")
-    return Lark(grammar, parser="lalr", lexer="contextual", propagate_positions=True)
+    return GRAMMAR.parser()
+
+
+GRAMMAR = Grammar(
+    "compiler.agents", "gwendolen", {"lexer": "contextual", "propagate_positions": True}
+)
 
 
 class _Reader:

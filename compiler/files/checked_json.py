@@ -13,6 +13,7 @@ from math import isfinite
 from typing import NoReturn
 
 _LARGEST = 2**63
+_DIGITS = 21
 _EXCERPT = 40
 
 
@@ -29,7 +30,11 @@ def parsed(text: str) -> Shape:
         RecursionError: it is nested too deeply.
     """
     value = json.loads(
-        text, object_pairs_hook=_distinct, parse_float=_finite, parse_constant=_no_number
+        text,
+        object_pairs_hook=_distinct,
+        parse_int=_bounded,
+        parse_float=_finite,
+        parse_constant=_no_number,
     )
     return Shape(value)
 
@@ -55,6 +60,12 @@ def _distinct(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
             raise ValueError(f"`{key[:_EXCERPT]}` is there twice in one object")
         fields[key] = value
     return fields
+
+
+def _bounded(word: str) -> int:
+    if len(word) > _DIGITS or not -_LARGEST <= int(word) < 2 * _LARGEST:
+        raise ValueError(f"`{word[:_EXCERPT]}` is too large for a whole number")
+    return int(word)
 
 
 def _finite(word: str) -> float:

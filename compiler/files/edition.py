@@ -5,11 +5,12 @@ from __future__ import annotations
 import hashlib
 import platform
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from pathlib import Path
 
 __version__ = "0.1.0"
+PACKAGE = f"pkg:pypi/fretc@{__version__}"
+"""The address of this version of the tool, as a package URL."""
 _ROOMS = ("fretish", "monitors", "compiler", "fretc")
 _LIBRARIES = ("lz4", "mcap", "mcap-ros1-support", "mcap-ros2-support", "numpy", "zstandard")
 """That have a part in a verdict: they read logs."""
@@ -27,7 +28,7 @@ def edition() -> str:
     for room in _ROOMS:
         root = Path(str(files(room)))
         for path in sorted(root.rglob("*")):
-            if path.suffix in (".py", ".lark"):
+            if path.suffix in (".py", ".lark", ".gz"):
                 text = path.read_bytes()
                 digest.update(f"\n{room}/{path.relative_to(root)} {len(text)}\n".encode())
                 digest.update(text)
@@ -35,6 +36,8 @@ def edition() -> str:
 
 
 def _version(library: str) -> str:
+    from importlib.metadata import PackageNotFoundError, version  # 20 ms of each start
+
     try:
         return version(library)
     except PackageNotFoundError:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Annotated, Any, TypeVar
 
 import msgspec
+import msgspec.inspect
 from msgspec import UNSET as UNSET
 from msgspec import Meta as Meta
 from msgspec import UnsetType as UnsetType
@@ -16,9 +17,12 @@ from msgspec.structs import replace as replace
 
 from compiler.files.checked_json import MisshapenError
 
+types = msgspec.inspect
+"""Types of records as values."""
 R = TypeVar("R")
 _LARGEST = 2**63 - 1
 _WHOLE = Meta(ge=-_LARGEST, le=_LARGEST)
+_STAMP = {"minimum": -(2**63), "maximum": 2**64 - 1}
 _COUNT = Meta(ge=0, le=_LARGEST)
 
 
@@ -29,8 +33,10 @@ class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
 
-Whole = Annotated[int, _WHOLE]
-"""Of 64 bits."""
+Whole = Annotated[int, Meta(extra_json_schema=_STAMP)]
+"""Of 64 bits, with or without a sign: nanoseconds by a clock. `checked_json` refuses more."""
+Duration = Annotated[int, Meta(ge=0, extra_json_schema={"maximum": 2**64 - 1})]
+"""Nanoseconds between two such times."""
 Count = Annotated[int, _COUNT]
 Ordinal = Annotated[int, Meta(ge=1, le=_LARGEST)]
 Number = Annotated[int, _WHOLE] | float

@@ -72,10 +72,16 @@ def settings(folder: str) -> Settings | Diagnostic:
     return Settings(start)
 
 
+def repository(folder: Path) -> Path | None:
+    """The root of the repository that a folder is in; None where it is in none."""
+    around = (folder, *folder.parents)
+    return next((place for place in around if (place / ".git").exists()), None)
+
+
 def _project(start: Path) -> Iterator[Path]:
     """The folder and those above it, as far as they are one project."""
     around = (start, *start.parents)
-    root = next((place for place in around if (place / ".git").exists()), None)
+    root = repository(start)
     if root is None:
         here = Path.cwd().resolve()
         root = here if start.is_relative_to(here) else start

@@ -8,11 +8,13 @@ from __future__ import annotations
 import json
 from functools import cache
 from importlib.resources import files
+from json.encoder import encode_basestring_ascii
 from pathlib import Path
 from typing import Any
 
 import tomli_w
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
 
 from fretish.diagnostics import signs
 
@@ -47,6 +49,7 @@ def _environment() -> Environment:
     environment.filters["python"] = python
     environment.filters["comment"] = comment
     environment.filters["json"] = to_json
+    environment.filters["data"] = data
     environment.filters["toml"] = toml
     environment.filters["key"] = key
     environment.filters["hoa"] = quoted
@@ -75,6 +78,12 @@ def quoted(text: str) -> str:
     """The text in double quotes, on one line: a string of HOA, and of DOT where it is no label."""
     escaped = " ".join(text.split()).replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'
+
+
+def data(value: object) -> Markup:
+    """JSON in a `<script>` of data, which no text in it can end."""
+    text = json.dumps(value, separators=(",", ":"))
+    return Markup(text.replace("<", "\\u003c"))
 
 
 def toml(text: str) -> str:
@@ -106,14 +115,24 @@ def to_json(value: object, indent: str = "") -> str:
     Raises:
         ValueError: a number is infinite or not a number.
     """
-    line = _encode(value)
-    if len(line) + len(indent) <= _WIDTH or not isinstance(value, dict | list | tuple):
-        return line
+    if not isinstance(value, dict | list | tuple):
+        return _scalar(value)
     inner = f"{indent}  "
     if isinstance(value, dict):
-        parts = [f"{_encode(str(k))}: {to_json(v, inner)}" for k, v in value.items()]
+        parts = [f"{_scalar(str(k))}: {to_json(v, inner)}" for k, v in value.items()]
     else:
         parts = [to_json(part, inner) for part in value]
     opening, closing = "{}" if isinstance(value, dict) else "[]"
+    length = len(indent) + len(opening) + len(closing)
+    length += sum(map(len, parts)) + 2 * max(0, len(parts) - 1)
+    if length <= _WIDTH and not any("\n" in part for part in parts):  # texts have none in JSON
+        return f"{opening}{', '.join(parts)}{closing}"
     separator = f",\n{inner}"
     return f"{opening}\n{inner}{separator.join(parts)}\n{indent}{closing}"
+
+
+def _scalar(value: object) -> str:
+    """JSON of what has no parts; most of it is of three kinds."""
+    if type(value) is str:
+        return encode_basestring_ascii(value)
+    return repr(value) if type(value) is int else _encode(value)

@@ -8,7 +8,7 @@ import os
 import secrets
 import stat
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
@@ -100,6 +100,8 @@ def unreadable(path: str, error: OSError) -> Diagnostic:
 
 
 def _nearest(path: str) -> str:
+    if os.path.islink(path):
+        return f"it is a link to `{os.readlink(path)}`, which is not there: copy what it stands for"
     folder = Path(path).parent
     try:
         near = suggestion(Path(path).name, (entry.name for entry in folder.iterdir()))
@@ -108,8 +110,8 @@ def _nearest(path: str) -> str:
     return f"did you mean `{folder / near}`?" if near else "check the name and the folder"
 
 
-def write(files: Mapping[Path, str | bytes]) -> Diagnostic | None:
-    """Write all of them: each under a temporary name first, then renamed.
+def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | None:
+    """Write all of them, whole or in pieces: each under a temporary name first, then renamed.
 
     Nothing half-written stays behind: when one cannot be written, none is put in place. A file
     keeps its permissions, and what is no regular file is never replaced. A link is followed where
@@ -143,15 +145,18 @@ def write(files: Mapping[Path, str | bytes]) -> Diagnostic | None:
     return None
 
 
-def _fill(temporary: Path, content: str | bytes, *, like: Path) -> None:
+def _fill(temporary: Path, content: str | bytes | Iterable[str], *, like: Path) -> None:
     """Write a new file, with the permissions of the one that it will replace, if there is one."""
-    data = content.encode() if isinstance(content, str) else content
+    whole = (content,) if isinstance(content, str | bytes) else content
+    pieces = (each.encode() if isinstance(each, str) else each for each in whole)
+    data = next(pieces, b"")
     mode = stat.S_IMODE(like.stat().st_mode) if like.exists() else _usual()
     if data.startswith(b"#!"):
         mode |= (mode & _READABLE) >> 2
     descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_WRONLY, 0o600)
     with os.fdopen(descriptor, "wb") as file:
         file.write(data)
+        file.writelines(pieces)
         file.flush()
         os.fchmod(descriptor, mode)
 

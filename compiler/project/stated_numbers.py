@@ -40,6 +40,15 @@ def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diag
     yield from _prose(rule, declarations)
 
 
+def drifted(rule: Formalized, declarations: Declarations) -> Iterator[tuple[str, str]]:
+    """The same as field and number: `("title", "0.40 m/s")`, `("params", "0.40 m/s")`."""
+    for name, text in rule.requirement.params.items():
+        stated, known = units.quantity(text), _propositions(rule, declarations, name)
+        if stated is not None and known and not _is_stated(stated, known):
+            yield "params", text
+    yield from ((field, words) for field, words, _ in _drifted_words(rule, declarations))
+
+
 def first_unit(rules: Iterable[Formalized]) -> Diagnostic | None:
     """F352 for the first number with a unit in the sentences of a project."""
     for rule in rules:
@@ -82,7 +91,7 @@ def _parameters(rule: Formalized, declarations: Declarations) -> Iterator[Diagno
                 place,
                 help='write a number and a unit: `"5 cm"`',
             )
-        elif known and not any(stated in constants(each.expression) for each in known):
+        elif known and not _is_stated(stated, known):
             yield Diagnostic(
                 Code.PARAMETER_DRIFT,
                 f"the requirement states {text} for `{name}`, and its binding has another number",
@@ -90,6 +99,10 @@ def _parameters(rule: Formalized, declarations: Declarations) -> Iterator[Diagno
                 help="make the binding or `params` say what is meant",
                 severity=Severity.WARNING,
             )
+
+
+def _is_stated(number: Exact, known: Iterable[Proposition]) -> bool:
+    return any(number in constants(each.expression) for each in known)
 
 
 def _propositions(rule: Formalized, declarations: Declarations, name: str) -> list[Proposition]:
@@ -104,15 +117,22 @@ def _propositions(rule: Formalized, declarations: Declarations, name: str) -> li
 
 
 def _prose(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
-    """F351 for a quantity that is none of those of its dimension that the requirement rests on."""
+    """F351 for each quantity in title and text that is none of those that are judged."""
+    for field, words, elsewhere in _drifted_words(rule, declarations):
+        yield _differs(rule, field, words, rule.requirement.place(field), elsewhere)
+
+
+def _drifted_words(
+    rule: Formalized, declarations: Declarations
+) -> Iterator[tuple[str, str, Span | None]]:
+    """Field, quantity, and where the requirement rests on another one of its dimension."""
     known = _numbers(rule, declarations)
     for field in ("title", "text"):
-        place = rule.requirement.place(field)
         for words, stated in _quantities(getattr(rule.requirement, field)):
             rivals = [(number, span) for number, span in known if number[0] == stated[0]]
             if not rivals or any(number == stated for number, _ in rivals):
                 continue
-            yield _differs(rule, field, words, place, rivals[0][1])
+            yield field, words, rivals[0][1]
 
 
 def _numbers(rule: Formalized, declarations: Declarations) -> list[tuple[Exact, Span | None]]:

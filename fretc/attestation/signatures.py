@@ -27,7 +27,7 @@ from fretish.reading.limits import within
 if TYPE_CHECKING:
     from fretc.attestation.keys import DsseEnvelope
     from fretc.attestation.signers import Signer, Signers
-    from fretc.audit.evidence.schema import Evidence
+    from fretc.audit.evidence.briefs import EvidenceSource
 
 SUFFIX = ".intoto.jsonl"
 SIGNERS = "allowed_signers"
@@ -179,7 +179,7 @@ class SignatureBook:
         about = [one for one in self.envelopes if _has(one, kind, sha256)]
         return self._of(about, Subject(kind, "", sha256), None)
 
-    def agreed(self, evidence: Evidence) -> Signing:
+    def agreed(self, evidence: EvidenceSource) -> Signing:
         """Who signed evidence with a statement that says the same as the file."""
         now = attestation.evidence(evidence, None)
         agreeing = [one for one in self.envelopes if _agrees(one.envelope.statement, now)]

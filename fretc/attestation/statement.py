@@ -17,10 +17,11 @@ from typing import Any
 
 from compiler.files.checked_json import MisshapenError, Shape, plain
 from compiler.files.edition import __version__, edition
+from compiler.files.records import UNSET
 from compiler.files.shell_quoting import is_sha256
 from compiler.logic.claims import Proof
 from fretc.audit.evidence.basis import KINDS
-from fretc.audit.evidence.schema import Evidence, Result
+from fretc.audit.evidence.briefs import Brief, EvidenceSource
 from fretc.report.traceability.lock import Review
 from fretc.report.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
@@ -132,13 +133,10 @@ def _subject(at: Shape, about: str) -> Subject:
 # What is signed --------------------------------------------------------------------------------
 
 
-def evidence(file: Evidence, proofs: Proofs | None) -> Statement:
+def evidence(file: EvidenceSource, proofs: Proofs | None) -> Statement:
     """Of audits, and of what was proved beside them."""
-    logs = dict.fromkeys(
-        Subject(LOG, result.run, result.hashes["log"])
-        for result in file.results
-        if "log" in result.hashes
-    )
+    briefs = [brief for _, brief in file.briefs()]
+    logs = dict.fromkeys(Subject(LOG, each.run, each.log) for each in briefs if each.log)
     return Statement(
         EVIDENCE,
         (
@@ -148,18 +146,19 @@ def evidence(file: Evidence, proofs: Proofs | None) -> Statement:
         ),
         {
             "fretc": file.fretc,
-            "requirements": _requirements(file.results),
+            "requirements": _requirements(briefs),
             "probabilities": [[one.requirement, one.answer] for one in file.probabilities],
             "proofs": _proved(proofs.proofs) if proofs else [],
         },
     )
 
 
-def _requirements(results: Sequence[Result]) -> list[dict[str, Any]]:
+def _requirements(results: Sequence[Brief]) -> list[dict[str, Any]]:
     """Of each requirement what its verdicts rest on, and the verdicts."""
     verdicts_of: dict[str, dict[str, Any]] = {}
     for result in results:
-        rests_on = {kind: result.hashes[kind] for kind in KINDS if kind in result.hashes}
+        recorded = zip(KINDS, result.rests_on, strict=True)
+        rests_on = {kind: known for kind, known in recorded if known is not UNSET}
         key = json.dumps([result.requirement, rests_on], sort_keys=True)
         one = {"id": result.requirement, "rests_on": rests_on, "verdicts": []}
         verdicts_of.setdefault(key, one)["verdicts"].append([result.run, result.verdict])

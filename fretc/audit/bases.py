@@ -9,15 +9,26 @@ from fretc.audit.evidence.basis import Basis, basis
 from fretc.audit.refusals import in_force, refusals
 
 
-def bases(project: Project) -> Mapping[int, Basis]:
-    """What a verdict on each requirement rests on, by its `id()`: those in force and all others."""
+def audited_topics(project: Project) -> frozenset[str]:
+    """The topics that an audit of the project reads."""
     declarations = project.declarations
+    if declarations is None:
+        return frozenset()
     refused = {id(requirement) for requirement, _ in refusals(project)}
     auditable = [rule for rule in in_force(project) if id(rule.requirement) not in refused]
-    topics: set[str] = set()
-    if declarations is not None:
-        used = declarations.reading(name for rule in auditable for name in rule.watched)
-        topics = {signal.path.topic for signal in used.signals.values()}
+    used = declarations.reading(name for rule in auditable for name in rule.watched)
+    return frozenset(signal.path.topic for signal in used.signals.values())
+
+
+def bases(project: Project, topics: frozenset[str] | None = None) -> Mapping[int, Basis]:
+    """What a verdict on each requirement rests on, by its `id()`: those in force and all others.
+
+    Args:
+        project: with or without errors.
+        topics: its `audited_topics`, where they are known.
+    """
+    declarations = project.declarations
+    topics = audited_topics(project) if topics is None else topics
     rules = {id(rule.requirement): rule for rule in project.rules}
     return {
         id(each): basis(each, rules.get(id(each)), declarations, topics)

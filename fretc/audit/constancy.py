@@ -3,47 +3,71 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from fretc.audit.evidence.schema import Result
-from fretc.audit.measurements.tallies import NOTHING, Tally
+from fretc.audit.measurements.tallies import Tally
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 
-def tallies_of(results: Sequence[Result]) -> dict[str, list[Tally]]:
-    """Of each proposition its tally in each run, from the results of an audit.
+@dataclass(frozen=True, slots=True)
+class Total:
+    """The ticks of a proposition in some runs."""
 
-    A proposition of several requirements counts once in each run.
+    ticks: Tally
+    runs: int
+
+
+def totals(runs: Iterable[Mapping[str, Tally]]) -> dict[str, Total]:
+    """The total of each proposition.
+
+    Args:
+        runs: the tally of each proposition in each run.
     """
-    tallies: dict[str, dict[str, Tally]] = {}
-    for result in results:
-        for name, counts in result.propositions.items():
-            tallies.setdefault(name, {})[result.run] = counts
-    return {name: list(runs.values()) for name, runs in tallies.items()}
+    of_name: dict[str, list[Tally]] = {}
+    for tallies in runs:
+        for name, tally in tallies.items():
+            of_name.setdefault(name, []).append(tally)
+    return {name: Total(_sum(some), len(some)) for name, some in of_name.items()}
+
+
+def _sum(tallies: Sequence[Tally]) -> Tally:
+    return Tally(
+        sum(each.true for each in tallies),
+        sum(each.false for each in tallies),
+        sum(each.unknown for each in tallies),
+        sum(each.changes for each in tallies),
+    )
+
+
+def tallies_of(results: Iterable[Result]) -> dict[str, Tally]:
+    """The tally of each proposition in one run, from all its results."""
+    return {name: counts for result in results for name, counts in result.propositions.items()}
 
 
 def never_changed(
-    tallies: Mapping[str, Sequence[Tally]],
+    of_all: Mapping[str, Total],
     declarations: Declarations,
     diagnostics: Iterable[Diagnostic] = (),
 ) -> Iterator[Diagnostic]:
     """F314 for each proposition that changed in none of the runs.
 
     Args:
-        tallies: of each declared proposition one for each run.
+        of_all: of each declared proposition that of all runs.
         declarations: where it points to.
         diagnostics: of the runs. Where one is an error in the bindings (no such topic, no such
             field), propositions that were unknown throughout get no other diagnostic.
     """
     source = declarations.source.name
     explained = any(d.is_error and d.span and d.span.source.name == source for d in diagnostics)
-    for name, tallies_of_runs in tallies.items():
-        total = sum(tallies_of_runs, NOTHING)
+    for name, of_runs in of_all.items():
+        total = of_runs.ticks
         if total.changes or not total.true + total.false + total.unknown:
             continue
         if explained and not total.true + total.false:
             continue
-        runs = "the log" if len(tallies_of_runs) == 1 else f"any of {len(tallies_of_runs)} logs"
+        runs = "the log" if of_runs.runs == 1 else f"any of {of_runs.runs} logs"
         yield Diagnostic(
             Code.NEVER_CHANGED,
             f"`{name}` never changed in {runs}: {_always(total)}",

@@ -1,4 +1,4 @@
-"""Which logs are meant: files, folders of them, patterns, standard input, URLs."""
+"""Which logs are meant: files, folders of them, patterns, standard input, URLs, stores."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from pathlib import Path
 
 from compiler.files.text_files import unreadable
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
-from fretc.logs.storage.inputs import STDIN, is_url
+from fretc.logs.storage.inputs import STDIN, is_url, shown
+from fretc.logs.storage.listings import below, is_store
 from fretc.logs.storage.splits import ACTIVE, is_backup, run_name, split
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
@@ -66,7 +67,9 @@ def _elsewhere(path: str) -> bool:
 
 def _named(path: str) -> Iterator[str | Diagnostic]:
     """What one path stands for."""
-    if not path or _elsewhere(path) or not (glob.has_magic(path) or os.path.isdir(path)):
+    if is_store(path):
+        yield from _stored(path)
+    elif not path or _elsewhere(path) or not (glob.has_magic(path) or os.path.isdir(path)):
         yield path
     elif os.path.isdir(path):
         yield from list(_below(Path(path))) or [_empty(path)]
@@ -81,6 +84,17 @@ def _named(path: str) -> Iterator[str | Diagnostic]:
                 yield from _below(Path(match))
             elif os.path.basename(match) != METADATA:
                 yield match
+
+
+def _stored(path: str) -> Iterator[str | Diagnostic]:
+    """The logs below a folder of a store, or what a pattern matches in it."""
+    found = below(path, lambda name: name.endswith(_LOGS) and not name.endswith(ANNOTATIONS))
+    if found is None or isinstance(found, Diagnostic):
+        yield path if found is None else found
+    elif path.endswith("/"):
+        yield from found or [_empty(shown(path))]
+    else:
+        yield from found or [_no_match(shown(path))]
 
 
 def _below(path: Path, visited: dict[str, None] | None = None) -> Iterator[str | Diagnostic]:
@@ -113,8 +127,9 @@ def _below(path: Path, visited: dict[str, None] | None = None) -> Iterator[str |
     if isinstance(run, Folder) and (len(run.files) > 1 or run.compressed):
         yield str(path)
         files = [file for file in files if file.name not in run.files]
+    own = {*files}
     for entry in entries:
-        if entry in files:
+        if entry in own:
             yield str(entry)
         elif entry.is_dir():
             yield from _below(entry, visited)

@@ -2,37 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from types import MappingProxyType
 
 from compiler.files.edition import __version__
-from compiler.files.records import UNSET, plain
-from compiler.files.records import replace as with_fields
-from compiler.files.templating import to_json
+from compiler.files.records import UNSET
+from compiler.files.records import replace as record_with
 from compiler.files.text_files import Stamp, file_sha256, stamp
-from fretc.audit.constancy import never_changed, tallies_of
+from fretc.audit.constancy import never_changed, tallies_of, totals
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
+from fretc.audit.evidence.briefs import Brief, EvidenceSource, brief
 from fretc.audit.evidence.courses import course, no_way
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Requirement, Result
+from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Hashes, Requirement, Result
 from fretc.audit.evidence.verdicts import VERDICTS
-from fretc.audit.evidence.writer import as_record, unjudged, unread
+from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged, unread
 from fretc.audit.evidence.writer import text as written
-from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.audit.measurements.judgement import Engine as Evaluation
-from fretc.audit.one_log import audit, examined, signals_of
+from fretc.audit.measurements.tallies import Tally
+from fretc.audit.one_log import (
+    MonitoredRequirement,
+    audit,
+    examined,
+    hash_of,
+    hash_of_messages,
+    signals_of,
+)
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
 from fretc.audit.pool import Killed, each, was_killed
+from fretc.audit.store.recordings import Kept, KnownBy
+from fretc.logs.labels import NO_METADATA, labels, over
 from fretc.logs.reader import read
+from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.inputs import STDIN
 from fretc.logs.storage.inputs import shown as called
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.diagnostics.rendering import visible
+from fretish.reading.memory import remembered
 from monitors import kernel
 
 
@@ -40,56 +51,30 @@ from monitors import kernel
 class Audit:
     """The outcome of an audit: one result for each run and requirement, runs in their order."""
 
-    results: tuple[Result, ...]
-    evidence: str
-    """The text of the evidence file."""
+    document: Document
     diagnostics: tuple[Diagnostic, ...]
     read: int = 0
     """How many of the logs could be read."""
-    estimates: tuple[Estimated, ...] = ()
-    """What all runs say of each requirement with a probability."""
 
     @property
-    def violated(self) -> bool:
-        """Whether any requirement is violated in any run, or refuted by all of them."""
-        return any(one.answer == REFUTED for one in self.estimates) or any(
-            result.verdict == kernel.VIOLATED for result in self.results
-        )
+    def results(self) -> tuple[Result, ...]:
+        """Each of a run and a requirement."""
+        return self.document.results
 
     @property
-    def shown(self) -> bool:
-        """Whether every requirement is satisfied in every run, or supported by all of them."""
-        of_all_runs = {one.requirement for one in self.estimates}
-        return all(one.answer == SUPPORTED for one in self.estimates) and all(
-            result.verdict == kernel.SATISFIED
-            for result in self.results
-            if result.requirement not in of_all_runs
-        )
+    def estimates(self) -> tuple[Estimated, ...]:
+        """What all runs say of each requirement with a probability."""
+        return self.document.probabilities or ()
 
     @property
-    def as_json(self) -> str:
-        """One JSON array, an object per run and requirement; with probabilities, both by name."""
-        results = plain(self.results)
-        if not self.estimates:
-            return f"{to_json(results)}\n"
-        return f"{to_json({'results': results, 'probabilities': plain(self.estimates)})}\n"
+    def evidence(self) -> str:
+        """The text of the evidence file."""
+        return written(self.document)
 
     @property
-    def text(self) -> tuple[tuple[str, str | None], ...]:
-        """Lines for a person, each with its colour."""
-        lines: list[tuple[str, str | None]] = []
-        width = max((len(result.requirement) for result in self.results), default=0)
-        run = None
-        for result in self.results:
-            if result.run != run:
-                run = result.run
-                lines.append((run, None))
-            verdict = VERDICTS[result.verdict]
-            name = f"{result.requirement:<{width}}"
-            line = f"  {verdict.sign.glyph} {name}  {verdict.word:<12}  {result.reason}"
-            lines.append((line, verdict.sign.colour))
-        lines.extend(estimate_lines(self.estimates))
-        return tuple((visible(line), colour) for line, colour in lines)
+    def source(self) -> EvidenceSource:
+        """The results, to be read from."""
+        return Evidence("", "", self.document)
 
 
 def estimate_lines(estimates: Sequence[Estimated]) -> tuple[tuple[str, str | None], ...]:
@@ -121,6 +106,8 @@ class LogAudit:
     """Whether the log could be read."""
     stamp: Stamp | None = None
     """The file's before its audit; None where it is no file, or has changed since."""
+    known_by: KnownBy = field(default="read", compare=False)
+    """Whether the log was read, or by what it is known to be what it was when it was."""
 
 
 LogAudits = Generator[tuple[str, LogAudit] | Diagnostic, None, None]
@@ -130,15 +117,30 @@ Engine = Callable[[Plan, Sequence[str]], LogAudits]
 """Where logs are audited. Closing what it gives ends all work at once."""
 
 
-def locally(jobs: int) -> Engine:
-    """On this machine, in some processes."""
+def _nothing(_: str) -> Sequence[Result]:
+    return ()
+
+
+def locally(
+    jobs: int, kept: Kept | None = None, known: Callable[[str], Sequence[Result]] = _nothing
+) -> Engine:
+    """On this machine, in some processes.
+
+    Args:
+        jobs: how many.
+        kept: where the samples of logs are kept.
+        known: of a log, the results that `audited` may take over.
+    """
+
+    def judged(plan: Plan, log: str) -> LogAudit:
+        return audited(plan, log, known(log), kept)
 
     def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
         monitored_requirements(plan)  # before the processes are born: they inherit it
         if STDIN in logs:  # another process does not have it
             yield STDIN, audited(plan, STDIN)
         files = [log for log in logs if log != STDIN]
-        with closing(each(partial(audited, plan), files, jobs)) as done:
+        with closing(each(partial(judged, plan), files, jobs)) as done:
             for place, result in done:
                 log = files[place]
                 if isinstance(result, Killed):
@@ -182,31 +184,55 @@ def audit_logs(
             assert log not in done
             done[log] = one
             tell(log, one)
-    return gathered(plan, [done[log] for log in logs])
+    return gathered(plan, [labelled(plan, done[log]) for log in logs])
 
 
 def gathered(plan: Plan, audits: Sequence[LogAudit]) -> Audit:
     """One audit of the audits of single logs, in their order."""
     results = [result for one in audits for result in one.results]
-    diagnostics = _diagnostics(audits)
-    of_all_runs = estimates(plan.claims, results, plan.confidence)
-    constant = never_changed(tallies_of(results), plan.declarations, diagnostics)
+    of_all_runs = estimates_of(plan, map(brief, results))
+    tallies = (tallies_of(one.results) for one in audits)
+    of_logs = [(one.results[0].run, one.diagnostics) for one in audits]
     return Audit(
-        tuple(results),
-        written(_evidence(plan, results, of_all_runs)),
-        (*diagnostics, *constant, *warnings(of_all_runs)),
+        document(plan, results, of_all_runs),
+        diagnostics_of_all(plan, of_logs, tallies, of_all_runs),
         sum(one.read for one in audits),
-        of_all_runs,
     )
 
 
-def _diagnostics(audits: Sequence[LogAudit]) -> tuple[Diagnostic, ...]:
+def estimates_of(plan: Plan, results: Iterable[Brief]) -> tuple[Estimated, ...]:
+    """What all runs say of each requirement with a probability."""
+    ids = {claim.id for claim in plan.claims if claim.chance is not None}
+    counted = [each for each in results if each.requirement in ids] if ids else []
+    return estimates(plan.claims, counted, plan.confidence)
+
+
+def diagnostics_of_all(
+    plan: Plan,
+    of_logs: Sequence[tuple[str, Sequence[Diagnostic]]],
+    tallies: Iterable[Mapping[str, Tally]],
+    of_all_runs: Sequence[Estimated],
+) -> tuple[Diagnostic, ...]:
+    """What there is to say of all logs together.
+
+    Args:
+        plan: what they were judged by.
+        of_logs: the name of each run, and what there is to say of its log.
+        tallies: of each run, by proposition.
+        of_all_runs: what all say of each requirement with a probability.
+    """
+    diagnostics = _shared(of_logs)
+    constant = never_changed(totals(tallies), plan.declarations, diagnostics)
+    return (*diagnostics, *constant, *warnings(of_all_runs))
+
+
+def _shared(of_logs: Sequence[tuple[str, Sequence[Diagnostic]]]) -> tuple[Diagnostic, ...]:
     """The diagnostics of all logs. One that several logs share is given once."""
     runs: dict[Diagnostic, list[str]] = {}
-    for one in audits:
-        for diagnostic in one.diagnostics:
-            runs.setdefault(diagnostic, []).append(one.results[0].run)
-    return tuple(_of(diagnostic, of, len(audits)) for diagnostic, of in runs.items())
+    for run, diagnostics in of_logs:
+        for diagnostic in diagnostics:
+            runs.setdefault(diagnostic, []).append(run)
+    return tuple(_of(diagnostic, of, len(of_logs)) for diagnostic, of in runs.items())
 
 
 def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
@@ -217,28 +243,114 @@ def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
     return replace(diagnostic, message=f"{diagnostic.message} ({which})")
 
 
-def audited(plan: Plan, log: str) -> LogAudit:
-    """Audit one log; all that is needed for it is in the plan."""
+def audited(
+    plan: Plan, log: str, known: Sequence[Result] = (), kept: Kept | None = None
+) -> LogAudit:
+    """Audit one log; all that is needed for it is in the plan.
+
+    Args:
+        plan: what it is judged by.
+        log: its path.
+        known: results of an earlier audit of it, by claims whose `keys` were what they are now.
+            They are taken over where the log still is what they were found in; what the log shows
+            to all claims alike is found again.
+        kept: where the samples of logs are kept: an unchanged one is not read again.
+    """
     declarations, requirements = plan.declarations, monitored_requirements(plan)
     before = stamp(log)
-    names = tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
-    drawn = declarations.map
-    beside = (drawn.x, drawn.y) if drawn else ()
-    wanted = signals_of(declarations, names)
-    recording = read(log, declarations, wanted, plan.integrity, beside)
+    names = _propositions(requirements)
+    recording, by = _read(plan, log, names, kept, before)
     if isinstance(recording, Diagnostic):
         return _unread(plan, log, recording, before)
     recording = examined(recording, declarations, names)
-    evidence = audit(recording, declarations, requirements, EVALUATIONS[plan.evaluation])
-    phased = {e.requirement: e.phases for e in evidence if e.phases is not None}
-    records = [as_record(e) for e in evidence]
-    results = (*records, *_refused_results(plan, records[0]))
-    seen = course(recording, declarations)
-    return LogAudit(
-        (with_fields(results[0], course=seen), *results[1:]) if seen else results,
+    taken = {each.requirement: each for each in _taken_over(known, recording)}
+    new = [each for each in requirements if each.monitor.REQUIREMENTS[0].id not in taken]
+    evidence = audit(recording, declarations, new, EVALUATIONS[plan.evaluation]) if new else ()
+    of_claim = {e.requirement: as_record(e) for e in evidence} | taken
+    first, *others = (of_claim[claim.id] for claim in plan.claims)
+    records = (record_with(first, course=course(recording, declarations) or UNSET), *others)
+    phased = {each.requirement: phases_of(each.phases) for each in records if each.phases}
+    own = LogAudit(
+        (*records, *_refused_results(plan, first)),
         (*recording.findings, *findings(phased, declarations), *no_way(recording, declarations)),
         read=True,
         stamp=before if before == stamp(log) else None,
+        known_by=by,
+    )
+    return _with_own_labels(plan, own, recording.described)
+
+
+@remembered
+def _propositions(requirements: Sequence[MonitoredRequirement]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
+
+
+def _read(
+    plan: Plan, log: str, names: Sequence[str], kept: Kept | None, before: Stamp | None
+) -> tuple[Recording | Diagnostic, KnownBy]:
+    """The recording of a log with all signals of the propositions, read or kept."""
+    declarations, integrity = plan.declarations, plan.integrity
+    signals = signals_of(declarations, names)
+    known = kept.recording(log, declarations, signals, integrity) if kept else None
+    if known is not None:
+        return known
+    drawn = declarations.map
+    beside = (drawn.x, drawn.y) if drawn else ()
+    recording = read(log, declarations, signals, integrity, beside)
+    if kept is not None and isinstance(recording, Recording) and before == stamp(log):
+        kept.keep(log, before, recording, declarations, signals, integrity)
+    return recording, "read"
+
+
+def _taken_over(known: Sequence[Result], recording: Recording) -> Iterator[Result]:
+    """The results that an audit of the recording would give again.
+
+    Why there is no data may be the fault of another claim's topic: such a result is taken over only
+    where everything that was found in the log is the same.
+    """
+    if not known:
+        return
+    now, log = health(recording), hash_of(recording)
+    messages = hash_of_messages(recording)
+    for one in known:
+        then, hashes = one.health, {**one.hashes}
+        same_log = one.run == recording.name and log.items() <= hashes.items()
+        same_time = (one.start_ns, one.end_ns) == (recording.start_ns, recording.end_ns)
+        same_loss = (then.intact, then.gaps) == (now.intact, now.gaps)
+        same_cause = one.verdict != kernel.NO_DATA or then == now
+        if same_log and same_time and same_loss and same_cause:
+            if hashes.pop("messages", None) is not None or one.outcomes is not UNSET:
+                hashes |= messages
+            alike = {"health": now, "labels": UNSET, "course": UNSET}
+            yield record_with(one, fingerprints=Hashes(**hashes), **alike)
+
+
+def _with_own_labels(
+    plan: Plan, one: LogAudit, described: Mapping[str, tuple[str, ...]] = NO_METADATA
+) -> LogAudit:
+    """The audit of a log with the labels that the bindings ask for."""
+    declared = plan.declarations.labels
+    if not declared:
+        return one
+    found, notes = labels(declared, one.results[0].run, described)
+    return _with_labels(one, found, notes)
+
+
+def labelled(plan: Plan, one: LogAudit) -> LogAudit:
+    """The audit of a log with the labels that the command gives all runs."""
+    if not plan.labels:
+        return one
+    first = one.results[0]
+    found, notes = over(first.labels or {}, plan.labels)
+    return _with_labels(one, found, notes)
+
+
+def _with_labels(one: LogAudit, found: Mapping[str, str], notes: Sequence[Diagnostic]) -> LogAudit:
+    of_run = dict(sorted(found.items())) or UNSET
+    return replace(
+        one,
+        results=tuple(record_with(result, labels=of_run) for result in one.results),
+        diagnostics=(*one.diagnostics, *notes),
     )
 
 
@@ -282,7 +394,7 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogA
     """
     hashes = _hash_of(log, before)
     records = [unread(called(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
-    return LogAudit(tuple(records), (why,), read=False)
+    return _with_own_labels(plan, LogAudit(tuple(records), (why,), read=False))
 
 
 def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
@@ -292,7 +404,8 @@ def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
     return {} if digest is None or changed else {"log": digest}
 
 
-def _evidence(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]) -> Document:
+def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]) -> Document:
+    """The evidence of an audit."""
     return Document(
         schema=SCHEMA,
         fretc=__version__,

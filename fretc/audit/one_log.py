@@ -9,6 +9,7 @@ from statistics import median
 
 import numpy as np
 
+from fretc.audit.evidence.schema import Health
 from fretc.audit.evidence.writer import Evidence, health
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
 from fretc.audit.measurements.margins import Margin, margins, worst
@@ -25,11 +26,12 @@ from fretc.logs.signals.signals import blind_zones
 from fretc.logs.signals.traces import Timeline, Trace, trace
 from fretc.logs.signals.words import Foreign, shown
 from fretish import expressions as e
+from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
 from fretish.bindings.amounts import margin as margin_text
-from fretish.bindings.amounts import scaled, seconds, shared_unit
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
+from fretish.reading.memory import remembered
 from fretish.units import base_name
 from monitors import kernel
 from monitors.kernel import Column, Monitor
@@ -50,9 +52,20 @@ class MonitoredRequirement:
     @property
     def propositions(self) -> tuple[str, ...]:
         """All that are needed, each once."""
-        return tuple(dict.fromkeys((*self.monitor.PROPOSITIONS, *self.counted)))
+        return _needed(self)
 
 
+@remembered
+def _needed(requirement: MonitoredRequirement) -> tuple[str, ...]:
+    return tuple(dict.fromkeys((*requirement.monitor.PROPOSITIONS, *requirement.counted)))
+
+
+@remembered
+def _assumed(declarations: Declarations, requirement: MonitoredRequirement) -> tuple[str, ...]:
+    return declarations.reading(requirement.propositions).assumptions
+
+
+@remembered
 def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple[str, ...]:
     """The names of the signals that the propositions read, in the order of their first use."""
     return tuple(
@@ -121,8 +134,9 @@ def audit(
         for name in names
     }
     phases_of = phases(declarations, recording, [each.monitor for each in requirements])
+    found = health(recording)
     evidence = [
-        _evidence(recording, declarations, truths, margins_of, each, engine)
+        _evidence(recording, declarations, truths, margins_of, each, engine, found)
         for each in requirements
     ]
     return tuple(_phased(each, phases_of.get(each.requirement)) for each in evidence)
@@ -145,6 +159,7 @@ def _evidence(
     margins_of: Mapping[str, tuple[Margin, ...]],
     requirement: MonitoredRequirement,
     engine: Engine,
+    found: Health,
 ) -> Evidence:
     monitor = requirement.monitor
     columns = {name: truths.columns[name] for name in requirement.propositions}
@@ -183,16 +198,14 @@ def _evidence(
         propositions={name: tally(column, ticks) for name, column in columns.items()},
         margins=tuple(margin for name in columns for margin in margins_of[name]),
         units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},
-        hashes={_hashed(recording): recording.sha256, **requirement.hashes},
-        health=health(recording),
-        assumptions=declarations.reading(requirement.propositions).assumptions,
+        hashes={**hash_of(recording), **requirement.hashes},
+        health=found,
+        assumptions=_assumed(declarations, requirement),
     )
     evidence = replace(evidence, reason=_reason(evidence, recording, declarations))
     if requirement.count is None:
         return evidence
-    messages = fingerprint(recording)
-    if messages is not None:
-        evidence = replace(evidence, hashes={**evidence.hashes, "messages": messages})
+    evidence = replace(evidence, hashes={**evidence.hashes, **hash_of_messages(recording)})
     return _counted(evidence, _trials(requirement.count, columns, truths))
 
 
@@ -219,9 +232,15 @@ def _trials(count: Count, columns: Mapping[str, Column], truths: Trace) -> Trial
     return of_whole_ticks.before(count(longer, ticks + 1))
 
 
-def _hashed(recording: Recording) -> str:
-    """What the SHA-256 is of."""
-    return "log" if recording.checked.hashed else "log_summary"
+def hash_of(recording: Recording) -> Mapping[str, str]:
+    """SHA-256 of the log, by what it is of."""
+    return {"log" if recording.checked.hashed else "log_summary": recording.sha256}
+
+
+def hash_of_messages(recording: Recording) -> Mapping[str, str]:
+    """SHA-256 of all that was read of the messages, where there are any."""
+    messages = fingerprint(recording)
+    return {} if messages is None else {"messages": messages}
 
 
 def _moment(timeline: Timeline, tick: int) -> Moment:
@@ -295,8 +314,8 @@ def _latency(evidence: Evidence) -> str:
     if not latencies:
         return ""
     if len(latencies) == 1:
-        return f", answered after {seconds(latencies[0])}"
-    middle, longest = seconds(median(latencies)), seconds(max(latencies))
+        return f", answered after {duration(latencies[0])}"
+    middle, longest = duration(median(latencies)), duration(max(latencies))
     return f", answered after {middle} (median), {longest} (longest)"
 
 

@@ -10,6 +10,7 @@ from dataclasses import astuple, dataclass, field
 from functools import lru_cache, partial
 
 from compiler.files.edition import edition
+from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
 from compiler.project.folder import Project
@@ -48,6 +49,8 @@ class Plan:
     """Of the bounds of a probability over all logs."""
     refused: tuple[RefusedRequirement, ...] = field(default=(), compare=False, repr=False)
     """The requirements in force that are not among the claims."""
+    labels: Mapping[str, str] = field(default_factory=dict, compare=False)
+    """What the command says of all runs. No audit of a log depends on it: the key does not."""
 
     @property
     def named(self) -> tuple[Claim | RefusedRequirement, ...]:
@@ -125,6 +128,40 @@ def _key(
     parts = [SCHEMA, edition(), evaluation, integrity, texts, reasons]
     digest.update(json.dumps(parts).encode())
     return digest.hexdigest()
+
+
+@lru_cache(maxsize=4)
+@deep
+def keys(plan: Plan) -> Mapping[str, str]:
+    """Of each claim SHA-256 of all that its result in a log rests on beside the log, to the letter.
+
+    Left out is what a log shows to all claims alike (its health, its labels), and where something
+    stands in the bindings: no result says that.
+    """
+    clock, signals = plan.declarations.clock, plan.declarations.signals.values()
+    topics = sorted({signal.path.topic for signal in signals})
+    common = [SCHEMA, edition(), plan.evaluation, plan.integrity, repr(clock), topics]
+    requirements = zip(plan.claims, monitored_requirements(plan), strict=True)
+    return {
+        claim.id: sha256(json.dumps([*common, _letters(plan, claim, each.propositions)]))
+        for claim, each in requirements
+    }
+
+
+def _letters(plan: Plan, claim: Claim, propositions: Sequence[str]) -> list[object]:
+    """All that a claim says, and what its propositions mean; places have no part in `repr`."""
+    read = plan.declarations.reading(propositions)
+    return [
+        claim.id,
+        claim.sentence,
+        dict(claim.basis),
+        claim.monitor,
+        astuple(claim.demand),
+        claim.chance and claim.chance.text,
+        [repr(read.propositions[name]) for name in propositions],
+        [repr(signal) for _, signal in sorted(read.signals.items())],
+        read.assumptions,
+    ]
 
 
 @deep

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import time
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.audit_progress import audit_all
+from fretc.commands.audit_progress import audit_in_memory, audit_into
 from fretc.commands.summary import summarize
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import (
@@ -19,13 +20,13 @@ from fretc.terminal.options import (
     bindings_option,
     format_option,
     jobs_option,
+    label_option,
     output_option,
     path_option,
     requirements_option,
 )
 from fretc.terminal.output import (
     BAD,
-    EVIDENCE,
     NOT_SHOWN,
     SHOWN,
     VIOLATION,
@@ -36,23 +37,26 @@ from fretc.terminal.output import (
     say,
     say_also,
     say_briefly,
+    say_line,
     stop,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
-    from compiler.project.folder import Project
-    from fretc.audit.journal import Journal
-    from fretc.audit.many_logs import Audit, Engine
+    from fretc.audit.into_store import Earlier, Session
+    from fretc.audit.many_logs import Engine
     from fretc.audit.plan import Plan
+    from fretc.audit.store.recordings import Kept
+    from fretc.commands.audit_outputs import Outcome, Target
 
 
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
     "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
-    "Many logs": ("jobs", "resume", "engine"),
+    "Many logs": ("labels", "jobs", "engine", "rehash", "keep_columns"),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
         "query",
@@ -69,9 +73,8 @@ _AUDIT = {
 @output_option(
     cls=Renamed,
     earlier="--evidence",
-    default=EVIDENCE,
-    show_default=True,
-    help="Where evidence goes; `-` prints it.",
+    help="Where evidence goes: NAME.json is a file, another name the folder of a store, `-` "
+    "prints it. If not given, build/evidence.json for one log, build/evidence for several.",
 )
 @click.option("--annotate", is_flag=True, help="Also write its verdicts as a log, for Foxglove.")
 @path_option(
@@ -111,6 +114,7 @@ _AUDIT = {
     show_default=True,
     help="Of what all logs together say of a requirement with a probability.",
 )
+@label_option
 @jobs_option
 @click.option(
     "--engine",
@@ -118,17 +122,29 @@ _AUDIT = {
     show_default=True,
     help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
 )
-@click.option("--resume", is_flag=True, help="Go on with an audit that was stopped.")
+@click.option(
+    "--keep-columns",
+    is_flag=True,
+    help="Keep samples of all logs beside the evidence; an unchanged log is not read again.",
+)
+@click.option(
+    "--rehash", is_flag=True, help="Know a log by its SHA-256, not by its size and times."
+)
 @path_option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
+@click.option("--resume", is_flag=True, hidden=True)
 @click.option(
     "--summary", is_flag=True, help="How many of which verdict, worst runs, slowest answers."
 )
-@click.option("--query", metavar="SQL", help="The answer to SQL of DuckDB; the table is `results`.")
+@click.option(
+    "--query",
+    metavar="SQL",
+    help="The answer to SQL of DuckDB; the tables are `results`, `violations`, `runs`.",
+)
 def audit(
     paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
-    output: str,
+    output: str | None,
     annotate: bool,
     annotations: str | None,
     form: str,
@@ -136,10 +152,13 @@ def audit(
     evaluation: str,
     integrity: str,
     confidence: float,
+    labels: tuple[str, ...],
     jobs: int,
     engine: str,
-    resume: bool,
+    rehash: bool,
+    keep_columns: bool,
     parquet: str | None,
+    resume: bool,
     summary: bool,
     query: str | None,
 ) -> None:
@@ -156,23 +175,31 @@ def audit(
     if summary or query is not None:
         summarize(paths, query, form)
     began = time.perf_counter()
-    _check_outputs(output, parquet, resume=resume)
+    if resume:
+        say_line("`--resume` is not needed any more: what a stopped audit has finished is known")
     from compiler.project.folder import load
     from compiler.project.paths import beside, companions, requirement_files
     from fretc.audit.log_paths import files_of
     from fretc.audit.log_paths import logs as logs_of
+    from fretc.audit.outputs.totals import Marks
     from fretc.audit.plan import Plan, planned
+    from fretc.commands import audit_outputs as outputs
+    from fretc.logs.labels import given
     from fretc.logs.signals.integrity import Integrity
 
+    given_labels = given(labels)
+    if isinstance(given_labels, Diagnostic):
+        stop(given_labels)
     logs = logs_of(paths)
     if isinstance(logs, Diagnostic):
         stop(logs)
+    target = outputs.target(output, len(logs))
+    outputs.check(target, parquet)
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-    outputs = [Path(path) for path in (output, f"{output}.journal", parquet) if path]
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
-    protect(outputs, inputs)
+    protect([target.path, *([Path(parquet)] if parquet else [])], inputs)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
     say_briefly(project.diagnostics, requirements)
     if has_errors(project.general):
@@ -180,122 +207,115 @@ def audit(
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         stop(*(reason for reason in plan if reason not in project.diagnostics))
-    journal = _journal(output, plan) if output != "-" and len(logs) > 1 else None
+    plan = replace(plan, labels=given_labels)
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refusals, project.diagnostics)
-    result = audit_all(plan, logs, _engine(engine, jobs), journal, resume=resume)
-    result = replace(result, diagnostics=project.answered(result.diagnostics))
-    say_also(result.diagnostics, (*project.diagnostics, *refusals))
-    if result.read:  # a mistyped name must not cost the evidence of the last audit
-        annotation_files = (
-            _annotation_files(result, project, annotations) if annotate or annotations else {}
-        )
-        forms: dict[Path, str | bytes] = {Path(output): result.evidence}
-        if parquet is not None:
-            forms[Path(parquet)] = _table(result)
-        if {*map(os.path.realpath, forms)} & {*map(os.path.realpath, annotation_files)}:
-            stop(not_written(output, "two outputs would go there"))
-        deliver({**forms, **annotation_files}, inputs)
-        if journal is not None:
-            journal.remove()
-    if form == "text":
-        from fretc.commands.audit_text import Places, Subject, lines
-        from fretc.terminal.screen import screen
+    kept = _samples(target, rehash=rehash) if keep_columns else None
+    with ExitStack() as stack:
+        if target.is_store:
+            session = stack.enter_context(_session(target.path, plan, logs, rehash=rehash))
+            result: outputs.Outcome = audit_into(
+                session, _engine(engine, jobs, kept, session.earlier)
+            )
+        else:
+            result = audit_in_memory(plan, logs, _engine(engine, jobs, kept))
+        diagnostics = project.answered(result.diagnostics)
+        say_also(diagnostics, (*project.diagnostics, *refusals))
+        if result.read:  # a mistyped name must not cost the evidence of the last audit
+            wanted = annotate or annotations is not None
+            made = outputs.annotation_files(result, project, annotations) if wanted else {}
+            if parquet is not None:
+                made[Path(parquet)] = outputs.table(result)
+            _deliver(result, target, made, inputs)
+        source, refused = result.source, {one.id for one in plan.refused}
+        marks = Marks.of((each for _, each in source.briefs()), result.estimates, refused)
+        if form == "text":
+            from fretc.commands.audit_text import Places, Subject, lines
+            from fretc.terminal.screen import screen
 
-        places, refused = Places(requirements, bindings, output), {one.id for one in plan.refused}
-        subject = Subject(result, project, refused, places, time.perf_counter() - began)
-        click.echo(painted(lines(subject, screen(), every=verbose)), nl=False)
-    else:
-        click.echo(_text(result, project, refusals, form), nl=False)
-    if plan.refused or has_errors((*project.diagnostics, *result.diagnostics)):
+            places = Places(requirements, bindings, str(target.path))
+            subject = Subject(
+                source,
+                marks,
+                result.estimates,
+                project,
+                refused,
+                places,
+                time.perf_counter() - began,
+            )
+            click.echo(painted(lines(subject, screen(), every=verbose)), nl=False)
+        else:
+            click.echo(outputs.text(result, project, refusals, form), nl=False)
+    if plan.refused or has_errors((*project.diagnostics, *diagnostics)):
         raise SystemExit(BAD)
-    raise SystemExit(VIOLATION if result.violated else SHOWN if result.shown else NOT_SHOWN)
+    raise SystemExit(VIOLATION if marks.violated else SHOWN if marks.shown else NOT_SHOWN)
 
 
-def _journal(evidence: str, plan: Plan) -> Journal | None:
-    """None where there is no key of the user: then nothing is kept for `--resume`."""
+def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> Session:
     from compiler.files.user_key import user_key
-    from fretc.audit.journal import Journal
+    from fretc.audit.into_store import Session, busy
 
     key = user_key()
     if isinstance(key, Diagnostic):
         say([key])
+    known = None if isinstance(key, Diagnostic) else key
+    try:
+        return Session(folder, plan, logs, known, rehash=rehash)
+    except BlockingIOError:
+        stop(busy(folder))
+    except OSError as error:
+        stop(not_written(str(folder), error.strerror or str(error)))
+
+
+def _deliver(
+    result: Outcome, target: Target, others: Mapping[Path, bytes], inputs: Sequence[str]
+) -> None:
+    """Write everything but a store, which is written."""
+    from fretc.audit.many_logs import Audit
+    from fretc.commands.audit_outputs import remove_other
+
+    own: dict[Path, str | bytes] = {}
+    if not target.is_store:
+        assert isinstance(result, Audit), "what is no store is in memory"
+        own = {target.path: result.evidence}
+    if {*map(os.path.realpath, own)} & {*map(os.path.realpath, others)}:
+        stop(not_written(str(target.path), "two outputs would go there"))
+    deliver({**own, **others}, inputs)
+    if target.is_store:
+        say_line(visible(f"wrote {target.path}"))
+    remove_other(target)
+
+
+def _samples(target: Target, *, rehash: bool) -> Kept | None:
+    """Where samples are kept; None where there is no key of the user, which says who kept them."""
+    from compiler.files.user_key import user_key
+    from fretc.audit.store.recordings import SUFFIX, Kept
+
+    if str(target.path) == "-":
+        stop(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
+    key = user_key()
+    if isinstance(key, Diagnostic):
+        say([key])
         return None
-    return Journal(Path(evidence), plan, key)
+    return Kept(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
 
 
-def _annotation_files(result: Audit, project: Project, folder: str | None) -> dict[Path, bytes]:
-    from fretc.audit.evidence.declared_units import without_samples
-    from fretc.audit.outputs.annotations import sidecars
-    from fretc.audit.outputs.foxglove_layout import layout_file
-
-    results = without_samples(result.results, project.declarations)
-    place = Path(folder or "build/annotations")
-    logs = sidecars(results, project.rules, place)
-    return {**logs, **layout_file(results, project.rules, place)}
+def _no_place_for_columns(why: str, mend: str) -> Diagnostic:
+    message = f"`--keep-columns` keeps samples beside the evidence of this machine, and {why}"
+    return Diagnostic(Code.BAD_USAGE, message, help=mend)
 
 
-def _text(result: Audit, project: Project, refusals: Sequence[Diagnostic], form: str) -> str:
-    from fretc.audit.evidence.declared_units import without_samples
-    from fretc.audit.outputs.junit import github, junit
-    from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
-
-    if form == "json":
-        return result.as_json
-    results = without_samples(result.results, project.declarations)
-    if form == "junit":
-        return junit(results, result.estimates)
-    if form == "github":
-        return github(results, project.requirements, result.estimates)
-    assert form == "sarif", "a choice of --format"
-    diagnostics = (*project.diagnostics, *refusals, *result.diagnostics)
-    together = [AllRuns.of(one) for one in result.estimates]
-    each = [OneRun.of(one) for one in results]
-    return sarif(each, project.rules, diagnostics, together, project.without_rule)
-
-
-def _engine(name: str, jobs: int) -> Engine:
+def _engine(name: str, jobs: int, kept: Kept | None, earlier: Earlier | None = None) -> Engine:
     if name == "local":
         from fretc.audit.many_logs import locally
 
-        return locally(jobs)
+        return locally(jobs, kept, earlier.results) if earlier else locally(jobs, kept)
+    if kept is not None:
+        why = f"`--engine {name}` reads the logs elsewhere"
+        stop(_no_place_for_columns(why, "leave out one of the two"))
     from fretc.audit import fleet
 
     engine = fleet.engine(name, jobs)
     if isinstance(engine, Diagnostic):
         stop(engine)
     return engine
-
-
-def _check_outputs(evidence: str, parquet: str | None, *, resume: bool) -> None:
-    """Stop where they cannot be written, before hours of audit have gone by."""
-    if resume and evidence == "-":
-        stop(_nothing_kept())
-    if parquet == "-":
-        stop(not_written(parquet, "a table is a file"))
-    for path in (evidence, parquet):
-        if path not in ("-", None) and os.path.exists(path) and not os.path.isfile(path):
-            stop(not_written(path, "it is no regular file"))
-    if parquet is not None:
-        from fretc.audit.outputs.table import missing
-
-        absent = missing()
-        if absent is not None:
-            stop(absent)
-        if os.path.realpath(parquet) == os.path.realpath(evidence):
-            stop(not_written(parquet, "two outputs would go there"))
-
-
-def _table(result: Audit) -> bytes:
-    from compiler.files.edition import __version__
-    from fretc.audit.outputs.table import parquet
-
-    return parquet(result.results, __version__)
-
-
-def _nothing_kept() -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        "`--resume` goes on with evidence in a file, and this is printed",
-        help="name a file with `-o`",
-    )

@@ -6,13 +6,10 @@ Nothing of it is wider than the screen. What does not fit is counted, and it is 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 
-from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import SHOWN
-from fretc.audit.outputs.totals import COUNTED, runs, severity, sign_of, word_of
+from fretc.audit.outputs.totals import COUNTED, Marks, severity, sign_of
 from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded, width
 
@@ -29,66 +26,22 @@ Line = tuple[Piece, ...]
 _BLANK: Line = (("", None),)
 
 
-@dataclass(frozen=True, slots=True)
-class Grid:
-    """The words of all results, by the number of the run and the requirement."""
-
-    names: Sequence[str]
-    """Of the runs."""
-    ids: Sequence[str]
-    words: Mapping[tuple[int, str], str]
-    answers: Mapping[str, str]
-    """What all runs say of a requirement with a probability."""
-
-    @staticmethod
-    def of(
-        results: Iterable[Result], estimates: Iterable[Estimated], refused: Collection[str]
-    ) -> Grid:
-        """That of an audit."""
-        of_run = runs(results)
-        return Grid(
-            [run[0].run for run in of_run],
-            [*dict.fromkeys(result.requirement for run in of_run for result in run)],
-            {
-                (number, result.requirement): word_of(result, refused)
-                for number, run in enumerate(of_run)
-                for result in run
-            },
-            {one.requirement: one.answer for one in estimates},
-        )
-
-    def word(self, id: str) -> str:
-        """The worst of a requirement."""
-        words = (self.words[run, id] for run in range(len(self.names)) if (run, id) in self.words)
-        return min((*words, *filter(None, [self.answers.get(id)])), key=severity)
-
-    def counts(self, run: int) -> Counter[str]:
-        """Of a run: how many requirements have which word."""
-        return Counter(self.words[run, id] for id in self.ids if (run, id) in self.words)
-
-
-def table(
-    results: Iterable[Result],
-    estimates: Iterable[Estimated],
-    refused: Collection[str],
-    screen: Screen,
-) -> Iterator[Line]:
+def table(grid: Marks, screen: Screen) -> Iterator[Line]:
     """The lines of the table, and below it the runs in which something is not shown.
 
     Args:
-        results: of two runs or more.
-        estimates: what all runs say of requirements with a probability.
-        refused: the ids of requirements that could not be held against any run.
+        grid: of two runs or more.
         screen: where it is shown.
     """
-    grid = Grid.of(results, estimates, refused)
-    badness = [_badness(grid.counts(run)) for run in range(len(grid.names))]
+    counts = [Counter(of_run.values()) for of_run in grid.words]
+    badness = [*map(_badness, counts)]
     columns = sorted(sorted(range(len(grid.names)), key=badness.__getitem__)[:MOST_RUNS])
-    worst_ids = sorted(grid.ids, key=lambda id: severity(grid.word(id)))[:MOST_REQUIREMENTS]
+    worst_of = {id: severity(grid.word(id)) for id in grid.ids}
+    worst_ids = sorted(grid.ids, key=worst_of.__getitem__)[:MOST_REQUIREMENTS]
     rows = [id for id in grid.ids if id in {*worst_ids}]
     yield from _blocks(grid, rows, columns, screen)
     yield from _left_out(grid, rows, columns)
-    bad = [run for run in columns if not {*grid.counts(run)} <= {*SHOWN, COUNTED}]
+    bad = [run for run in columns if not {*counts[run]} <= {*SHOWN, COUNTED}]
     yield from _legend(grid, sorted(bad, key=badness.__getitem__), screen)
 
 
@@ -98,7 +51,7 @@ def _badness(counts: Counter[str]) -> tuple[tuple[int, int], ...]:
 
 
 def _blocks(
-    grid: Grid, rows: Sequence[str], columns: Sequence[int], screen: Screen
+    grid: Marks, rows: Sequence[str], columns: Sequence[int], screen: Screen
 ) -> Iterator[Line]:
     """All rows, with as many columns as fit; then all rows again with the next ones."""
     names = [screen.text(id) for id in rows]
@@ -122,19 +75,22 @@ def _numbers(block: Sequence[int]) -> str:
     return " ".join(padded(first, _GROUP) for first in firsts).rstrip()
 
 
-def _marks(grid: Grid, id: str, block: Sequence[int]) -> Iterator[Piece]:
+def _marks(grid: Marks, id: str, block: Sequence[int]) -> Iterator[Piece]:
     for place, run in enumerate(block):
         gap = " " if place % _GROUP == 0 else ""
-        word = grid.words.get((run, id))
+        word = grid.words[run].get(id)
         sign = sign_of(word) if word else None
         yield (f"{gap}{sign.glyph}", sign.colour) if sign else (f"{gap} ", None)
 
 
-def _left_out(grid: Grid, rows: Sequence[str], columns: Sequence[int]) -> Iterator[Line]:
+def _left_out(grid: Marks, rows: Sequence[str], columns: Sequence[int]) -> Iterator[Line]:
     """What the table does not have, in one line; none of it is worse than what it has."""
     kept_runs, kept_ids = {*columns}, {*rows}
     words = Counter(
-        word for (run, id), word in grid.words.items() if run not in kept_runs or id not in kept_ids
+        word
+        for run, of_run in enumerate(grid.words)
+        for id, word in of_run.items()
+        if run not in kept_runs or id not in kept_ids
     )
     if not words:
         return
@@ -151,12 +107,12 @@ def _left_out(grid: Grid, rows: Sequence[str], columns: Sequence[int]) -> Iterat
     yield ((line, sign_of(min(words, key=severity)).colour),)
 
 
-def _legend(grid: Grid, bad: Sequence[int], screen: Screen) -> Iterator[Line]:
+def _legend(grid: Marks, bad: Sequence[int], screen: Screen) -> Iterator[Line]:
     """The names of the worst runs, and how many more there are."""
     if bad:
         yield _BLANK
     for run in bad[:MOST_NAMES]:
-        counts = grid.counts(run)
+        counts = Counter(grid.words[run].values())
         for word in (*SHOWN, COUNTED):
             counts.pop(word, None)
         head = f"  run {run + 1}: {_counted(counts)}: "

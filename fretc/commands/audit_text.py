@@ -3,29 +3,30 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from shlex import quote
 
 from compiler.formalization.record import wording
 from compiler.project.folder import Project
+from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.declared_units import without_samples
+from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result, Threshold, Violation
-from fretc.audit.evidence.verdicts import SHOWN
-from fretc.audit.many_logs import Audit, estimate_lines
+from fretc.audit.evidence.verdicts import SHOWN, VERDICTS
+from fretc.audit.many_logs import estimate_lines
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretc.audit.outputs.totals import (
     COUNTED,
+    Marks,
     Total,
     longest,
-    runs,
     totals,
     word_of,
-    worst,
 )
 from fretc.audit.outputs.violated_values import values
 from fretc.commands.audit_table import Line, table
-from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER
+from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE
 from fretc.terminal.screen import Screen
 from fretish.bindings.amounts import exact, instant, seconds, value
 from fretish.diagnostics.rendering import visible
@@ -47,7 +48,8 @@ class Places:
         folder = self._option("--requirements", self.requirements, REQUIREMENTS_FOLDER)
         project = f"{folder}{self._option('--bindings', self.bindings, None)}"
         if self.evidence != "-":
-            evidence = self._option("--evidence", self.evidence, EVIDENCE)
+            default = self.evidence if self.evidence in (EVIDENCE, STORE) else None
+            evidence = self._option("--evidence", self.evidence, default)
             yield f"fretc report{project}{evidence}"
         yield f"fretc explain {quote(id)}{project}"
 
@@ -60,7 +62,9 @@ class Places:
 class Subject:
     """An audit, and what its text needs beside it."""
 
-    audit: Audit
+    source: EvidenceSource
+    marks: Marks
+    estimates: Sequence[Estimated]
     project: Project
     refused: Collection[str]
     """The ids of requirements that could not be held against any run."""
@@ -77,21 +81,36 @@ def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
         screen: where.
         every: list each result also where a table would have them.
     """
-    audit, refused = subject.audit, subject.refused
-    if every or len(runs(audit.results)) == 1:
-        yield from ((line,) for line in audit.text)
+    if every or len(subject.marks.names) == 1:
+        yield from _each(subject)
     else:
-        yield from table(audit.results, audit.estimates, refused, screen)
-        yield from (((visible(text), colour),) for text, colour in estimate_lines(audit.estimates))
+        yield from table(subject.marks, screen)
+    for text, colour in estimate_lines(subject.estimates):
+        yield ((visible(text), colour),)
     for text in _first_to_look_at(subject):
         yield ((visible(text), None),)
     yield _last(subject)
 
 
+def _each(subject: Subject) -> Iterator[Line]:
+    """Each run, and below it each of its results."""
+    width = max(map(len, subject.marks.ids), default=0)
+    run = None
+    for _, brief in subject.source.briefs():
+        if brief.run != run:
+            run = brief.run
+            yield ((visible(run), None),)
+        verdict = VERDICTS[brief.verdict]
+        name = f"{brief.requirement:<{width}}"
+        line = f"  {verdict.sign.glyph} {name}  {verdict.word:<12}  {brief.reason}"
+        yield ((visible(line), verdict.sign.colour),)
+
+
 def _first_to_look_at(subject: Subject) -> Iterator[str]:
     """The worst result, and the commands that show more; nothing where all is shown."""
-    result = worst(subject.audit.results, subject.refused)
-    refuted = next((one for one in subject.audit.estimates if one.answer == REFUTED), None)
+    place = subject.marks.worst
+    ((_, result),) = subject.source.details([place]) if place is not None else ((0, None),)
+    refuted = next((one for one in subject.estimates if one.answer == REFUTED), None)
     if refuted is not None and (result is None or longest(result) is None):
         id, where, details = refuted.requirement, f"{REFUTED} over all runs", [refuted.lines[0]]
     elif result is not None:
@@ -165,13 +184,11 @@ def _limit(threshold: Threshold) -> str:
 
 def _last(subject: Subject) -> Line:
     """`16 runs x 15 requirements: 12 violated (3 requirements in 4 runs), 228 satisfied  2.1 s`."""
-    results = subject.audit.results
-    ids = {result.requirement for result in results}
-    of_runs = runs(results)
-    counts = totals(results, subject.audit.estimates, subject.refused)
-    parts = [_count(total, many=len(of_runs) > 1) for total in counts]
+    marks = subject.marks
+    counts = totals(marks)
+    parts = [_count(total, many=len(marks.names) > 1) for total in counts]
     times = "\N{MULTIPLICATION SIGN}"
-    head = f"{_times(len(of_runs), 'run')} {times} {_times(len(ids), 'requirement')}"
+    head = f"{_times(len(marks.names), 'run')} {times} {_times(len(marks.ids), 'requirement')}"
     text = f"{head}: {', '.join(parts)}  {subject.seconds:.1f} s"
     return ((text, counts[0].colour if counts else None),)
 

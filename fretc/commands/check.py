@@ -54,8 +54,9 @@ def check(
     from compiler.project.folder import whole
     from compiler.project.paths import beside
     from compiler.project.stated_numbers import first_unit
-    from fretc.audit.evidence.reader import read as read_evidence
+    from fretc.audit.evidence.briefs import Briefs
     from fretc.audit.refusals import refusals
+    from fretc.audit.store.anywhere import source as read_evidence
     from fretc.report.diagnostics import idle_waivers, stale_evidence
     from fretc.report.model.assessments import assessments
     from fretc.report.traceability.acceptances import warnings
@@ -80,6 +81,7 @@ def check(
         diagnostics.append(proofs)
         proofs = ()
     results = None if isinstance(audited, Diagnostic) else audited
+    briefs = Briefs.of(results) if results else None
     lock, path = None, beside(requirements, "fretc.lock")
     if path is not None:
         known = read_lock(path)
@@ -90,13 +92,13 @@ def check(
         found, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
         waivers = {id: waiver for id, waiver in found.items() if waiver.covers(today())}
         diagnostics.extend(wrong)
-    assessed = assessments(project, results, lock, waivers, proofs)
+    assessed = assessments(project, briefs, lock, waivers, proofs)
     standings = [assessment.standing for assessment in assessed]
     if path is not None:
         chains = [standing.chain for standing in standings]
         withdrawn = withdrawn_requirements(project.requirements, chains, lock)
         diagnostics.extend(withdrawal_warnings(withdrawn, path))
-    diagnostics.extend(stale_evidence(assessed, results, evidence))
+    diagnostics.extend(stale_evidence(assessed, briefs, evidence))
     diagnostics.extend(idle_waivers(assessed))
     flawed = has_errors(diagnostics)
     diagnostics.extend(reason for _, why in refusals(project) for reason in why)

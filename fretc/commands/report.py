@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -136,14 +136,12 @@ def report(
         signers=signers,
     )
     say_briefly([*project.diagnostics, *outcome.diagnostics], requirements)
-    if outcome.report is None:
+    if outcome.report is None or outcome.details is None:
         raise SystemExit(BAD)
-    subject = Subject(outcome.report, project, outcome.results, outcome.diagnostics)
+    subject = Subject(outcome.report, project, outcome.details, outcome.diagnostics)
     inputs = filter(None, (bindings, hazards, verification, lock, waivers, signers, *ajpf_results))
-    logs = [result.run for result in outcome.results]
-    _deliver(
-        outputs, subject, [evidence, *files, *companions(files), *inputs, *dict.fromkeys(logs)]
-    )
+    read = [evidence, *files, *companions(files), *inputs, *outcome.details.logs]
+    _deliver(outputs, subject, read)
     if has_errors([*project.diagnostics, *outcome.diagnostics]):
         raise SystemExit(BAD)
     raise SystemExit(_status(outcome.report) if strict else SHOWN)
@@ -164,7 +162,7 @@ def _deliver(outputs: Sequence[tuple[Form, str]], subject: Subject, inputs: Sequ
     """Each form to its own place."""
     from fretc.terminal.output import not_written
 
-    paths: dict[Path, str] = {}
+    paths: dict[Path, str | Iterable[str]] = {}
     for form, path in outputs:
         if Path(path) in paths:
             stop(not_written(path, "two outputs would go there"))

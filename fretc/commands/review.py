@@ -73,7 +73,7 @@ def lock(
     """
     from compiler.files.dates import is_date, is_to_come, today
     from compiler.files.templating import to_json
-    from fretc.audit.evidence.reader import refuted
+    from fretc.audit.store.anywhere import refuted
     from fretc.report.traceability.lock import (
         Acceptance,
         Lock,
@@ -156,13 +156,12 @@ def diff(
         raise SystemExit(BAD)
     base = _read(baseline or _beside(requirements), must=True)
     assert base is not None
-    changes = differences(standings(chains, base), base)
+    changes = differences(standings(chains, base), base, project)
     if form == "json":
         click.echo(to_json([as_record(difference) for difference in changes]))
     else:
-        for difference in changes:
-            for line in text(difference):
-                click.echo(visible(line))
+        for line in text(changes):
+            click.echo(visible(line))
     raise SystemExit(SHOWN if all(d.state == "same" for d in changes) else NOT_SHOWN)
 
 
@@ -170,7 +169,8 @@ def _chains(
     requirements: str, evidence: str, verification: str | None
 ) -> tuple[Project, Sequence[Chain]]:
     from compiler.project.folder import whole
-    from fretc.audit.evidence.reader import read
+    from fretc.audit.evidence.briefs import Briefs
+    from fretc.audit.store.anywhere import source as read
     from fretc.report.traceability.chain import chains
     from fretc.verification.reader import known
 
@@ -187,7 +187,7 @@ def _chains(
             raise SystemExit(BAD)
         return project, chains(project, None, proofs=proofs)
     say_briefly(project.diagnostics, requirements)
-    return project, chains(project, audited, proofs=proofs)
+    return project, chains(project, Briefs.of(audited), proofs=proofs)
 
 
 def _chosen(

@@ -22,7 +22,7 @@ from fretish.reading.natural_order import natural
 if TYPE_CHECKING:
     from fretc.attestation.keys import PrivateKey
     from fretc.attestation.statement import Statement, Subject
-    from fretc.audit.evidence.schema import Evidence
+    from fretc.audit.evidence.briefs import EvidenceSource
     from fretc.report.traceability.lock import Review
     from fretc.report.traceability.waivers import Waiver
     from fretc.verification.reader import Proofs
@@ -141,10 +141,14 @@ def signed(what: Signable, key: PrivateKey) -> dict[Path, str]:
 
 def _signable(path: str, key: str, reviewer: str | None, verification: str | None) -> Signable:
     suffix = Path(path).suffix
+    if os.path.isdir(path):
+        return _json(path, verification)
     if reviewer is not None and suffix not in (".lock", ".toml"):
         stop(_usage(f"`{path}` is by no reviewer", "leave `--reviewer` out"))
     if suffix not in (".lock", ".toml", ".json", *_REPORTS):
-        mend = "name evidence (`.json`), a lock (`.lock`), waivers (`.toml`) or a report"
+        mend = (
+            "name evidence (`.json`, or a store), a lock (`.lock`), waivers (`.toml`) or a report"
+        )
         stop(_usage(f"`{path}` is nothing that fretc signs", mend))
     match suffix:
         case ".lock":
@@ -168,18 +172,19 @@ def _json(path: str, verification: str | None) -> Signable:
     """Evidence, proofs, or a report: they say which."""
     from compiler.files.text_files import read as read_text
     from compiler.logic import claims as proved
-    from fretc.audit.evidence.reader import read
+    from fretc.audit.store.anywhere import read
     from fretc.report.model.views import SCHEMA
     from fretc.verification.reader import written
 
-    source = read_text(path)
-    if isinstance(source, Diagnostic):
-        stop(source)
-    schema = _schema(source)
-    if schema == proved.SCHEMA:
-        return _proved(path)
-    if schema == SCHEMA:
-        return _report(path)
+    if not os.path.isdir(path):
+        source = read_text(path)
+        if isinstance(source, Diagnostic):
+            stop(source)
+        schema = _schema(source)
+        if schema == proved.SCHEMA:
+            return _proved(path)
+        if schema == SCHEMA:
+            return _report(path)
     audited = read(path)
     if isinstance(audited, Diagnostic):
         stop(_as_error(audited))
@@ -211,30 +216,31 @@ def _as_error(wrong: Diagnostic) -> Diagnostic:
     return replace(wrong, severity=Severity.ERROR)
 
 
-def _evidence(audited: Evidence, proofs: Proofs | None) -> Signable:
+def _evidence(audited: EvidenceSource, proofs: Proofs | None) -> Signable:
     from fretc.attestation import statement as attestation
 
     _same_bytes(audited.file, audited.sha256)
-    if not audited.results:
+    if next(audited.briefs(), None) is None:
         stop(_usage(f"`{audited.file}` tells of no run", "audit one: `fretc audit LOG...`"))
     statement = attestation.evidence(audited, proofs)
     lines = (*_summary_of_evidence(audited), *(_summary_of_proofs(proofs) if proofs else ()))
     return Signable(audited.file, statement, statement.main, lines)
 
 
-def _summary_of_evidence(audited: Evidence) -> Iterator[str]:
+def _summary_of_evidence(audited: EvidenceSource) -> Iterator[str]:
     from fretc.audit.measurements.confidence_intervals import REFUTED
     from fretc.report.model.audits import SingleAudit
     from monitors import kernel
 
-    verdicts = [SingleAudit(result, ()).verdict for result in audited.results]
-    counts = Counter(verdicts)
+    audits = [SingleAudit(brief, ()) for _, brief in audited.briefs()]
+    counts = Counter(audit.verdict for audit in audits)
     totals = ", ".join(f"{count} {verdict}" for verdict, count in sorted(counts.items()))
     yield f"evidence {audited.file}: {totals}"
-    for result, verdict in zip(audited.results, verdicts, strict=True):
-        if verdict == kernel.VIOLATED:
+    for audit in audits:
+        result = audit.result
+        if audit.verdict == kernel.VIOLATED:
             yield f"  {result.requirement} is violated in {result.run}"
-        if "log" not in result.hashes:
+        if not result.log:
             yield f"  no SHA-256 is known of {result.run}: the log itself is not signed"
     for one in audited.probabilities:
         if one.answer == REFUTED:
@@ -391,7 +397,7 @@ def _public(path: str) -> str:
 # What must be signed ---------------------------------------------------------------------------
 
 
-def demand(evidence: Evidence, by: str, others: Mapping[str, str | None]) -> None:
+def demand(evidence: EvidenceSource, by: str, others: Mapping[str, str | None]) -> None:
     """Stop, with exit status 1, where a key has not signed exactly this evidence.
 
     Args:

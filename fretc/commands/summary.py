@@ -20,13 +20,10 @@ if TYPE_CHECKING:
 def summarize(paths: Sequence[str], query: str | None, form: str) -> NoReturn:
     """Print what tables or evidence say, or the answer to a query; exit as their audit did."""
     from fretc.audit.outputs.summary import answered, summarized
-    from fretc.audit.outputs.table import missing, read
+    from fretc.audit.outputs.table import read
 
     if form not in ("text", "json"):
         stop(_no_form(form))
-    absent = missing()
-    if absent is not None:
-        stop(absent)
     table = read(paths)
     if isinstance(table, Diagnostic):
         stop(table)

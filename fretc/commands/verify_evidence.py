@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,8 +12,10 @@ from fretc.commands.sign import demand
 from fretc.terminal.options import (
     PATH,
     bindings_option,
+    evidence_place,
     format_option,
     jobs_option,
+    label_option,
     limit_option,
     path_option,
     requirements_option,
@@ -42,7 +45,7 @@ if TYPE_CHECKING:
 
 
 @click.command("verify-evidence", short_help="Make evidence again, and say whether it stands.")
-@click.argument("file", type=PATH, default="build/evidence.json", metavar="[FILE]")
+@click.argument("file", type=PATH, required=False, metavar="[FILE]")
 @requirements_option
 @bindings_option
 @path_option(
@@ -73,11 +76,12 @@ if TYPE_CHECKING:
     "and what --report and --verification name.",
 )
 @click.option("--no-proofs", is_flag=True, help="Prove nothing again: proofs are not checked.")
+@label_option
 @limit_option
 @jobs_option
 @format_option()
 def verify_evidence(
-    file: str,
+    file: str | None,
     requirements: str,
     bindings: str | None,
     places_named: tuple[str, ...],
@@ -88,6 +92,7 @@ def verify_evidence(
     verification: str | None,
     signed_by: str | None,
     no_proofs: bool,
+    labels: tuple[str, ...],
     limit: int,
     jobs: int,
     form: str,
@@ -100,16 +105,17 @@ def verify_evidence(
     compared with what is written. Exit status: 0 it stands, 1 something differs or is missing, 3
     something was not checked, 2 bad use or bad input.
     """
-    from fretc.audit.evidence.reader import required
+    from fretc.audit.store.anywhere import required
     from fretc.verification.reader import written
 
+    file = evidence_place(file)
     evidence = required(file)
     if isinstance(evidence, Diagnostic):
         stop(evidence)
     whole = evidence.document
     if signed_by is not None:
         demand(evidence, signed_by, {"report": report, "proofs": verification})
-    project, plan = _plan(requirements, bindings)
+    project, plan = _plan(requirements, bindings, labels)
     scope = _scope(plan, only, requirements)
     verification = verification or written()
     proofs = _proofs(verification)
@@ -140,10 +146,14 @@ def _runs(whole: Document) -> list[str]:
     return list(dict.fromkeys(result.run for result in whole.results))
 
 
-def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
+def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tuple[Project, Plan]:
     from compiler.project.folder import whole
     from fretc.audit.plan import Plan, planned
+    from fretc.logs.labels import given
 
+    given_labels = given(labels)
+    if isinstance(given_labels, Diagnostic):
+        stop(given_labels)
     project = whole(requirements, bindings)
     if isinstance(project, Diagnostic):
         stop(project)
@@ -155,7 +165,7 @@ def _plan(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
         stop(*plan)
     if plan.refused:
         stop(*plan.refusals)
-    return project, plan
+    return project, replace(plan, labels=given_labels)
 
 
 def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.container import MAGIC
@@ -21,18 +21,35 @@ from fretish.diagnostics.source import Span
 from fretish.reading.limits import grant
 
 
-def part(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
+def part(
+    log: Input, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str] = ()
+) -> Part | Diagnostic:
     """The messages of one file; or what keeps the whole file from being read.
+
+    Args:
+        log: the file.
+        sink: receives the messages.
+        integrity: what is looked at beyond them.
+        place: the file, as the user named it.
+        wanted: what is asked for of its metadata records.
 
     Raises:
         BrokenError: the file is not as its index says.
     """
     grant(log.size)
-    found = _read(log, sink, integrity, place)
+    found = _read(log, sink, integrity, place, wanted)
     return log_diagnostics.changed(place) if log.changed() else found
 
 
-def _read(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | Diagnostic:
+def only_grows(log: Input) -> bool:
+    """Whether the file is of a kind that is written from its beginning to its end."""
+    log.stream.seek(0)
+    return log.stream.read(len(MAGIC)) == MAGIC
+
+
+def _read(
+    log: Input, sink: Sink, integrity: Integrity, place: Span, wanted: Collection[str]
+) -> Part | Diagnostic:
     log.stream.seek(0)
     start = log.stream.read(_BEGINNING)
     if not start:
@@ -41,12 +58,17 @@ def _read(log: Input, sink: Sink, integrity: Integrity, place: Span) -> Part | D
         log.begin()
     for magic, read in CONTAINERS.items():
         if start.startswith(magic):
-            return read(log, start, sink, integrity, place)
+            return read(log, start, sink, integrity, place, wanted)
     return log_diagnostics.not_a_log(start, place)
 
 
 def _bag(
-    log: Input, start: bytes, sink: Sink, integrity: Integrity, place: Span
+    log: Input,
+    start: bytes,
+    sink: Sink,
+    integrity: Integrity,
+    place: Span,
+    wanted: Collection[str],
 ) -> Part | Diagnostic:
     if log.file is None or log.same is None:
         return storage_diagnostics.bag_of_no_file(place)
@@ -69,13 +91,18 @@ def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None
 
 
 def _mcap(
-    log: Input, start: bytes, sink: Sink, integrity: Integrity, place: Span
+    log: Input,
+    start: bytes,
+    sink: Sink,
+    integrity: Integrity,
+    place: Span,
+    wanted: Collection[str],
 ) -> Part | Diagnostic:
-    held = contents(log.stream, log.size, sink, integrity)
+    held = contents(log.stream, log.size, sink, integrity, wanted)
     if held.span is not None:
         digest = log.sha256() if held.checked.hashed else held.summary_sha256
         notes = (storage_diagnostics.without_crc(place),) if held.unprotected else ()
-        return Part(digest, log.size, held.span, held.damages, notes, held.checked)
+        return Part(digest, log.size, held.span, held.damages, notes, held.checked, held.described)
     if held.cut is not None:
         return log_diagnostics.truncated(held.cut, place)
     if held.damages:
@@ -85,6 +112,6 @@ def _mcap(
 
 _BEGINNING = 16
 """Bytes that tell what a file is; enough for each magic, and for saying what else it may be."""
-Container = Callable[[Input, bytes, Sink, Integrity, Span], Part | Diagnostic]
+Container = Callable[[Input, bytes, Sink, Integrity, Span, Collection[str]], Part | Diagnostic]
 """What reads a file of one kind; it gets the first bytes, too."""
 CONTAINERS: Mapping[bytes, Container] = {MAGIC: _mcap, bags.BAG: _bag, bags.DB3: _bag}

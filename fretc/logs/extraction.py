@@ -30,6 +30,8 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 _CHECKED = 8
 """Layouts of a stream that are compared with the official decoder on three messages."""
+_SHORT = 128
+"""Of fewer messages of a layout one is compared: decoding three would cost more than the rest."""
 _BLOCK = 2**17
 """Numbers of an array field in one block: the passes over them stay within the cache."""
 _FEW = 512
@@ -243,9 +245,8 @@ class Extraction:
             return False
         if group.new and self._checks:
             self._checks -= 1
-            last = len(group.rows) - 1
-            rows = {0, last // 2, last}
-            if not all(self._agrees(int(group.rows[i]), payloads, group.layout) for i in rows):
+            rows = _telling(group.rows, payloads)
+            if not all(self._agrees(row, payloads, group.layout) for row in rows):
                 self._shape = None
                 return False
         self._fill(payloads, group.rows, group.layout, group.rows, extract)
@@ -323,6 +324,17 @@ def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
     """The layout of the messages; None where it is not certain."""
     layout = shape(stream) if decode is not None else None
     return layout if decode and layout and trusted(layout, decode) else None
+
+
+def _telling(rows: Places, payloads: Payloads) -> set[int]:
+    """The rows to compare: the first, the middle and the last; of few only the one that says most.
+
+    Two places that hold the same byte are not told apart.
+    """
+    chosen = {int(rows[i]) for i in (0, (len(rows) - 1) // 2, -1)}
+    if len(rows) >= _SHORT:
+        return chosen
+    return {max(sorted(chosen), key=lambda row: len(set(bytes(payloads.payload(row)))))}
 
 
 def _reads(shape: Shape, signal: Signal) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial, reduce
 from operator import add
 
@@ -19,6 +19,7 @@ from fretc.logs.first_messages import Examples
 from fretc.logs.mcap.container import BrokenError
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
+from fretc.logs.mcap.metadata import Described, of_record, together
 from fretc.logs.messages.decoding import decoder, leaves
 from fretc.logs.messages.leaves import Leaves, numbers
 from fretc.logs.signals.integrity import Checked, Integrity
@@ -101,7 +102,9 @@ def _read_log(
     integrity: Integrity,
     beside: Sequence[Signal],
 ) -> Recording | Diagnostic:
-    found = _opened(path, lambda: Columns(declarations, signals, beside), integrity)
+    sources = [source for some in declarations.labels.values() for source in some]
+    asked = frozenset(source.text for source in sources if not source.is_path)
+    found = _opened(path, lambda: Columns(declarations, signals, beside), integrity, asked)
     if isinstance(found, Diagnostic):
         return found
     place, run, columns, examples = found
@@ -125,7 +128,7 @@ def look(path: str, *, words: bool = False) -> Overview | Diagnostic:
 def _look(path: str, words: bool) -> Overview | Diagnostic:
     nothing = Declarations(Source("", ""), Clock(None, None), {}, {})
     vocabulary = Vocabulary() if words else None
-    found = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL, vocabulary)
+    found = _opened(path, lambda: Columns(nothing, ()), Integrity.FULL, vocabulary=vocabulary)
     if isinstance(found, Diagnostic):
         return found
     place, run, columns, examples = found
@@ -154,6 +157,8 @@ class _Run:
     """Each with its file, and the time that it has cost."""
     notes: Sequence[Diagnostic]
     checked: Checked
+    described: Described
+    """What its metadata says, as far as it is asked for."""
 
 
 _Read = tuple[Span, _Run, Columns, Examples]
@@ -164,19 +169,28 @@ def _opened(
     path: str,
     new: Callable[[], Columns],
     integrity: Integrity,
+    asked: Collection[str] = (),
     vocabulary: Vocabulary | None = None,
 ) -> _Read | Diagnostic:
     """The log at a path: a file, standard input, what is at a URL, or a folder of rosbag2."""
     place = Source(shown(path), "").span()
     try:
         if is_folder(path):
-            return _tried(partial(_folder, folder(path)), place, new, integrity, vocabulary)
-        if not os.path.lexists(path) and (run := split(path)) is not None:
-            return _tried(partial(_folder, run), place, new, integrity, vocabulary)
+            run = partial(_folder, folder(path), asked)
+            return _tried(run, place, new, integrity, vocabulary)
+        if not os.path.lexists(path) and (parts := split(path)) is not None:
+            return _tried(partial(_folder, parts, asked), place, new, integrity, vocabulary)
         with opened(path, whole=integrity is not Integrity.INDEX) as log:
             if isinstance(log, Diagnostic):
                 return log
-            return _tried(partial(_file, path, log), place, new, integrity, vocabulary)
+            found = _tried(partial(_file, path, log, asked), place, new, integrity, vocabulary)
+            if not (isinstance(found, Diagnostic) and log.changed() and containers.only_grows(log)):
+                return found
+            held = log.beginning()
+            if held is None:
+                return found
+            begun = partial(_beginning, path, held, asked)
+            return _tried(begun, place, new, integrity, vocabulary)
     except OSError as error:
         return storage_diagnostics.unreadable(error, place)
 
@@ -201,15 +215,41 @@ def _tried(
 
 
 def _file(
-    path: str, log: Input, sink: Sink, integrity: Integrity, place: Span
+    path: str, log: Input, asked: Collection[str], sink: Sink, integrity: Integrity, place: Span
 ) -> _Run | Diagnostic:
-    part = containers.part(log, sink, integrity, place)
+    part = containers.part(log, sink, integrity, place, asked)
     if isinstance(part, Diagnostic):
         return part
     if part.span is None:
         return log_diagnostics.empty(place)
     damages, notes = [(place, *one) for one in part.damages], (*part.notes, *_alone(path, place))
-    return _Run(part.sha256, part.size, (part.span,), damages, notes, part.checked)
+    described = together([*_of_folder(path, asked), part.described])
+    return _Run(part.sha256, part.size, (part.span,), damages, notes, part.checked, described)
+
+
+def _of_folder(path: str, asked: Collection[str]) -> Iterator[Described]:
+    """What the description of rosbag2 beside a file says of its run."""
+    parent = os.path.dirname(path) or "."
+    try:
+        about = folder(parent) if asked and is_folder(parent) else None
+    except OSError:
+        return
+    if isinstance(about, Folder) and os.path.basename(path) in about.files:
+        yield of_record(_CUSTOM, about.custom, asked)
+
+
+_CUSTOM = "custom_data"
+"""What stands for the record in the description of a folder, as rosbag2 calls it."""
+
+
+def _beginning(
+    path: str, log: Input, asked: Collection[str], sink: Sink, integrity: Integrity, place: Span
+) -> _Run | Diagnostic:
+    """What there was of a file that has become longer since."""
+    run = _file(path, log, asked, sink, integrity, place)
+    if isinstance(run, Diagnostic):
+        return run
+    return replace(run, notes=(*run.notes, storage_diagnostics.grown(log.size, place)))
 
 
 def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
@@ -230,7 +270,11 @@ def _alone(path: str, place: Span) -> Iterator[Diagnostic]:
 
 
 def _folder(
-    about: Folder | Diagnostic, one: Sink, integrity: Integrity, place: Span
+    about: Folder | Diagnostic,
+    asked: Collection[str],
+    one: Sink,
+    integrity: Integrity,
+    place: Span,
 ) -> _Run | Diagnostic:
     """The files of one run, in the order that its description gives."""
     sink = Numbered(one)
@@ -244,7 +288,9 @@ def _folder(
         sink.next_file()
         with opened(file.source.name) as log:
             found.append(
-                log if isinstance(log, Diagnostic) else containers.part(log, sink, integrity, file)
+                log
+                if isinstance(log, Diagnostic)
+                else containers.part(log, sink, integrity, file, asked)
             )
     parts = [part for part in found if isinstance(part, Part)]
     spans = [part.span for part in parts if part.span is not None]
@@ -265,7 +311,9 @@ def _folder(
     notes = {note.message: note for part in parts for note in part.notes}
     size = sum(part.size for part in parts)
     checked = reduce(add, (part.checked for part in parts))
-    return _Run(of_all(hashes), size, spans, damages, tuple(notes.values()), checked)
+    custom = of_record(_CUSTOM, about.custom, asked)
+    described = together([custom, *(part.described for part in parts)])
+    return _Run(of_all(hashes), size, spans, damages, tuple(notes.values()), checked, described)
 
 
 def _losses(
@@ -333,4 +381,5 @@ def _recording(
         intact=not run.damages,
         checked=run.checked,
         beside=others,
+        described=run.described,
     )

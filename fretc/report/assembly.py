@@ -13,13 +13,13 @@ from compiler.files.edition import __version__
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
-from fretc.audit.evidence.declared_units import in_declared_units
+from fretc.audit.evidence.briefs import Briefs, EvidenceSource
 from fretc.audit.evidence.probabilities import AVERAGE
-from fretc.audit.evidence.schema import Evidence
 from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE, SUPPORTED
 from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
+from fretc.report.front.front import front
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment, assessments
 from fretc.report.model.views import (
@@ -28,17 +28,20 @@ from fretc.report.model.views import (
     NotShown,
     Report,
     RequirementView,
+    ResultView,
     Withdrawal,
     verdict_mark,
     worst_first,
 )
 from fretc.report.sections import reviews
+from fretc.report.sections.details import Details
 from fretc.report.sections.matrix import hazard_views, matrix, orphans
 from fretc.report.sections.overall import overall
 from fretc.report.sections.proofs import SHARED, proof_views
 from fretc.report.sections.reproduction import commands, folder_of, manifest
 from fretc.report.sections.requirement import remark, section
-from fretc.report.sections.runs import run_views, runs
+from fretc.report.sections.results import is_bounded
+from fretc.report.sections.runs import Run, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.traceability.acceptances import warnings
 from fretc.report.traceability.artefacts import shared_products
@@ -52,15 +55,15 @@ from monitors import kernel
 
 def report(
     project: Project,
-    evidence: Evidence | None,
+    evidence: EvidenceSource | None,
     path: str,
     lock: Lock | None = None,
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
     proofs: Proofs | None = None,
     ajpf: Sequence[Proof] = (),
     book: SignatureBook = NO_SIGNATURES,
-) -> tuple[Report, tuple[Diagnostic, ...]]:
-    """The report, and diagnostics about its evidence, waivers and signatures.
+) -> tuple[Report, Details, tuple[Diagnostic, ...]]:
+    """The report, what it has in rows only, and diagnostics about its files.
 
     Args:
         project: with or without errors; the report shows what could not be formalized as such.
@@ -72,11 +75,11 @@ def report(
         ajpf: the results of AJPF.
         book: who signed what.
     """
-    in_units = in_declared_units(evidence, project.declarations) if evidence else None
-    runs_by_key = runs(in_units)
+    briefs = Briefs.of(evidence) if evidence else None
+    runs_by_key = runs(briefs)
     all_runs = tuple(runs_by_key.values())
     all_proofs = merged(proofs.proofs if proofs else (), ajpf)
-    assessed = assessments(project, in_units, lock, waivers, all_proofs)
+    assessed = assessments(project, briefs, lock, waivers, all_proofs)
     chains = [assessment.standing.chain for assessment in assessed]
     withdrawn = withdrawn_requirements(project.requirements, chains, lock)
     anchors = {assessment.id: assessment.anchor for assessment in reversed(assessed)}
@@ -94,23 +97,44 @@ def report(
         )
         for assessment in assessed
     )
+    details = Details(evidence, project, {each.anchor: each for each in assessed}, runs_by_key)
+    longest = _longest_waits(assessed, sections, details)
     reservations = (
-        *(line for view in sections for line in _reservations(view)),
+        *(line for view in sections for line in _reservations(view, longest)),
         *(line for assessment in assessed for line in reviews.reservations(assessment)),
     )
+    changes = reviews.changes(assessed, project)
+    groups = reviews.change_groups(assessed, changes)
+    changed = tuple(reviews.change_sentences(changes, groups))
     signature_list = signatures(book, assessed, evidence, proofs)
+    overall_result = overall(
+        project, assessed, sections, all_runs, reservations, withdrawn, signature_list, changed
+    )
+    rows = matrix(project, assessed, sections)
+    run_list = run_summaries(all_runs, project)
+    all_changes = (*changes, *reviews.withdrawals(withdrawn))
+    components = tuple(sorted({rule.sentence.component for rule in project.rules}))
     checked = _checks(project, assessed, lock, evidence)
-    return Report(
+    whole = Report(
         schema=SCHEMA,
         fretc=__version__,
         project=folder_of(project),
-        components=tuple(sorted({rule.sentence.component for rule in project.rules})),
+        components=components,
         evidence=phrases.place(path) if evidence else "",
         audited_by=evidence.fretc if evidence else "",
-        overall=overall(
-            project, assessed, sections, all_runs, reservations, withdrawn, signature_list
+        overall=overall_result,
+        front=front(
+            ": ".join(filter(None, [phrases.joined(components), folder_of(project)])),
+            overall_result,
+            sections,
+            rows,
+            assessed,
+            all_runs,
+            run_list,
+            all_changes,
+            [text for text in overall_result.sentences if text != trust(all_runs, project)],
         ),
-        runs=run_views(all_runs, project),
+        runs=run_list,
         claims=_claims(assessed, len(all_runs)),
         counts=_counts(assessed),
         not_shown=tuple(_not_shown(view) for view in worst_first(sections) if view.reasons),
@@ -120,34 +144,40 @@ def report(
         verification=phrases.place(proofs.file) if proofs else "",
         remarks=tuple(remark(diagnostic) for diagnostic in (*project.diagnostics, *checked)),
         hazards=hazard_views(project),
-        matrix=matrix(project, assessed, sections, runs_by_key),
-        orphans=orphans(project, assessed, evidence),
+        matrix=rows,
+        orphans=orphans(project, assessed, briefs),
         reviewed=reviews.summary(assessed, book),
-        changes=(*reviews.changes(assessed), *reviews.withdrawals(withdrawn)),
+        changes=all_changes,
         withdrawn=tuple(Withdrawal(one.review.requirement, one.text) for one in withdrawn),
         waivers=tuple(view.waiver for view in sections if view.waiver),
         signatures=signature_list,
         requirements=sections,
-        assumptions=_assumptions(project, evidence),
+        assumptions=_assumptions(project, all_runs),
         commands=commands(project, sections, all_runs, path, proofs, _confidence(evidence)),
         manifest=manifest(project, sections, all_runs, evidence, proofs, book.signers),
-        across=across(assessed, runs_by_key),
-    ), (
+        across=across(details, [view.anchor for view in worst_first(sections)]),
+        change_groups=groups,
+    )
+    diagnostics = (
         *(each for each in checked if each.accepted),
-        *stale_evidence(assessed, evidence, path),
+        *stale_evidence(assessed, briefs, path),
         *idle_waivers(assessed),
         *book.diagnostics(),
         *idle_signatures(book, assessed),
     )
+    return whole, details, diagnostics
 
 
-def _confidence(evidence: Evidence | None) -> float:
+def _confidence(evidence: EvidenceSource | None) -> float:
     estimations = evidence.probabilities if evidence else ()
     return next((one.confidence for one in estimations), CONFIDENCE)
 
 
 def _checks(
-    project: Project, assessed: Sequence[Assessment], lock: Lock | None, evidence: Evidence | None
+    project: Project,
+    assessed: Sequence[Assessment],
+    lock: Lock | None,
+    evidence: EvidenceSource | None,
 ) -> Sequence[Diagnostic]:
     """What `fretc check` finds beside mistakes; reviews have a part of their own."""
     if has_errors(project.diagnostics):
@@ -163,23 +193,35 @@ def _not_shown(view: RequirementView) -> NotShown:
     return NotShown(view.id, view.title, view.anchor, view.mark, view.reasons)
 
 
-def _reservations(view: RequirementView) -> Sequence[str]:
+def _longest_waits(
+    assessed: Sequence[Assessment], sections: Sequence[RequirementView], details: Details
+) -> Mapping[str, ResultView]:
+    """The result with the longest wait of each requirement that is shown and sets no bound."""
+    rows = [
+        max(waiting, key=lambda row: row.latency_max_s or 0)
+        for assessment, view in zip(assessed, sections, strict=True)
+        if view.mark.shows and not is_bounded(assessment.rule)
+        if (waiting := [row for row in view.results if row.at_once < row.answers])
+    ]
+    return {row.requirement: result for row, result in details.results(rows)}
+
+
+def _reservations(view: RequirementView, longest: Mapping[str, ResultView]) -> Sequence[str]:
     """Sentences that qualify a requirement that is shown."""
     if not view.mark.shows:
         return ()
-    average = [f"{view.id} is supported: {AVERAGE}."] if view.mark.word == SUPPORTED else []
-    waits = [
-        (result.latency.longest_s, result.latency.longest, result.run_label)
-        for result in view.results
-        if result.latency and not result.latency.is_bounded
-        if result.latency.at_once < result.latency.answered
-    ]
-    unbounded = "" if view.limit else f"{view.id} sets no bound on its response. "
-    late = [
-        f"{unbounded}The longest answer of {view.id} took {longest}, in {run}."
-        for _, longest, run in sorted(waits, key=lambda wait: -wait[0])[:1]
-    ]
-    draft = [f"{view.id} is a draft."] if view.status == "draft" else []
+    average = [f"{view.name} is supported: {AVERAGE}."] if view.mark.word == SUPPORTED else []
+    unbounded = "" if view.limit else f"{view.name} sets no bound on its response. "
+    result = longest.get(view.anchor)
+    late = (
+        [
+            f"{unbounded}The longest answer of {view.name} took {result.latency.longest}, "
+            f"in {result.run_label}."
+        ]
+        if result and result.latency
+        else []
+    )
+    draft = [f"{view.name} is a draft."] if view.status == "draft" else []
     return (*average, *([view.limit] if view.limit else []), *late, *draft)
 
 
@@ -218,11 +260,10 @@ _ALWAYS = (
 """Verdicts that have a row in the table of counts even where their count is 0."""
 
 
-def _assumptions(project: Project, evidence: Evidence | None) -> tuple[str, ...]:
+def _assumptions(project: Project, runs: Sequence[Run]) -> tuple[str, ...]:
     """The declared assumptions, then those of the audit that are no longer declared."""
     declared = project.declarations.assumptions if project.declarations else ()
-    results = evidence.results if evidence else ()
     now = dict.fromkeys(declared)
-    audited = (text for result in results for text in result.assumptions)
+    audited = (text for run in runs for text in run.facts.assumptions)
     older = dict.fromkeys(f"{text} (in the audit)" for text in audited if text not in now)
     return (*now, *older)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.verdicts import WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
@@ -15,7 +15,7 @@ from fretish.diagnostics.source import Source
 
 
 def stale_evidence(
-    assessments: Sequence[Assessment], evidence: Evidence | None, path: str
+    assessments: Sequence[Assessment], briefs: Briefs | None, path: str
 ) -> tuple[Diagnostic, ...]:
     """F504 for requirements with evidence of something else, and for each id that is unknown.
 
@@ -45,7 +45,7 @@ def stale_evidence(
             help=again,
             severity=Severity.WARNING,
         )
-        for id in unknown_ids(assessments, evidence)
+        for id in unknown_ids(assessments, briefs)
     ]
     return (*suspect, *strange)
 

@@ -12,13 +12,12 @@ from compiler.files.dates import today
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.attestation.signatures import read_signatures
-from fretc.audit.evidence.declared_units import without_samples
-from fretc.audit.evidence.reader import read as read_evidence
-from fretc.audit.evidence.schema import Result
+from fretc.audit.store.anywhere import StoreError, source
 from fretc.report.assembly import report
-from fretc.report.forms.json_text import json_text
+from fretc.report.forms.json_text import json_pieces
 from fretc.report.model.views import Report
 from fretc.report.page.html import html
+from fretc.report.sections.details import Details
 from fretc.report.traceability.lock import read as read_lock
 from fretc.report.traceability.waivers import Waiver
 from fretc.report.traceability.waivers import read as read_waivers
@@ -40,18 +39,22 @@ class ReportBuild:
     diagnostics: tuple[Diagnostic, ...]
     rules: tuple[Formalized, ...] = ()
     """The formalized requirements; the HTML page draws what they mean."""
-    results: tuple[Result, ...] = ()
-    """The results of the evidence, in its order and in declared units."""
+    details: Details | None = None
+    """What the report has in rows only; None where there is no report."""
 
     @property
     def html(self) -> str | None:
         """The HTML page."""
-        return None if self.report is None else html(self.report, self.rules)
+        if self.report is None or self.details is None:
+            return None
+        return html(self.report, self.details, self.rules)
 
     @property
     def json(self) -> str | None:
         """The report for programs."""
-        return None if self.report is None else json_text(self.report)
+        if self.report is None or self.details is None:
+            return None
+        return "".join(json_pieces(self.report, self.details))
 
 
 def make(
@@ -68,14 +71,14 @@ def make(
 
     Args:
         project: with or without errors; the report shows what could not be formalized as such.
-        evidence: path of an evidence file; where there is none, nothing has been exercised.
+        evidence: path of a file or of a store; where there is none, nothing has been exercised.
         lock: path of a lock; None: nothing has been reviewed.
         waivers: path of a file of waivers; None: nothing is waived.
         verification: path of a file that `fretc verify` wrote; None: nothing was proved.
         ajpf: paths of results that the `run.py` of bundles wrote.
         signers: path of a list of signers; None: no signature counts.
     """
-    audits = read_evidence(evidence)
+    audits = source(evidence)
     if isinstance(audits, Diagnostic) and audits.is_error:
         return ReportBuild(None, (audits,))
     proofs = read_proofs(verification) if verification is not None else None
@@ -92,21 +95,24 @@ def make(
     proofs_of_ajpf, ajpf_diagnostics = ajpf_proofs(project.rules, ajpf)
     # A missing file of evidence is a note: the report shows that nothing has been exercised.
     present, notes = (None, (audits,)) if isinstance(audits, Diagnostic) else (audits, ())
-    full_report, report_diagnostics = report(
-        project,
-        present,
-        path=evidence,
-        lock=reviews,
-        waivers=waivers_in_force,
-        proofs=proofs,
-        ajpf=proofs_of_ajpf,
-        book=signatures,
-    )
+    try:
+        full_report, details, report_diagnostics = report(
+            project,
+            present,
+            path=evidence,
+            lock=reviews,
+            waivers=waivers_in_force,
+            proofs=proofs,
+            ajpf=proofs_of_ajpf,
+            book=signatures,
+        )
+    except StoreError as error:
+        return ReportBuild(None, (error.diagnostic,))
     return ReportBuild(
         full_report,
         (*notes, *waiver_diagnostics, *ajpf_diagnostics, *report_diagnostics),
         project.rules,
-        without_samples(present.results, project.declarations) if present else (),
+        details,
     )
 
 

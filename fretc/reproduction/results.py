@@ -19,6 +19,7 @@ from compiler.files.edition import __version__
 from compiler.files.records import plain, replace
 from compiler.files.text_files import file_sha256, sha256
 from fretc.audit.evidence.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
+from fretc.audit.evidence.briefs import brief
 from fretc.audit.evidence.claim import Claim
 from fretc.audit.evidence.estimates import estimates
 from fretc.audit.evidence.probabilities import Estimated
@@ -26,6 +27,7 @@ from fretc.audit.evidence.schema import Document, Result
 from fretc.audit.evidence.schema import Finding as OfLog
 from fretc.audit.many_logs import Engine, audit_logs
 from fretc.audit.plan import Plan
+from fretc.logs.labels import of_path
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.storage.inputs import shown as called
@@ -224,7 +226,7 @@ def _estimate_difference(before: Estimated, claim: Claim, results: Sequence[Resu
     least, most = _DOUBT
     if not least < before.confidence <= most:
         return f"its confidence is none above {least} and up to {most}"
-    (now,) = estimates([claim], results, before.confidence)
+    (now,) = estimates([claim], [*map(brief, results)], before.confidence)
     if before.answer != now.answer:
         return f"the answer is {now.answer}, and was {before.answer}"
     others = _different_keys(plain(before), plain(now))
@@ -277,6 +279,8 @@ def _differences(before: Result, now: Result, plan: Plan) -> Iterator[str]:
     others.extend(f"hashes.{name}" for name in _different_keys(before.hashes, now.hashes, _REASONS))
     if _assumptions(before, plan) != _assumptions(now, plan):
         others.append("assumptions")
+    if not _same_labels(before, now, plan):
+        others.append("labels")
     if others:
         yield f"it differs in {', '.join(others)}"
 
@@ -286,7 +290,7 @@ _REASONS = (*_OF_LOG, *KINDS)
 """Hashes whose difference has a reason of its own."""
 _FINDINGS = ("findings",)
 """The findings of a log are about its run, not about one result of it."""
-_COMPARED_APART = {"run", "requirement", "verdict", "hashes", "health", "assumptions"}
+_COMPARED_APART = {"run", "requirement", "verdict", "hashes", "health", "assumptions", "labels"}
 """Fields that are compared in a way of their own."""
 
 
@@ -301,6 +305,19 @@ def _different_keys(
 def _letters(value: Mapping[str, object], key: str) -> str:
     """Empty where it is not there, which is not the same as null."""
     return json.dumps(value[key], sort_keys=True) if key in value else ""
+
+
+def _same_labels(before: Result, now: Result, plan: Plan) -> bool:
+    """Whether the labels are the same; one of the path may be that of the path then."""
+    own, other = before.labels or {}, now.labels or {}
+    if own.keys() != other.keys():
+        return False
+    different = [name for name in own if own[name] != other[name]]
+    declared = plan.declarations.labels
+    return all(
+        name not in plan.labels and own[name] in of_path(name, declared.get(name, ()), before.run)
+        for name in different
+    )
 
 
 def _assumptions(result: Result, plan: Plan) -> list[str]:

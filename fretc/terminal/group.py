@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from importlib import import_module
 from pathlib import Path
 from shlex import quote
 from typing import Any
@@ -18,6 +19,36 @@ _OWN = ("-h", "--help", "--version", "--parents")
 """Options of `fretc` itself."""
 DEFAULT = "compile"
 """The command that `fretc FILE...` stands for."""
+
+
+class Registry(MutableMapping[str, click.Command]):
+    """Commands by their names. A module is imported when its command is looked up."""
+
+    def __init__(self, places: Mapping[str, str]) -> None:
+        """Nothing is imported yet; a place is `module:attribute`."""
+        self._places = places
+        self._commands: dict[str, click.Command] = {}
+
+    def __getitem__(self, name: str) -> click.Command:
+        if name not in self._commands:
+            module, _, attribute = self._places[name].partition(":")
+            self._commands[name] = getattr(import_module(module), attribute)
+        return self._commands[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._places
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._places)
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+    def __setitem__(self, name: str, command: click.Command) -> None:
+        raise TypeError("a command is added to the places")
+
+    def __delitem__(self, name: str) -> None:
+        raise TypeError("a command is removed from the places")
 
 
 class Commands(click.Group):

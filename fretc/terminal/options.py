@@ -9,7 +9,7 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
-from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, stop
+from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 Command = Callable[..., Any]
@@ -79,15 +79,38 @@ bindings_option = path_option(
 hazards_option = path_option(
     "--hazards", help="hazards.toml; the one in the requirements' folder if not given."
 )
+
+
+def evidence_place(named: str | None) -> str:
+    """Where evidence is: where the user says, else the file or the store that is there."""
+    if named is not None:
+        return named
+    if os.path.lexists(EVIDENCE) and os.path.lexists(STORE):
+        stop(
+            Diagnostic(
+                Code.TWO_EVIDENCES,
+                f"evidence is in `{EVIDENCE}` and in `{STORE}`: one of them is of an earlier audit",
+                help="remove the one that you do not mean, or name the other",
+            )
+        )
+    return STORE if os.path.lexists(STORE) else EVIDENCE
+
+
 evidence_option = path_option(
     "--evidence",
-    default=EVIDENCE,
-    show_default=True,
-    help="What `fretc audit` has written.",
+    callback=lambda _context, _option, named: evidence_place(named),
+    help=f"What `fretc audit` has written; {EVIDENCE} or {STORE}, if not given.",
 )
 verification_option = path_option(
     "--verification",
     help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
+)
+label_option = click.option(
+    "--label",
+    "labels",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="A label of all these runs, such as version=2.1; it comes before those of [run.label].",
 )
 jobs_option = click.option(
     "--jobs",

@@ -21,8 +21,8 @@ Piece = tuple[str, str | None]
 """A text of a line, with its colour if it has one."""
 REQUIREMENTS_FOLDER = "requirements"
 """Where the requirements of a project are, if nobody says otherwise."""
-EVIDENCE = "build/evidence.json"
-"""Where evidence is, if nobody says otherwise."""
+EVIDENCE, STORE = "build/evidence.json", "build/evidence"
+"""Where evidence of one log is, and of several, if nobody says otherwise."""
 SHOWN, VIOLATION, BAD, NOT_SHOWN, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit status: all shown, a violation, bad use or input, something not shown, Ctrl-C."""
 
@@ -114,8 +114,10 @@ def say_line(text: str) -> None:
         click.echo(text, err=True)
 
 
-def deliver(files: Mapping[Path, str | bytes], protected: Iterable[str] = ()) -> None:
-    """Write the texts, all or none, and name them.
+def deliver(
+    files: Mapping[Path, str | bytes | Iterable[str]], protected: Iterable[str] = ()
+) -> None:
+    """Write the texts, whole or in pieces, all or none, and name them.
 
     Args:
         files: where each text goes; `-` prints it.
@@ -129,8 +131,8 @@ def deliver(files: Mapping[Path, str | bytes], protected: Iterable[str] = ()) ->
         if targets.count(target) > 1:
             stop(not_written(str(path), "two outputs would go there"))
     printed = files.get(Path("-"))
-    if printed is not None:
-        click.echo(printed, nl=False)
+    for piece in (printed,) if isinstance(printed, str | bytes) else printed or ():
+        click.echo(piece, nl=False)
     written = {path: text for path, text in files.items() if path != Path("-")}
     wrong = write(written)
     if wrong is not None:

@@ -17,8 +17,10 @@ from typing import TypeVar
 from fretish.bindings.declarations import Signal
 from fretish.units import base_name
 
-_DIGITS = 4
+_DIGITS = 3
 """Significant digits of a measured number, where nothing asks for more."""
+_WHOLE = 7
+"""So many digits before the point are shown all."""
 _MOST_DIGITS = 17
 """So many digits distinguish all 64-bit floats."""
 _LARGEST = Fraction(float_info.max)
@@ -85,7 +87,7 @@ def margin(distance: float, unit: str, bound: float) -> str:
 def _least_digits(number: float) -> int:
     """All digits before the point, as long as these are no more than a reader takes in."""
     size = floor(log10(abs(number))) + 1 if number else 1
-    return max(_DIGITS, size) if size <= _DIGITS + 3 else _DIGITS
+    return max(_DIGITS, size) if size <= _WHOLE else _DIGITS
 
 
 def _decimal(number: float, digits: int) -> str:
@@ -114,8 +116,35 @@ def decimal(number: float, thousands: str = "") -> str:
 
 
 def seconds(number: float) -> str:
-    """A time or a duration, to the millisecond: `39.8 s`."""
+    """A time from the first tick of a run, to the millisecond: `39.8 s`."""
     return f"{decimal(number)} s"
+
+
+def duration(number: float, bounds: Sequence[float] = ()) -> str:
+    """How long something took: `304 ms`, `39.8 s`, `0 s`; with the digits of a measured number.
+
+    Args:
+        number: seconds.
+        bounds: seconds that appear exactly beside it, as of `value`.
+    """
+    unit, places = _time_unit(number)
+    return value(_moved(number, places), unit, [_moved(bound, places) for bound in bounds])
+
+
+def exact_duration(number: float) -> str:
+    """A limit of time in seconds, with all digits that it was written with: `300 ms`, `1.5 s`."""
+    unit, places = _time_unit(number)
+    return exact(_moved(number, places), unit)
+
+
+def _time_unit(number: float) -> tuple[str, int]:
+    """Seconds; milliseconds, by three places, for what is less than one, also when rounded."""
+    return ("ms", 3) if 0 < abs(number) < 0.9995 else ("s", 0)
+
+
+def _moved(number: float, places: int) -> float:
+    """The number with its point moved: of its shortest text, so that 0.3 s are 300 ms."""
+    return float(Decimal(repr(float(number))).scaleb(places))
 
 
 def instant(ns: int | None) -> str:

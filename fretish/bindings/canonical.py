@@ -41,8 +41,8 @@ def bound(declarations: Declarations, names: Iterable[str]) -> Any:
     propositions = [declarations.propositions[n] for n in names if n in declarations.propositions]
     read = {signal for proposition in propositions for signal in proposition.signals}
     return {
-        "proposition": {each.name: _proposition(each) for each in propositions},
-        "signal": {name: _signal(declarations.signals[name]) for name in read},
+        "proposition": {each.name: [*proposition_fields(each).values()] for each in propositions},
+        "signal": {name: signal_fields(declarations.signals[name]) for name in read},
     }
 
 
@@ -60,12 +60,17 @@ def described(declarations: Declarations | None, names: Iterable[str]) -> Any:
     }
 
 
-def _proposition(proposition: Proposition) -> Any:
-    meaning = expression(proposition.expression)
-    return [meaning, str(proposition.aggregate), proposition.on_unknown]
+def proposition_fields(proposition: Proposition) -> dict[str, Any]:
+    """The meaning of each field on which verdicts depend."""
+    return {
+        "expr": expression(proposition.expression),
+        "agg": str(proposition.aggregate),
+        "on_unknown": proposition.on_unknown,
+    }
 
 
-def _signal(signal: Signal) -> Any:
+def signal_fields(signal: Signal) -> dict[str, Any]:
+    """The same of a signal; `outline` is the meaning of `footprint` and `sensor`."""
     outline = signal.reduce is Reduce.OUTLINE
     invalid = signal.invalid
     meaning = {

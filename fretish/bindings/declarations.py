@@ -17,6 +17,7 @@ from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.expressions import Expression, names
+from fretish.reading.memory import remembered
 from fretish.units import Unit
 
 
@@ -185,7 +186,12 @@ class Proposition:
     @property
     def signals(self) -> tuple[str, ...]:
         """The names of the signals that it reads, in the order of their first use."""
-        return tuple(dict.fromkeys(name.id for name in names(self.expression)))
+        return _named(self.expression)
+
+
+@remembered
+def _named(expression: Expression) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(name.id for name in names(expression)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -290,6 +296,15 @@ class Map:
     y: Signal
 
 
+@dataclass(frozen=True, slots=True)
+class LabelSource:
+    """Where a label of a run comes from: the metadata of its log, or the path of it."""
+
+    is_path: bool
+    text: str
+    """`build.version`: record and key; or a pattern (`fretish.reading.name_patterns`)."""
+
+
 Part = tuple[str, str]
 """`("signal", "vx")`, `("proposition", "near")` or `("clock", "")`."""
 
@@ -320,6 +335,8 @@ class Declarations:
     """Each signal and proposition that is declared and cannot be used, and why; the mistakes of a
     signal are those of the propositions that read it, too."""
     map: Map | None = None
+    labels: Mapping[str, tuple[LabelSource, ...]] = field(default_factory=dict)
+    """`[run.label]`: each label of runs, with its sources; the first that says something counts."""
 
     @property
     def signal_names(self) -> tuple[str, ...]:

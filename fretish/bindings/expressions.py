@@ -10,7 +10,6 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
 from functools import cache
-from importlib.resources import files
 from typing import Any, cast
 
 from lark import Lark, Token, v_args
@@ -20,6 +19,8 @@ from lark.visitors import Transformer_NonRecursive
 from fretish import expressions as e
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.source import Span
+from fretish.reading.grammars import Grammar
+from fretish.reading.memory import remembered
 from fretish.units import (
     DIMENSIONLESS,
     Dimension,
@@ -54,8 +55,12 @@ class _UnitError(Exception):
 
 @cache
 def _lark() -> Lark:
-    grammar = files("fretish.bindings").joinpath("expressions.lark").read_text(encoding="utf-8")
-    return Lark(grammar, parser="lalr", lexer="basic", maybe_placeholders=False)
+    return GRAMMAR.parser()
+
+
+GRAMMAR = Grammar(
+    "fretish.bindings", "expressions", {"lexer": "basic", "maybe_placeholders": False}
+)
 
 
 def _parts(children: list[Any]) -> list[Any]:
@@ -309,6 +314,7 @@ MOST_TICKS_BACK = 16
 _PRE = frozenset({"pre", "preReal", "preInt"})
 
 
+@remembered
 def ticks_back(expression: e.Expression) -> int:
     """By how many ticks its value looks back: calls of `pre` within each other.
 

@@ -18,6 +18,7 @@ from fretish.bindings.declarations import (
     Declarations,
     Default,
     Invalid,
+    LabelSource,
     Map,
     Modality,
     Part,
@@ -38,10 +39,11 @@ from fretish.clock import Clock, End, Rounding, TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.parser import parse_value
+from fretish.reading import name_patterns
 from fretish.reading.limits import within
 from fretish.reading.toml_text import Tables, as_key, read
 
-_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map")
+_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run")
 _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
 """A topic, and no duration: a duration begins with a digit."""
 _CLOCK = ("time", "tick", "phase", "end", "rounding")
@@ -52,6 +54,10 @@ _SIGNAL = (
 _OF_NUMBERS = ("unit", "valid", "invalid", "reduce", "footprint", "sensor")
 """Fields of a signal that mean nothing beside `values`."""
 _MOST_WORDS, _LONGEST_WORD = 1000, 100
+_RUN = ("label",)
+_LABEL = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,49}", re.ASCII)
+MOST_LABELS = 32
+_MOST_SOURCES, _LONGEST_SOURCE = 8, 200
 _EXACT = 2**53
 """Numbers of words below it are exact in every field."""
 _MAP = ("x", "y")
@@ -124,6 +130,7 @@ class _Reader(Fields):
             self._assumed(loop),
             self.mistakes,
             self._map(),
+            self._labels(),
         )
 
     def _map(self) -> Map | None:
@@ -192,6 +199,38 @@ class _Reader(Fields):
         assumption = loop.assumed(tuple(self._tables("proposition")))
         broken = assumption is not None and ("proposition", assumption.stands) in self.mistakes
         return None if broken else assumption
+
+    # Labels of runs
+
+    def _labels(self) -> dict[str, tuple[LabelSource, ...]]:
+        """`[run.label]`: each label with its sources."""
+        table = self.tables.data.get("run", {})
+        labels = table.get("label", {}) if isinstance(table, dict) else None
+        if not isinstance(labels, dict) or len(labels) > MOST_LABELS:
+            message = f"`run` must hold a table `label`, of up to {MOST_LABELS} labels"
+            self._bad_label(message, ("run",), f"write `[run.label]` and {_LABEL_FORM}")
+            return {}
+        self._check_keys(table, _RUN, "[run]", "run")
+        return {name: self._label_sources(name, written) for name, written in labels.items()}
+
+    def _label_sources(self, name: str, written: object) -> tuple[LabelSource, ...]:
+        at = ("run", "label", name)
+        if not is_label(name):
+            message = f"`{name}` is no name of a label: a letter, then letters, digits, `_`, `-`"
+            self._bad_label(f"{message}, 50 at most", at)
+            return ()
+        texts = written if isinstance(written, list) else [written]
+        sources = [_label_source(name, text) for text in texts]
+        wrong = next((each for each in sources if isinstance(each, str)), None)
+        if wrong is None and not 0 < len(sources) <= _MOST_SOURCES:
+            wrong = f"a label has 1 to {_MOST_SOURCES} sources"
+        if wrong is not None:
+            self._bad_label(f"`{name}` has no sound source: {wrong}", at, f"write {_LABEL_FORM}")
+            return ()
+        return tuple(each for each in sources if isinstance(each, LabelSource))
+
+    def _bad_label(self, message: str, at: tuple[str, ...], mend: str | None = None) -> None:
+        self._say(Code.BAD_LABEL, message, self.tables.value(*at), mend)
 
     # Fields
 
@@ -777,6 +816,27 @@ class _Reader(Fields):
             self.tables.value(*at, "on_unknown"),
         )
         return None
+
+
+_LABEL_FORM = '`version = "metadata:build.version"` or `scenario = "path:{scenario}-*.mcap"`'
+
+
+def is_label(name: str) -> bool:
+    """Whether it can be the name of a label."""
+    return _LABEL.fullmatch(name) is not None
+
+
+def _label_source(name: str, written: object) -> LabelSource | str:
+    """The source of a label, or what is wrong with it."""
+    kind, _, text = written.partition(":") if isinstance(written, str) else ("", "", "")
+    if kind not in ("metadata", "path") or not 0 < len(text) <= _LONGEST_SOURCE:
+        return "it is neither `metadata:RECORD.KEY` nor `path:PATTERN`"
+    if kind == "metadata":
+        return LabelSource(False, text) if "." in text else "a record has keys: `RECORD.KEY`"
+    found = name_patterns.names(text)
+    if isinstance(found, str):
+        return found
+    return LabelSource(True, text) if name in found else f"`{{{name}}}` is not in the pattern"
 
 
 _VARIABLE = ("component", "type", "role", "text", "value", "fret", "modality", "action")

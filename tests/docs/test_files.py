@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pytest
 import tomli_w
 
 from compiler.files import settings
 from compiler.project import hazards
-from fretc.report.traceability import lock, waivers
+from fretc.audit.store import tables
+from fretc.audit.store.register import types
+from fretc.report.traceability import lock, texts, waivers
 from fretc.report.traceability.chain import Node
 from fretish.bindings import declarations as d
 from fretish.bindings import interceptor, reader
@@ -37,6 +40,21 @@ REVIEW = lock.Review(
     "first review",
     {Node("sentence", "R1"): "0" * 64},
     {"traces/a.mcap": "satisfied"},
+    texts.Texts(
+        sentence="whenever too_close the rover shall within 200 milliseconds satisfy stopped",
+        canonical="whenever too_close rover shall within 200 milliseconds satisfy stopped",
+        title="Stop near obstacles",
+        status="approved",
+        parents=("HAZ-001",),
+        params={"too_close": "5 cm"},
+        hazards={"HAZ-001": texts.HazardTexts("The robot hits a drum", severity="catastrophic")},
+        bindings=texts.Bindings(
+            {"tick": "100 ms"},
+            {"clearance": {"path": "/clearance.data", "unit": "m", "max_age": "300 ms"}},
+            {"too_close": {"expr": "clearance < 5 cm", "role": "input"}},
+        ),
+        fretc="0.1.0",
+    ),
 )
 
 
@@ -46,6 +64,8 @@ REVIEW = lock.Review(
 def table(name: str) -> str:
     if name == "lock":
         return f"```toml\n{lock.text(lock.Lock({'R1': REVIEW}))}```"
+    if name == "store":
+        return "\n".join(["| table | a row for each | columns |", "|---|---|---|", *store_rows()])
     assert name == "acceptances"
     lines = ["| where | warnings |", "|---|---|"]
     for about, (place, example) in ACCEPTANCES.items():
@@ -53,6 +73,32 @@ def table(name: str) -> str:
         written = example.format(codes[0]).replace("[accept]\n", "")
         lines.append(f"| {place}: `{written}` | {', '.join(codes)} |")
     return "\n".join(lines)
+
+
+ROWS_OF_STORES = {
+    "results": "run and requirement",
+    "events": "run and requirement",
+    "violations": "stretch of violated ticks",
+    "samples": "violation with samples",
+    "runs": "run",
+    "register": "run",
+}
+
+
+def store_rows() -> Iterator[str]:
+    schemas = {**{name: tables.schema(name) for name in tables.TABLES}, "register": types()}
+    for name, schema in schemas.items():
+        columns = ", ".join(f"`{column.name}` {kind(column.type)}" for column in schema)
+        yield f"| `{name}` | {ROWS_OF_STORES[name]} | {columns} |"
+
+
+def kind(of: pa.DataType) -> str:
+    """A type in few words."""
+    if pa.types.is_list(of):
+        return f"list of {kind(of.value_type)}"
+    if pa.types.is_map(of):
+        return f"map to {kind(of.item_type)}"
+    return "struct" if pa.types.is_struct(of) else str(of)
 
 
 def test_the_page_is_current(request: pytest.FixtureRequest) -> None:
@@ -85,6 +131,7 @@ TABLES = {
     "interceptor": interceptor._INTERCEPTOR,
     "assume": interceptor._ASSUME,
     "map": reader._MAP,
+    "run": reader._RUN,
     "hazards.toml": hazards._FIELDS,
     "waivers.toml": waivers._FIELDS,
     "fretc.toml": settings._FIELDS,
@@ -117,7 +164,8 @@ def test_each_field_has_its_row(name: str) -> None:
 def test_the_fields_of_a_lock_are_those_that_are_written() -> None:
     written = tomllib.loads(lock.text(lock.Lock({"R1": REVIEW})))
     found = {row[0].strip("`") for row in rows(section(TEXT, "## `fretc.lock`"))}
-    assert found == {"schema", *written["review"]["R1"]}
+    kept = {f"texts.{name}" for name in texts.Texts.__struct_fields__}
+    assert found == {"schema", *written["review"]["R1"], *kept}
 
 
 @pytest.mark.parametrize(("name", "field"), CHOICES)
@@ -137,6 +185,7 @@ LEAST: Mapping[str, Table] = {
     "interceptor": {"stop": "/s", "command": "/c", "output": "/o", "period": "10 ms"},
     "assume": {"stands": "stopped", "latency": "1 s", "braking": "1 s"},
     "map": {"x": "/at.x", "y": "/at.y"},
+    "run": {},
     "hazards.toml": {"title": "t"},
     "waivers.toml": {
         "verdict": "vacuous", "reason": "r", "by": "b", "role": "r",

@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from compiler.files.records import plain
-from fretc.audit.constancy import never_changed
+from fretc.audit.constancy import Total, never_changed
 from fretc.audit.evidence.writer import phase_verdicts
 from fretc.audit.measurements.tallies import NOTHING, Tally, tally
 from fretc.audit.one_log import examined, signals_of
@@ -66,7 +66,7 @@ class Coverage:
 
     @property
     def _constant(self) -> tuple[Diagnostic, ...]:
-        return tuple(never_changed(self._tallies, self.declarations, self._findings))
+        return tuple(never_changed(self._totals, self.declarations, self._findings))
 
     @property
     def shown(self) -> bool:
@@ -84,6 +84,13 @@ class Coverage:
         names = self.declarations.propositions
         lines = [line for name in names for line in self._lines(name)]
         return tuple((visible(line), colour) for line, colour in (*lines, *self._phase_lines()))
+
+    @property
+    def _totals(self) -> dict[str, Total]:
+        return {
+            name: Total(sum(tallies, NOTHING), len(tallies))
+            for name, tallies in self._tallies.items()
+        }
 
     @property
     def _tallies(self) -> dict[str, list[Tally]]:

@@ -57,12 +57,17 @@ def basis(
         PARAMS: digest({name: parameter(text) for name, text in requirement.params.items()}),
         CLOCK: digest(clock(declarations.clock)) if declarations else "",
         TOPICS: digest(sorted(set(topics))) if declarations else "",
-        BINDINGS: digest(bound(declarations, rule.watched)) if declarations and rule else "",
+        BINDINGS: of_bindings(rule, declarations),
         MONITOR: sha256(monitor.text(rule) if rule else ""),
     }
 
 
-def outdated(recorded: Mapping[str, str], now: Basis) -> tuple[str, ...]:
+def of_bindings(rule: Formalized | None, declarations: Declarations | None) -> str:
+    """What a verdict would rest on of the bindings; empty where there is none."""
+    return digest(bound(declarations, rule.watched)) if declarations and rule else ""
+
+
+def outdated(recorded: Mapping[str, object], now: Basis) -> tuple[str, ...]:
     """The kinds that are not as they were recorded, without what only follows from another one.
 
     Args:

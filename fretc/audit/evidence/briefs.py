@@ -7,15 +7,20 @@ sorts them reads briefs, and asks for the few results that it shows in full.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from statistics import median
 from typing import Protocol
 
+from compiler.files.records import UnsetType
+from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Bindings, Hashes, Health, Requirement, Result, Threshold
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
+
+Recorded = tuple[str | UnsetType, ...]
+"""SHA-256 of each of `fretc.audit.evidence.basis.KINDS`; unset where it was not known then."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +44,8 @@ class Brief:
     violated_ticks: int
     first_violation_ns: int | None
     first_violation_s: float | None
+    unknown: int
+    """Stretches of ticks at which it cannot be known whether a demand was broken."""
     unknown_ticks: int
     latency_median_s: float | None
     latency_max_s: float | None
@@ -49,6 +56,21 @@ class Brief:
     """SHA-256 of the verdict and the ticks that it is about, as a review accepts it."""
     trials: Trials | None
     """Of a requirement with a probability, where the log could be read."""
+
+    @property
+    def log(self) -> str:
+        """SHA-256 of the log; empty where it was not read whole, or could not be read."""
+        return self.fingerprints.log or ""
+
+    @property
+    def rests_on(self) -> Recorded:
+        """The fingerprints of what the verdict rests on beside the log."""
+        return tuple(getattr(self.fingerprints, kind) for kind in KINDS)
+
+    @property
+    def content(self) -> str:
+        """What tells its log from another one: copies have the same."""
+        return self.log or self.fingerprints.log_summary or self.run
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +88,8 @@ class RunFacts:
     health: Health
     assumptions: tuple[str, ...]
     """Of all its results, each once."""
+    labels: Mapping[str, str] = field(default_factory=dict)
+    """What is known of the run beside its messages: version, scenario and others."""
 
 
 Span = tuple[float, float]
@@ -124,14 +148,37 @@ class EvidenceSource(Protocol):
     def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
         """The whole results at some places, in order."""
 
-    def latencies(self, requirement: str) -> Iterator[tuple[int, Sequence[float]]]:
-        """The latencies in seconds of each result of a requirement, with its place, in order."""
+    def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
+        """Latencies in seconds of each result of some requirements, with its place, in order.
 
-    def thresholds(self, requirement: str) -> Iterator[tuple[int, Sequence[Threshold]]]:
-        """The thresholds of each result of a requirement, with its place, in order."""
+        A store is read once for all of them.
+        """
 
-    def stretches(self, requirement: str) -> Iterator[tuple[int, Stretches]]:
-        """The stretches of each result of a requirement, with its place, in order."""
+    def thresholds(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+        """The thresholds of each result of some requirements, with its place, in order."""
+
+
+@dataclass(frozen=True, slots=True)
+class Briefs:
+    """All results of some evidence in brief, and the evidence, which has the rest."""
+
+    source: EvidenceSource
+    by_requirement: Mapping[str, Sequence[tuple[int, Brief]]]
+    """Those of each requirement that has any, with their places, in order."""
+    firsts: Mapping[tuple[str, str], int]
+    """The place of the first result of each run, by the name and the hash of its log."""
+
+    @classmethod
+    def of(cls, source: EvidenceSource) -> Briefs:
+        """Those of the evidence, read once."""
+        groups: dict[str, list[tuple[int, Brief]]] = {}
+        firsts: dict[tuple[str, str], int] = {}
+        for place, each in source.briefs():
+            groups.setdefault(each.requirement, []).append((place, each))
+            firsts.setdefault((each.run, each.log), place)
+        return cls(source, groups, firsts)
 
 
 def brief(result: Result) -> Brief:
@@ -155,6 +202,7 @@ def brief(result: Result) -> Brief:
         violated_ticks=sum(v.last_tick - v.first_tick + 1 for v in violations),
         first_violation_ns=first.start_ns if first else None,
         first_violation_s=first.start_s if first else None,
+        unknown=len(result.unknown),
         unknown_ticks=sum(last - first + 1 for first, last in result.unknown),
         latency_median_s=median(latencies) if latencies else None,
         latency_max_s=max(latencies, default=None),
@@ -196,6 +244,7 @@ def run_facts(results: Sequence[Result]) -> RunFacts:
         log_summary=first.fingerprints.log_summary or "",
         health=first.health,
         assumptions=tuple(assumptions),
+        labels=first.labels or {},
     )
 
 

@@ -1,4 +1,4 @@
-"""Evidence and results in the units that the bindings declare, for every output."""
+"""Results in the units that the bindings declare, for every output."""
 
 from __future__ import annotations
 
@@ -8,20 +8,27 @@ from math import isinf
 
 from compiler.files.records import replace
 from fretc.audit.evidence.samples import Series
-from fretc.audit.evidence.schema import Evidence, Result, Threshold, Violation
+from fretc.audit.evidence.schema import Result, Threshold, Violation
 from fretish.bindings.amounts import declared_unit, scaled, shared_unit
 from fretish.bindings.declarations import Declarations, Signal
 
 
-def in_declared_units(evidence: Evidence, declared: Declarations | None) -> Evidence:
-    """The same evidence with every number in the unit that the bindings declare for its signal.
+def in_declared_units(result: Result, declared: Declarations | None) -> Result:
+    """The same result with every number in the unit that the bindings declare for its signal.
 
     A signal that the bindings do not declare, or now in units of another dimension, stays in its
     base unit.
     """
+    return result if declared is None else _result(result, declared.signals)
+
+
+def thresholds_in_declared_units(
+    thresholds: Sequence[Threshold], declared: Declarations | None
+) -> tuple[Threshold, ...]:
+    """The same of thresholds alone."""
     if declared is None:
-        return evidence
-    return evidence.with_results([_result(each, declared.signals) for each in evidence.results])
+        return tuple(thresholds)
+    return tuple(_threshold(each, declared.signals) for each in thresholds)
 
 
 def without_samples(results: Sequence[Result], declared: Declarations | None) -> tuple[Result, ...]:
@@ -31,11 +38,13 @@ def without_samples(results: Sequence[Result], declared: Declarations | None) ->
         results: in base units.
         declared: the bindings.
     """
-    bare = [
-        replace(each, violations=tuple(replace(v, surroundings=None) for v in each.violations))
-        for each in results
-    ]
-    return tuple(_result(each, declared.signals) if declared else each for each in bare)
+    return tuple(in_declared_units(bare(each), declared) for each in results)
+
+
+def bare(result: Result) -> Result:
+    """A result without those samples."""
+    violations = tuple(replace(each, surroundings=None) for each in result.violations)
+    return replace(result, violations=violations)
 
 
 def _result(result: Result, declared: Mapping[str, Signal]) -> Result:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import cast
 
+from fretc.audit.evidence.briefs import Brief
 from fretc.audit.evidence.claim import Claim
 from fretc.audit.evidence.probabilities import (
     AVERAGE,
@@ -17,7 +18,6 @@ from fretc.audit.evidence.probabilities import (
     low,
     times,
 )
-from fretc.audit.evidence.schema import Result
 from fretc.audit.measurements import confidence_intervals as odds
 from fretc.audit.measurements.confidence_intervals import INCONCLUSIVE, SUPPORTED
 from fretc.audit.measurements.trials import NO_TRIALS, Trials
@@ -25,7 +25,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 
 def estimates(
-    claims: Sequence[Claim], results: Sequence[Result], confidence: float
+    claims: Sequence[Claim], results: Sequence[Brief], confidence: float
 ) -> tuple[Estimated, ...]:
     """One for each claim with a probability.
 
@@ -56,12 +56,12 @@ def warnings(estimates: Sequence[Estimated]) -> Iterator[Diagnostic]:
             )
 
 
-def _estimated(claim: Claim, results: Sequence[Result], level: float) -> Estimated:
+def _estimated(claim: Claim, results: Sequence[Brief], level: float) -> Estimated:
     assert claim.chance is not None
     op, bound = claim.chance.op, Fraction(claim.chance.bound)
     distinct = _distinct(results)
     runs = [_trials(result) for result in distinct]
-    damaged = sum(not result.health.intact for result in distinct)
+    damaged = sum(not result.intact for result in distinct)
     estimate = odds.estimated(runs, odds.both_sides(op, level))
     answer = odds.answer(estimate, op, bound)
     undecided = answer == SUPPORTED and damaged > 0
@@ -75,7 +75,7 @@ def _estimated(claim: Claim, results: Sequence[Result], level: float) -> Estimat
         triggers=Outcomes(estimate.trials.answered, estimate.trials.failed, estimate.trials.open),
         logs=Logs(
             counted=estimate.runs,
-            silent=sum(result.health.intact for result in distinct) - _intact(distinct),
+            silent=sum(result.intact for result in distinct) - _intact(distinct),
             damaged=damaged,
             copies=len(results) - len(distinct),
         ),
@@ -86,24 +86,24 @@ def _estimated(claim: Claim, results: Sequence[Result], level: float) -> Estimat
     )
 
 
-def _intact(results: Sequence[Result]) -> int:
+def _intact(results: Sequence[Brief]) -> int:
     """Those that are intact and have a trigger."""
-    return sum(bool(r.health.intact and _trials(r).count) for r in results)
+    return sum(bool(r.intact and _trials(r).count) for r in results)
 
 
-def _distinct(results: Sequence[Result]) -> list[Result]:
+def _distinct(results: Sequence[Brief]) -> list[Brief]:
     """Each content once: a copy of a log tells nothing new, nor does one that was written again.
 
     What cannot be read has no hash.
     """
-    first: dict[str, Result] = {}
+    first: dict[str, Brief] = {}
     for place, result in enumerate(results):
         prints = result.fingerprints
         first.setdefault(prints.messages or prints.log or prints.log_summary or f"{place}", result)
     return list(first.values())
 
 
-def _trials(result: Result) -> Trials:
+def _trials(result: Brief) -> Trials:
     return result.trials or NO_TRIALS
 
 

@@ -7,14 +7,17 @@ never a report about half of it.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 from compiler.files.checked_json import MisshapenError, parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.schema import Document, Evidence, Result
+from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.schema import Bindings, Document, Requirement, Result, Threshold
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
@@ -30,12 +33,79 @@ VERDICTS = (
 """What an audit can say, the worst first."""
 
 
-def by_requirement(evidence: Evidence | None) -> Mapping[str, Sequence[Result]]:
-    """The results of each requirement that has any, in the order of the evidence."""
-    results_of: dict[str, list[Result]] = {}
-    for result in evidence.results if evidence else ():
-        results_of.setdefault(result.requirement, []).append(result)
-    return results_of
+@dataclass(frozen=True)
+class Evidence:
+    """A file of evidence, with its name and its SHA-256: a source of evidence, all in memory."""
+
+    file: str
+    sha256: str
+    document: Document
+
+    @property
+    def fretc(self) -> str:
+        """Version of the tool that audited."""
+        return self.document.fretc
+
+    @property
+    def bindings(self) -> Bindings:
+        """Those that the logs were read by."""
+        return self.document.bindings
+
+    @property
+    def requirements(self) -> Sequence[Requirement]:
+        """Of the audit."""
+        return self.document.requirements
+
+    @property
+    def probabilities(self) -> Sequence[Estimated]:
+        """What all runs say of each requirement with a probability."""
+        return self.document.probabilities or ()
+
+    @property
+    def results(self) -> tuple[Result, ...]:
+        """Each of a run and a requirement."""
+        return self.document.results
+
+    def briefs(self) -> Iterator[tuple[int, Brief]]:
+        """Each result with its place, in order."""
+        for place, result in enumerate(self.results):
+            yield place, brief(result)
+
+    def runs(self) -> Iterator[RunFacts]:
+        """The facts of each run, in the order of their first results."""
+        results_of: dict[tuple[str, str], list[Result]] = {}
+        for result in self.results:
+            key = result.run, result.fingerprints.log or ""
+            results_of.setdefault(key, []).append(result)
+        yield from map(run_facts, results_of.values())
+
+    def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
+        """The whole results at some places, in order."""
+        for place in sorted(places):
+            yield place, self.results[place]
+
+    def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
+        """Latencies in seconds of each result of some requirements, with its place, in order."""
+        for place, result in self._of(requirements):
+            yield place, result.latencies
+
+    def thresholds(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+        """The thresholds of each result of some requirements, with its place, in order."""
+        for place, result in self._of(requirements):
+            yield place, result.thresholds
+
+    def _of(self, requirements: Collection[str]) -> Iterator[tuple[int, Result]]:
+        return self.details([at for id in {*requirements} for at in self._places.get(id, ())])
+
+    @cached_property
+    def _places(self) -> Mapping[str, Sequence[int]]:
+        """Those of each requirement."""
+        places_of: dict[str, list[int]] = {}
+        for place, result in enumerate(self.results):
+            places_of.setdefault(result.requirement, []).append(place)
+        return places_of
 
 
 def refuted(path: str) -> frozenset[str]:

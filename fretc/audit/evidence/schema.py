@@ -8,8 +8,7 @@ intervals include both ends.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Annotated, Any, Final, Literal
 
@@ -17,6 +16,7 @@ from compiler.files.records import (
     UNSET,
     Count,
     Distance,
+    Duration,
     Meta,
     Name,
     Number,
@@ -30,7 +30,6 @@ from compiler.files.records import (
     field,
     json_schema,
     plain,
-    replace,
 )
 from fretc.audit.evidence.probabilities import Estimated, Outcomes
 from fretc.audit.evidence.samples import (
@@ -47,6 +46,9 @@ from fretc.audit.measurements.violations import Moment as Moment
 
 SCHEMA: Final = "fretc-evidence-1"
 Verdict = Literal["satisfied", "violated", "inconclusive", "vacuous", "no data"]
+LabelName = Annotated[str, Meta(min_length=1, max_length=50)]
+LabelText = Annotated[str, Meta(min_length=1, max_length=200)]
+"""Texts of a stranger's log: whoever shows one escapes it."""
 StateWord = Literal["idle", "open", "violated", "unknown"]
 Comparison = Literal["true", "false", "crossed"]
 Part = Annotated[
@@ -167,9 +169,9 @@ class Topic(Record, frozen=True):
     count: Count
     first_ns: Annotated[Whole | None, about("null: the topic has no message")]
     last_ns: Whole | None
-    longest_gap_ns: Count | None
+    longest_gap_ns: Duration | None
     median_period_ns: Annotated[
-        Count | None, about("from a message to the next; null: there are less than two")
+        Duration | None, about("from a message to the next; null: there are less than two")
     ]
     out_of_order: Annotated[Count | None, about("messages that are earlier than one before them")]
     equal_stamps: Annotated[Count | None, about("messages with the time of another")]
@@ -435,6 +437,14 @@ class Result(Record, frozen=True, kw_only=True):
             "no signal of words is read"
         ),
     ] = UNSET
+    labels: Annotated[
+        Annotated[dict[LabelName, LabelText], Meta(min_length=1, max_length=32)] | UnsetType,
+        about(
+            "what is known of the run beside its messages: robot, version, commit, scenario, date "
+            "and others, as `[run.label]` of the bindings or `--label` says; no verdict rests on "
+            "them. Absent: there is none"
+        ),
+    ] = UNSET
 
     @property
     def hashes(self) -> Mapping[str, str]:
@@ -498,34 +508,6 @@ class Document(Record, frozen=True):
             "none"
         ),
     ] = UNSET
-
-
-@dataclass(frozen=True, slots=True)
-class Evidence:
-    """A file of evidence, with its name and its SHA-256."""
-
-    file: str
-    sha256: str
-    document: Document
-
-    @property
-    def fretc(self) -> str:
-        """Version of the tool that audited."""
-        return self.document.fretc
-
-    @property
-    def results(self) -> tuple[Result, ...]:
-        """Each of a run and a requirement."""
-        return self.document.results
-
-    @property
-    def probabilities(self) -> tuple[Estimated, ...]:
-        """What all runs say of each requirement with a probability."""
-        return self.document.probabilities or ()
-
-    def with_results(self, results: Sequence[Result]) -> Evidence:
-        """The same with other results."""
-        return Evidence(self.file, self.sha256, replace(self.document, results=tuple(results)))
 
 
 def schema() -> dict[str, Any]:

@@ -237,8 +237,10 @@ def phase_verdicts(phases: Phases) -> PhaseVerdicts:
     )
 
 
-def _stretch(each: Stretch) -> PhaseStretch:
-    return PhaseStretch(each.first, each.last, cast("Verdict | None", each.verdict))
+def phases_of(record: PhaseVerdicts) -> Phases:
+    """The verdict at each phase, of its record."""
+    stretches = (Stretch(each.first_ns, each.last_ns, each.verdict) for each in record.stretches)
+    return Phases(record.period_ns, record.declared_ns, tuple(stretches))
 
 
 def _threshold(margin: Margin, first_ns: int) -> Threshold:

@@ -30,7 +30,7 @@ from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import ANNOTATIONS
 from fretc.audit.measurements.states import OPEN, UNKNOWN
 from fretc.audit.outputs.violated_values import values
-from fretish.bindings.amounts import seconds
+from fretish.bindings.amounts import duration, seconds
 from monitors import kernel
 
 VERDICTS = "/fretc/verdicts"

@@ -7,14 +7,14 @@ GitHub, Workflow commands for GitHub Actions.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from itertools import groupby
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from xml.etree import ElementTree
 
 from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.probabilities import AVERAGE, Estimated
 from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import Level
+from fretc.audit.outputs.totals import runs
 from fretc.audit.outputs.violated_values import reason, values
 from fretish.bindings.amounts import seconds
 from fretish.diagnostics.rendering import visible
@@ -25,22 +25,28 @@ _NOT_XML = re.compile("[^\t\n\r\u0020-~\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U00
 _GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
 
 
-def junit(results: Sequence[Result], estimates: Sequence[Estimated] = ()) -> str:
+def junit(
+    results: Iterable[Result],
+    estimates: Sequence[Estimated] = (),
+    requirements: Sequence[Requirement] = (),
+) -> str:
     """One test suite for each run, one test case for each requirement.
 
     Args:
         results: each of a run and a requirement, in declared units.
         estimates: those that are judged over all runs, which is a suite of its own.
+        requirements: whose titles the cases have.
     """
     root = ElementTree.Element("testsuites", name="fretc audit")
-    for run, of_run in groupby(results, key=lambda result: result.run):
-        cases = list(of_run)
+    names = {requirement.id: requirement.name for requirement in requirements}
+    for cases in runs(results):
+        run = cases[0].run
         counts = counted([verdicts.junit(case.verdict) for case in cases])
         suite = ElementTree.SubElement(root, "testsuite", {"name": valid(run), **counts})
         for case in cases:
-            _case(suite, run, case)
+            _case(suite, run, case, names)
     if estimates:
-        _suite_of_all(root, estimates)
+        _suite_of_all(root, estimates, names)
     return as_text(root)
 
 
@@ -57,11 +63,14 @@ def counted(kinds: Sequence[str]) -> dict[str, str]:
     return {"tests": str(len(kinds))} | {n: str(kinds.count(k)) for n, k in names.items()}
 
 
-def _suite_of_all(root: ElementTree.Element, estimates: Sequence[Estimated]) -> None:
+def _suite_of_all(
+    root: ElementTree.Element, estimates: Sequence[Estimated], titled: Mapping[str, str]
+) -> None:
     counts = counted([verdicts.junit(one.answer) for one in estimates])
     suite = ElementTree.SubElement(root, "testsuite", {"name": "all runs", **counts})
     for one in estimates:
-        names = {"name": valid(one.requirement), "classname": "all runs", "time": "0.000"}
+        name = valid(titled.get(one.requirement, one.requirement))
+        names = {"name": name, "classname": "all runs", "time": "0.000"}
         node = ElementTree.SubElement(suite, "testcase", names)
         kind = verdicts.junit(one.answer)
         if kind:
@@ -70,12 +79,12 @@ def _suite_of_all(root: ElementTree.Element, estimates: Sequence[Estimated]) -> 
             element.text = valid("\n".join(one.lines))
 
 
-def _case(suite: ElementTree.Element, run: str, case: Result) -> None:
+def _case(suite: ElementTree.Element, run: str, case: Result, titled: Mapping[str, str]) -> None:
     length = (case.end_ns or 0) - (case.start_ns or 0)
     node = ElementTree.SubElement(
         suite,
         "testcase",
-        name=valid(case.requirement),
+        name=valid(titled.get(case.requirement, case.requirement)),
         classname=valid(run),
         time=f"{length / 1e9:.3f}",
     )
@@ -99,7 +108,7 @@ def valid(text: str) -> str:
 
 
 def github(
-    results: Sequence[Result],
+    results: Iterable[Result],
     requirements: Sequence[Requirement],
     estimates: Sequence[Estimated] = (),
 ) -> str:

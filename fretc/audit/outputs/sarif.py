@@ -1,6 +1,7 @@
 """Results of an audit as SARIF 2.1.0, which code scanning services and editors show.
 
-A requirement is a rule, and each run gives one result of it, at its sentence.
+A requirement is a rule, and each run that does not show it gives one result, at its sentence. What
+is shown is no finding and gives none.
 
 Sources: OASIS, SARIF Version 2.1.0; GitHub, SARIF support for code scanning.
 """
@@ -11,11 +12,13 @@ import hashlib
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from compiler.files.edition import __version__
+from compiler.files.edition import PACKAGE, __version__
+from compiler.files.settings import repository
 from compiler.files.templating import to_json
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
@@ -28,22 +31,16 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span
 from fretish.documents import Requirement
 from fretish.meaning import meaning
+from monitors import kernel
 
 _SCHEMA = (
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 )
 _ROOT = "%SRCROOT%"
-"""What relative paths start from, as GitHub calls it: the folder in which fretc ran."""
+"""What relative paths start from, as GitHub calls it."""
+_ROOT_MEANING = "the root of the repository, or the folder in which fretc ran outside of one"
 _RESERVED = "%/:?#[]@!$&'()*+,;="
 """What has a meaning in an address, and what is quoted in it already."""
-_LEVELS: Mapping[Level, Mapping[str, str]] = {
-    Level.NONE: {"kind": "pass", "level": "none"},
-    Level.WARNING: {"kind": "fail", "level": "warning"},
-    Level.ERROR: {"kind": "fail", "level": "error"},
-}
-"""What is not shown is not `open`, which has no level and which services do not show."""
-_COUNTED = {"kind": "informational", "level": "none"}
-"""A run that alone decides nothing: its triggers are counted with those of all others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +56,13 @@ class OneRun:
         """What an audit has just found."""
         return OneRun(result, result.verdict)
 
+    @property
+    def level(self) -> Level:
+        """How bad it is; a run that alone decides nothing counts with all others, in `AllRuns`."""
+        if self.result.trials is not None and self.result.verdict != kernel.NO_DATA:
+            return Level.NONE
+        return verdicts.level(self.verdict, suspect=bool(self.suspicions))
+
 
 @dataclass(frozen=True, slots=True)
 class AllRuns:
@@ -73,6 +77,11 @@ class AllRuns:
     def of(one: Estimated) -> AllRuns:
         """What an audit has just found."""
         return AllRuns(one.requirement, one.answer, "; ".join((one.reason, *one.lines[1:])))
+
+    @property
+    def level(self) -> Level:
+        """How bad it is."""
+        return verdicts.level(self.answer, suspect=bool(self.suspicions))
 
 
 def sarif(
@@ -91,22 +100,39 @@ def sarif(
         estimates: requirements that are judged over all runs: each gives one more result.
         failed: requirements without a rule.
     """
-    ids = dict.fromkeys(one.result.requirement for one in results)
+    found = [one for one in results if one.level is not Level.NONE]
+    of_all = [one for one in estimates if one.level is not Level.NONE]
+    ids = {one.result.requirement for one in found} | {one.requirement for one in of_all}
     named = {r.id: r for r in (*(rule.requirement for rule in rules), *failed)}
-    rules_of_results = [requirement for id, requirement in named.items() if id in ids]
+    occurring = [requirement for id, requirement in named.items() if id in ids]
     by_id = {rule.id: rule for rule in rules}
-    files = _files(results, rules_of_results)
+    files = _files(found, occurring)
+    places = _Places(
+        {requirement.id: number for number, requirement in enumerate(occurring)},
+        {name: number for number, name in enumerate(files)},
+        occurring,
+    )
     content = {
-        "tool": {"driver": _driver(rules_of_results, by_id, diagnostics)},
+        "tool": {"driver": _driver(occurring, by_id, diagnostics)},
         "invocations": [_invocation(diagnostics)],
+        "originalUriBaseIds": {_ROOT: {"description": {"text": _ROOT_MEANING}}},
         "artifacts": list(files.values()),
         "columnKind": "unicodeCodePoints",
         "results": [
-            *(_result(one, rules_of_results, list(files)) for one in results),
-            *(_result_of_all(one, rules_of_results, list(files)) for one in estimates),
+            *(_result(one, places) for one in found),
+            *(_result_of_all(one, places) for one in of_all),
         ],
     }
     return f"{to_json({'$schema': _SCHEMA, 'version': '2.1.0', 'runs': [content]})}\n"
+
+
+@dataclass(frozen=True, slots=True)
+class _Places:
+    """The places of rules and files in their lists."""
+
+    rules: Mapping[str, int]
+    files: Mapping[str, int]
+    requirements: Sequence[Requirement]
 
 
 def _driver(
@@ -116,6 +142,7 @@ def _driver(
     return {
         "name": "fretc",
         "semanticVersion": __version__,
+        "informationUri": PACKAGE,
         "rules": [_rule(each, rules.get(each.id)) for each in used],
         "notifications": [
             {"id": number, "shortDescription": {"text": codes[number].summary}}
@@ -157,14 +184,14 @@ def _files(results: Sequence[OneRun], used: Sequence[Requirement]) -> dict[str, 
     return files
 
 
-def _result(one: OneRun, used: Sequence[Requirement], files: Sequence[str]) -> dict[str, Any]:
+def _result(one: OneRun, places: _Places) -> dict[str, Any]:
     result, suspicions = one.result, one.suspicions
-    level = _LEVELS[verdicts.level(one.verdict, suspect=bool(suspicions))]
     message = f"{result.run}: {one.verdict}: {reason(result)}{_because(suspicions)}"
-    return _at_sentence(result.requirement, result.run, used, files) | {
-        **(level if result.trials is None else _COUNTED),
+    return _at_sentence(result.requirement, result.run, places) | {
+        "kind": "fail",
+        "level": one.level.value,
         "message": {"text": message},
-        "analysisTarget": _place(result.run) | {"index": files.index(result.run)},
+        "analysisTarget": _place(result.run) | {"index": places.files[result.run]},
         "properties": {
             "verdict": one.verdict,
             "currency": _currency(suspicions),
@@ -173,11 +200,10 @@ def _result(one: OneRun, used: Sequence[Requirement], files: Sequence[str]) -> d
     }
 
 
-def _result_of_all(
-    one: AllRuns, used: Sequence[Requirement], files: Sequence[str]
-) -> dict[str, Any]:
-    return _at_sentence(one.requirement, "", used, files) | {
-        **_LEVELS[verdicts.level(one.answer, suspect=bool(one.suspicions))],
+def _result_of_all(one: AllRuns, places: _Places) -> dict[str, Any]:
+    return _at_sentence(one.requirement, "", places) | {
+        "kind": "fail",
+        "level": one.level.value,
         "message": {"text": f"all runs: {one.answer}: {one.text}{_because(one.suspicions)}"},
         "properties": {"answer": one.answer, "currency": _currency(one.suspicions)},
     }
@@ -191,13 +217,11 @@ def _currency(suspicions: Sequence[str]) -> str:
     return SUSPECT if suspicions else CURRENT
 
 
-def _at_sentence(
-    id: str, run: str, used: Sequence[Requirement], files: Sequence[str]
-) -> dict[str, Any]:
+def _at_sentence(id: str, run: str, places: _Places) -> dict[str, Any]:
     """What every result of a requirement has; `run` is empty for all of them together."""
-    (number,) = (i for i, requirement in enumerate(used) if requirement.id == id)
-    span = used[number].wording
-    where = _place(span.source.name) | {"index": files.index(span.source.name)}
+    number = places.rules[id]
+    span = places.requirements[number].wording
+    where = _place(span.source.name) | {"index": places.files[span.source.name]}
     same = hashlib.sha256(f"{id}\n{run}".encode()).hexdigest()
     return {
         "ruleId": id,
@@ -248,11 +272,16 @@ def _region(span: Span) -> dict[str, int]:
     }
 
 
+@lru_cache(maxsize=1)
+def _root(here: Path) -> Path:
+    return repository(here) or here
+
+
 def _place(path: str) -> dict[str, Any]:
-    """A relative address below the folder in which fretc runs, an absolute one elsewhere."""
+    """A relative address below the root, an absolute one elsewhere."""
     if "://" in path:
         return {"uri": quote(path, safe=_RESERVED)}
-    inside = os.path.relpath(path)
+    inside = os.path.relpath(path, _root(Path.cwd()))
     if inside == os.pardir or inside.startswith(os.pardir + os.sep):
         return {"uri": Path(os.path.abspath(path)).as_uri()}
     return {"uri": quote(os.fsencode(inside)), "uriBaseId": _ROOT}

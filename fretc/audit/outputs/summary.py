@@ -16,7 +16,7 @@ from monitors import kernel
 if TYPE_CHECKING:
     import duckdb
 
-    from fretc.audit.outputs.table import Table
+    from fretc.audit.outputs.table import Known
 
 SCHEMA = "fretc-summary-1"
 MOST = 10
@@ -133,9 +133,9 @@ class Summary:
         }
 
 
-def summarized(table: Table) -> Summary:
-    """The summary of a table."""
-    with _asked(table, _COUNTED) as ask:
+def summarized(known: Known) -> Summary:
+    """The summary of all results."""
+    with _asked(known, _COUNTED) as ask:
         (totals,) = _answer(ask, _WHOLE).records
         return Summary(
             totals,
@@ -149,11 +149,11 @@ def summarized(table: Table) -> Summary:
         )
 
 
-def answered(table: Table, query: str) -> Answer | Diagnostic:
-    """The answer to a query of the user; it can read the table `results`, and nothing else."""
+def answered(known: Known, query: str) -> Answer | Diagnostic:
+    """The answer to a query of the user; it can read these tables, and nothing else."""
     import duckdb
 
-    with _asked(table) as ask:
+    with _asked(known) as ask:
         try:
             if not ask.extract_statements(query):
                 return _bad_query("it is empty")
@@ -169,15 +169,17 @@ def _answer(ask: duckdb.DuckDBPyConnection, query: str) -> Answer:
 
 
 @contextmanager
-def _asked(table: Table, *more: str) -> Iterator[duckdb.DuckDBPyConnection]:
-    """A connection with the table, each row once; `more` are statements that make others of it."""
+def _asked(known: Known, *more: str) -> Iterator[duckdb.DuckDBPyConnection]:
+    """A connection with the tables, each result once; `more` are statements."""
     import duckdb
 
     # A query reads no file, writes none, and fetches no extension from anywhere.
     with duckdb.connect(":memory:", config={"enable_external_access": False}) as connection:
-        connection.register("given", table)
+        connection.register("given", known.results)
         connection.execute("CREATE TABLE results AS SELECT DISTINCT * FROM given ORDER BY ALL")
         connection.unregister("given")
+        for name, rows in (("violations", known.violations), ("runs", known.runs)):
+            connection.register(name, rows)
         for statement in more:
             connection.execute(statement)
         connection.execute("SET lock_configuration = true")
@@ -215,6 +217,6 @@ def _bad_query(message: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_QUERY,
         f"the query cannot be answered: {message}",
-        help="it is SQL of DuckDB on the table `results`: "
+        help="it is SQL of DuckDB on the tables `results`, `violations`, `runs`: "
         "`SELECT run, reason FROM results WHERE verdict = 'violated'`",
     )

@@ -1,18 +1,16 @@
-"""Evidence of many runs as one table: a row for each run and requirement, kept as Parquet.
-
-The only module that imports pyarrow.
-"""
+"""Evidence as tables that questions are asked of: a row for each run and requirement."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from importlib.util import find_spec
-from statistics import median
-from typing import TYPE_CHECKING, Any
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from compiler.files.text_files import regular, unreadable
-from fretc.audit.evidence.reader import required
+from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.schema import Result
+from fretc.audit.store.anywhere import required_source
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
@@ -56,69 +54,97 @@ _TYPES = {
 """Column → its type. The meaning of each is in `docs/audit.md`."""
 
 
-def missing() -> Diagnostic | None:
-    """F908, where what is needed for tables is not installed."""
-    absent = [name for name in ("pyarrow", "duckdb") if find_spec(name) is None]
-    if not absent:
-        return None
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"a table of runs needs {' and '.join(f'`{name}`' for name in absent)}",
-        help="install the extra: pip install 'fretc[fleet]' "
-        "(in a checkout: .venv/bin/pip install '.[fleet]')",
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What can be asked of: a row a result; of stores and evidence a row a violation and a run."""
+
+    results: Table
+    violations: Table
+    runs: Table
+
+
+def parquet(results: Table) -> bytes:
+    """The content of a Parquet file: the same rows give the same bytes."""
+    import pyarrow
+    from pyarrow.parquet import write_table
+
+    stream = pyarrow.BufferOutputStream()
+    write_table(results.combine_chunks(), stream, compression="zstd")
+    return bytes(stream.getvalue())
+
+
+def table(source: EvidenceSource) -> Table:
+    """A row for each result of evidence, in memory or in a store."""
+    return _known(source).results
+
+
+def read(paths: Sequence[str]) -> Known | Diagnostic:
+    """The rows of all the files; a row that is in several comes once for each.
+
+    Args:
+        paths: stores, evidence in files, tables that `--parquet` wrote.
+    """
+    import pyarrow
+
+    found = []
+    for path in paths:
+        one = _read(path)
+        if isinstance(one, Diagnostic):
+            return one
+        found.append(one)
+    return Known(
+        pyarrow.concat_tables([one.results for one in found]),
+        pyarrow.concat_tables([one.violations for one in found]),
+        pyarrow.concat_tables([one.runs for one in found]),
     )
 
 
-def parquet(results: Iterable[Result], fretc: str) -> bytes:
-    """The content of a Parquet file: the same results give the same bytes.
+def _read(path: str) -> Known | Diagnostic:
+    if not os.path.isdir(path):
+        try:
+            with regular(path) as file:
+                start = file.read(64)
+        except OSError as error:
+            return unreadable(path, error)
+        if start.startswith(b"PAR1"):
+            rows = _read_parquet(path)
+            return rows if isinstance(rows, Diagnostic) else _alone(rows)
+        if not start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
+            return _neither(path)
+    evidence = required_source(path)
+    return evidence if isinstance(evidence, Diagnostic) else _known(evidence)
+
+
+def _alone(results: Table) -> Known:
+    from fretc.audit.store.tables import RUNS, VIOLATIONS, schema
+
+    return Known(results, schema(VIOLATIONS).empty_table(), schema(RUNS).empty_table())
+
+
+def _known(source: EvidenceSource) -> Known:
+    from fretc.audit.store.reader import Store
+    from fretc.audit.store.tables import RESULTS, RUNS, VIOLATIONS, Tables, tabled
+
+    of_name: Tables
+    if isinstance(source, Store):
+        of_name = {name: source.whole(name) for name in (RESULTS, VIOLATIONS, RUNS)}
+    else:
+        places = [place for place, _ in source.briefs()]
+        of_name = tabled([result for _, result in source.details(places)], source.fretc)
+    rows = of_name[RESULTS].select([*_TYPES]).cast(_schema())
+    return Known(rows, of_name[VIOLATIONS], of_name[RUNS])
+
+
+def rows(results: Sequence[Result], fretc: str) -> Table:
+    """A row for each result.
 
     Args:
         results: records of evidence.
         fretc: the version that made them.
     """
-    import pyarrow
-    from pyarrow.parquet import write_table
+    from fretc.audit.store.tables import RESULTS, tabled
 
-    stream = pyarrow.BufferOutputStream()
-    write_table(_table([_row(result, fretc) for result in results]), stream, compression="zstd")
-    return bytes(stream.getvalue())
-
-
-def read(paths: Sequence[str]) -> Table | Diagnostic:
-    """The rows of all the files, Parquet or evidence; a row that is in several comes once for each.
-
-    Args:
-        paths: what `--parquet` or `--output` wrote.
-    """
-    import pyarrow
-
-    tables = []
-    for path in paths:
-        table = _read(path)
-        if isinstance(table, Diagnostic):
-            return table
-        tables.append(table)
-    return pyarrow.concat_tables(tables)
-
-
-def _read(path: str) -> Table | Diagnostic:
-    try:
-        with regular(path) as file:
-            start = file.read(64)
-    except OSError as error:
-        return unreadable(path, error)
-    if start.startswith(b"PAR1"):
-        return _read_parquet(path)
-    if not start.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"{"):
-        return _neither(path)
-    return _read_evidence(path)
-
-
-def _read_evidence(path: str) -> Table | Diagnostic:
-    evidence = required(path)
-    if isinstance(evidence, Diagnostic):
-        return evidence
-    return _table([_row(result, evidence.fretc) for result in evidence.results])
+    return tabled(results, fretc)[RESULTS].select([*_TYPES]).cast(_schema())
 
 
 def _read_parquet(path: str) -> Table | Diagnostic:
@@ -163,52 +189,3 @@ def _schema() -> pyarrow.Schema:
 
     fields = [(name, pyarrow.type_for_alias(kind)) for name, kind in _TYPES.items()]
     return pyarrow.schema(fields, metadata={"schema": SCHEMA})
-
-
-def _table(rows: Sequence[Mapping[str, Any]]) -> Table:
-    import pyarrow
-
-    return pyarrow.Table.from_pylist(list(rows), schema=_schema())
-
-
-def _row(result: Result, fretc: str) -> dict[str, Any]:
-    """One row; what the record has more than that stays in the evidence."""
-    violations, latencies = result.violations, result.latencies
-    health, hashes = result.health, result.hashes
-    first = violations[0] if violations else None
-    return {
-        "run": result.run,
-        "requirement": result.requirement,
-        "verdict": result.verdict,
-        "finite": result.finite,
-        "reason": result.reason,
-        "clock": result.clock,
-        "ticks": result.ticks,
-        "start_ns": _ns(result.start_ns),
-        "end_ns": _ns(result.end_ns),
-        "triggers": len(result.triggers),
-        "violations": len(violations),
-        "violated_ticks": sum(v.last_tick - v.first_tick + 1 for v in violations),
-        "first_violation_ns": _ns(first.start_ns) if first else None,
-        "first_violation_s": first.start_s if first else None,
-        "unknown_ticks": sum(last - first + 1 for first, last in result.unknown),
-        "open": len(result.open),
-        "answers": len(latencies),
-        "latency_median_s": median(latencies) if latencies else None,
-        "latency_max_s": max(latencies, default=None),
-        "intact": health.intact,
-        "size": health.size,
-        "gaps": len(health.gaps),
-        "findings": len(health.findings),
-        "log_sha256": hashes.get("log"),
-        "sentence_sha256": hashes["sentence"],
-        "bindings_sha256": hashes["bindings"],
-        "monitor_sha256": hashes["monitor"],
-        "fretc": fretc,
-        "log_summary_sha256": hashes.get("log_summary"),
-    }
-
-
-def _ns(time: int | None) -> int | None:
-    """None for a time that a column cannot hold: a damaged log may tell one."""
-    return time if time is not None and -(2**63) <= time < 2**63 else None

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
+from fretc.audit.evidence.briefs import Brief
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result, Violation
 from fretc.audit.evidence.verdicts import BROKEN, SHOWN, VERDICTS
+from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
+from fretc.audit.measurements.trials import Trials
 from fretish.diagnostics.signs import Sign
 from monitors import kernel
 
@@ -48,19 +53,44 @@ class Total:
         return sign_of(self.word).colour if self.word != COUNTED else None
 
 
-def runs(results: Iterable[Result]) -> tuple[tuple[Result, ...], ...]:
+class Judged(Protocol):
+    """A result or the brief of one."""
+
+    @property
+    def run(self) -> str:
+        """The log."""
+
+    @property
+    def requirement(self) -> str:
+        """Its id."""
+
+    @property
+    def verdict(self) -> str:
+        """Of the run."""
+
+    @property
+    def trials(self) -> Trials | None:
+        """Of a requirement with a probability."""
+
+
+J = TypeVar("J", bound=Judged)
+
+
+def runs(results: Iterable[J]) -> Iterator[tuple[J, ...]]:
     """The results of each run. Two logs may have one name, and are two runs."""
-    groups: list[dict[str, Result]] = []
+    group: dict[str, J] = {}
     name = None
     for result in results:
-        if result.run != name or result.requirement in groups[-1]:
-            groups.append({})
-            name = result.run
-        groups[-1][result.requirement] = result
-    return tuple(tuple(group.values()) for group in groups)
+        if result.run != name or result.requirement in group:
+            if group:
+                yield tuple(group.values())
+            group, name = {}, result.run
+        group[result.requirement] = result
+    if group:
+        yield tuple(group.values())
 
 
-def word_of(result: Result, refused: Collection[str] = ()) -> str:
+def word_of(result: Judged, refused: Collection[str] = ()) -> str:
     """The word under which a result counts: its verdict, where it is one by itself.
 
     Args:
@@ -71,6 +101,77 @@ def word_of(result: Result, refused: Collection[str] = ()) -> str:
         return NOT_JUDGED
     counts = result.trials is not None and result.verdict != kernel.NO_DATA
     return COUNTED if counts else result.verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Marks:
+    """The word of every result, and which one to look at first."""
+
+    names: Sequence[str]
+    """Of the runs, in their order."""
+    ids: Sequence[str]
+    words: Sequence[Mapping[str, str]]
+    """Of each run: the word of each requirement."""
+    answers: Mapping[str, str]
+    """What all runs say of a requirement with a probability."""
+    worst: int | None
+    """The place of the result to look at first: the worst verdict, broken at most ticks.
+
+    Of equal ones it is the first; None: all are good. A run that only counts is none of them.
+    """
+    violated: bool
+    """Whether any requirement is violated in any run, or refuted by all of them."""
+    shown: bool
+    """Whether every requirement is satisfied in every run, or supported by all of them."""
+
+    @staticmethod
+    def of(
+        briefs: Iterable[Brief],
+        estimates: Iterable[Estimated] = (),
+        refused: Collection[str] = (),
+    ) -> Marks:
+        """Those of an audit.
+
+        Args:
+            briefs: of all results, in their order.
+            estimates: what all runs say of requirements with a probability.
+            refused: the ids of requirements that could not be held against any run.
+        """
+        answers = {one.requirement: one.answer for one in estimates}
+        names: list[str] = []
+        words: list[Mapping[str, str]] = []
+        ids: dict[str, None] = {}
+        first: tuple[tuple[int, int], int] | None = None
+        place = 0
+        verdicts: set[str] = set()
+        alone: set[str] = set()
+        for run in runs(briefs):
+            names.append(run[0].run)
+            words.append({each.requirement: word_of(each, refused) for each in run})
+            ids |= dict.fromkeys(words[-1])
+            for each in run:
+                word = words[-1][each.requirement]
+                if word not in (*SHOWN, COUNTED):
+                    found = (severity(word), -each.violated_ticks), place
+                    first = min(first or found, found)
+                verdicts.add(each.verdict)
+                if each.requirement not in answers:
+                    alone.add(each.verdict)
+                place += 1
+        return Marks(
+            names,
+            [*ids],
+            words,
+            answers,
+            first[1] if first else None,
+            REFUTED in answers.values() or kernel.VIOLATED in verdicts,
+            {*answers.values()} <= {SUPPORTED} and alone <= {kernel.SATISFIED},
+        )
+
+    def word(self, id: str) -> str:
+        """The worst of a requirement."""
+        words = (of_run[id] for of_run in self.words if id in of_run)
+        return min((*words, *filter(None, [self.answers.get(id)])), key=severity)
 
 
 def sign_of(word: str) -> Sign:
@@ -84,36 +185,20 @@ def severity(word: str) -> int:
     return _SEVERITY[word]
 
 
-def totals(
-    results: Iterable[Result],
-    estimates: Sequence[Estimated] = (),
-    refused: Collection[str] = (),
-) -> tuple[Total, ...]:
+def totals(marks: Marks) -> tuple[Total, ...]:
     """Each result and each estimate in exactly one of them, the worst word first."""
-    of_word: dict[str, list[tuple[int, str]]] = {}
-    for number, run in enumerate(runs(results)):
-        for result in run:
-            of_word.setdefault(word_of(result, refused), []).append((number, result.requirement))
-    of_runs = [
-        Total(word, len(some), len({id for _, id in some}), len({run for run, _ in some}))
-        for word, some in of_word.items()
-    ]
-    answers = [one.answer for one in estimates]
-    of_all = [Total(word, answers.count(word), answers.count(word), 0) for word in {*answers}]
-    return tuple(sorted([*of_runs, *of_all], key=lambda total: (severity(total.word), total.runs)))
-
-
-def worst(results: Iterable[Result], refused: Collection[str] = ()) -> Result | None:
-    """The result to look at first: the worst verdict, broken at most ticks; None: all are good.
-
-    Of equal ones it is the first. A run that only counts is none of them.
-    """
-    open_ones = (each for each in results if word_of(each, refused) not in (*SHOWN, COUNTED))
-    return min(
-        open_ones,
-        key=lambda each: (severity(word_of(each, refused)), -_broken_ticks(each)),
-        default=None,
-    )
+    counts: Counter[str] = Counter()
+    ids: dict[str, set[str]] = {}
+    of_runs: Counter[str] = Counter()
+    for of_run in marks.words:
+        for id, word in of_run.items():
+            ids.setdefault(word, set()).add(id)
+        counts.update(of_run.values())
+        of_runs.update({*of_run.values()})
+    single = [Total(word, count, len(ids[word]), of_runs[word]) for word, count in counts.items()]
+    answers = Counter(marks.answers.values())
+    of_all = [Total(word, count, count, 0) for word, count in answers.items()]
+    return tuple(sorted([*single, *of_all], key=lambda total: (severity(total.word), total.runs)))
 
 
 def longest(result: Result) -> Violation | None:
@@ -121,10 +206,6 @@ def longest(result: Result) -> Violation | None:
     if result.verdict not in BROKEN:
         return None
     return max(result.violations, key=_ticks, default=None)
-
-
-def _broken_ticks(result: Result) -> int:
-    return sum(map(_ticks, result.violations))
 
 
 def _ticks(violation: Violation) -> int:

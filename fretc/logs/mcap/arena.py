@@ -22,8 +22,9 @@ SPARE = 64
 class Arena:
     """Bytes of chunks, one behind the other."""
 
-    def __init__(self) -> None:
-        self.data: Bytes = np.zeros(SIZE + _CHUNK + SPARE, np.uint8)
+    def __init__(self, most: int) -> None:
+        """`most`: the bytes of all chunks; a small log needs little memory."""
+        self.data: Bytes = np.zeros(min(most, SIZE + _CHUNK) + SPARE, np.uint8)
         self.used = 0
 
     def clear(self) -> None:

@@ -12,7 +12,7 @@ import struct
 import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, lru_cache
 from io import BufferedReader, BytesIO
 from typing import TYPE_CHECKING, TypeVar
 
@@ -44,6 +44,8 @@ LARGEST = 2**30
 """Bytes; a larger message or chunk is not read."""
 BLOCK = 2**20
 """Bytes of one read where no more are needed."""
+_SHORT = 2**14
+"""Bytes of a record that is remembered."""
 _FOOTER = struct.Struct("<QQI")
 """Start of the summary, start of its offsets, CRC."""
 _RATIO = 200
@@ -106,9 +108,18 @@ def parse(kind: Callable[[ReadDataStream], R], content: bytes) -> R:
         BrokenError: they do not fit together.
     """
     try:
-        return kind(_Exact(BytesIO(content)))
+        short = len(content) <= _SHORT and kind in (Schema.read, Channel.read)
+        return (_parsed if short else _parse)(kind, content)
     except Exception as error:  # the parser trusts each byte, and each may be wrong
         raise BrokenError("a record cannot be read") from error
+
+
+def _parse(kind: Callable[[ReadDataStream], R], content: bytes) -> R:
+    return kind(_Exact(BytesIO(content)))
+
+
+_parsed = lru_cache(512)(_parse)
+"""Logs of one robot have the same definitions and the same topics."""
 
 
 # Chunks

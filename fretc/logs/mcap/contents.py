@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import hashlib
 import zlib
-from dataclasses import dataclass, replace
+from collections.abc import Collection
+from dataclasses import dataclass, field, replace
 from io import BufferedReader
 
 from fretc.logs.mcap.container import BLOCK, HEAD, BrokenError, summary
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.index import Index, indexed
 from fretc.logs.mcap.messages import Sink
+from fretc.logs.mcap.metadata import Described
 from fretc.logs.mcap.projection import Projection
 from fretc.logs.mcap.walk import Walk
 from fretc.logs.signals.integrity import Checked, Integrity
@@ -36,9 +38,17 @@ class Contents:
     """Whether messages were read that no CRC covers."""
     summary_sha256: str = ""
     """Identifies a log that is not hashed (`_identity`)."""
+    described: Described = field(default_factory=dict)
+    """What its metadata records say, as far as it is asked for."""
 
 
-def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity) -> Contents:
+def contents(
+    stream: BufferedReader,
+    size: int,
+    sink: Sink,
+    integrity: Integrity,
+    wanted: Collection[str] = (),
+) -> Contents:
     """Read a file.
 
     Args:
@@ -46,22 +56,29 @@ def contents(stream: BufferedReader, size: int, sink: Sink, integrity: Integrity
         size: its bytes.
         sink: takes the messages.
         integrity: whether the index may be trusted.
+        wanted: what is asked for of its metadata records: `build.version`.
 
     Raises:
         BrokenError: the file is not as its index says. The sink has got what it should not have:
             read again, with another one and `Integrity.FULL`.
     """
     if integrity is not Integrity.FULL:
-        index = indexed(stream, size, summary(stream, size))
+        index = indexed(stream, size, summary(stream, size), wanted)
         if index is not None:
             return _by_index(stream, index, sink, integrity)
-    walk = Walk(stream, size, sink)
+    walk = Walk(stream, size, sink, wanted)
     walk.run()
     if walk.damages.span is None:
         certain = tuple((damage, None) for damage in walk.damages.certain)
         return Contents(certain, None, walk.cut, walk.checked)
-    damages, span = tuple(walk.settled()), walk.damages.span
-    return Contents(damages, span, walk.cut, walk.checked, walk.unprotected)
+    return Contents(
+        tuple(walk.settled()),
+        walk.damages.span,
+        walk.cut,
+        walk.checked,
+        walk.unprotected,
+        described=walk.described,
+    )
 
 
 def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integrity) -> Contents:
@@ -74,9 +91,10 @@ def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integ
     statistics = index.statistics
     span = statistics.message_start_time, statistics.message_end_time
     if integrity is Integrity.HASH:
-        return Contents((), span, None, projection.checked, unprotected)
-    checked = replace(projection.checked, hashed=False)
-    return Contents((), span, None, checked, unprotected, _identity(stream, index))
+        checked, identity = projection.checked, ""
+    else:
+        checked, identity = replace(projection.checked, hashed=False), _identity(stream, index)
+    return Contents((), span, None, checked, unprotected, identity, index.described)
 
 
 def _identity(stream: BufferedReader, index: Index) -> str:

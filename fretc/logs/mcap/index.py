@@ -7,7 +7,7 @@ kind, and as many chunks and messages as stated. In any other log each record mu
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from io import BufferedReader
 
@@ -23,6 +23,8 @@ from fretc.logs.mcap.container import (
     Summary,
     parse,
 )
+from fretc.logs.mcap.metadata import LARGEST as LARGEST_METADATA
+from fretc.logs.mcap.metadata import Described, described, together
 
 _PASSED_BY = frozenset({Opcode.HEADER, Opcode.ATTACHMENT, Opcode.METADATA})
 
@@ -42,15 +44,20 @@ class Index:
     """0: none is stated."""
     summary: int
     """The byte at which the summary begins."""
+    described: Described
+    """What its metadata records say, as far as it is asked for."""
 
 
-def indexed(stream: BufferedReader, size: int, summary: Summary | None) -> Index | None:
+def indexed(
+    stream: BufferedReader, size: int, summary: Summary | None, wanted: Collection[str] = ()
+) -> Index | None:
     """The index of a file of `size` bytes; None where anything about it is unusual.
 
     Args:
         stream: the file.
         size: its bytes.
         summary: that of its end.
+        wanted: what is asked for of its metadata records.
     """
     if summary is None or not summary.sound or summary.after != size or summary.statistics is None:
         return None
@@ -75,11 +82,14 @@ def indexed(stream: BufferedReader, size: int, summary: Summary | None) -> Index
         or statistics.message_end_time != max(chunk.message_end_time for chunk in chunks)
     ):
         return None
+    found: list[Described] = []
     try:
-        end = _between(stream, summary, chunks)
+        end = _between(stream, summary, chunks, wanted, found)
     except BrokenError:
         return None
-    return Index(chunks, streams, statistics, *end, summary.end) if end is not None else None
+    if end is None:
+        return None
+    return Index(chunks, streams, statistics, *end, summary.end, together(found))
 
 
 def _is_usual(chunk: ChunkIndex) -> bool:
@@ -98,17 +108,26 @@ def _is_usual(chunk: ChunkIndex) -> bool:
 
 
 def _between(
-    stream: BufferedReader, summary: Summary, chunks: tuple[ChunkIndex, ...]
+    stream: BufferedReader,
+    summary: Summary,
+    chunks: tuple[ChunkIndex, ...],
+    wanted: Collection[str],
+    found: list[Described],
 ) -> tuple[int, int] | None:
-    """Where the data ends, and its CRC; None where something unusual is between the chunks."""
+    """Where the data ends, and its CRC; None where something unusual is between the chunks.
+
+    What is wanted of metadata records goes into `found`.
+    """
     at, end = len(MAGIC), None
     for chunk in (*chunks, None):
         wall = summary.end if chunk is None else chunk.chunk_start_offset
         if at > wall or end is not None:
             return None
-        for place, opcode, content in _records(stream, at, wall):
+        for place, opcode, content in _records(stream, at, wall, metadata=bool(wanted)):
             if end is not None:
                 return None
+            if opcode == Opcode.METADATA:
+                found.append(described(content, wanted))
             if opcode == Opcode.DATA_END:
                 end = place, parse(DataEnd.read, content).data_section_crc
             elif opcode not in _PASSED_BY and not is_known(
@@ -120,8 +139,10 @@ def _between(
     return end
 
 
-def _records(stream: BufferedReader, at: int, wall: int) -> Iterator[tuple[int, int, bytes]]:
-    """Place, kind and content of each record; of large records no content.
+def _records(
+    stream: BufferedReader, at: int, wall: int, *, metadata: bool
+) -> Iterator[tuple[int, int, bytes]]:
+    """Place, kind and content of each record; of large ones, and of metadata unless asked, none.
 
     Raises:
         BrokenError: the last one goes on beyond the wall.
@@ -132,7 +153,9 @@ def _records(stream: BufferedReader, at: int, wall: int) -> Iterator[tuple[int, 
         opcode, length = HEAD.unpack(head) if len(head) == HEAD.size else (0, wall)
         if at + HEAD.size + length > wall:
             raise BrokenError("a record is cut off")
-        yield at, opcode, b"" if opcode in _PASSED_BY else stream.read(length)
+        asked = metadata and opcode == Opcode.METADATA and length <= LARGEST_METADATA
+        passed_by = opcode in _PASSED_BY and not asked
+        yield at, opcode, b"" if passed_by else stream.read(length)
         at += HEAD.size + length
 
 

@@ -67,8 +67,8 @@ class Projection:
         self._stream, self._index, self._sink = stream, index, sink
         streams = index.streams
         self._wanted = {id for id, each in streams.items() if sink.wants(each.channel.topic)}
-        self._arena = Arena()
-        self._packed = bytearray(2**20)
+        self._arena = Arena(sum(chunk.uncompressed_size for chunk in index.chunks))
+        self._packed = bytearray()
         self._longest: Counter[int] = Counter(dict.fromkeys(self._wanted, _SLACK))
         self._batches: defaultdict[int, _Batch] = defaultdict(_Batch)
         self._counts: Counter[int] = Counter()

@@ -10,7 +10,7 @@ import struct
 import zlib
 from bisect import bisect_right
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from io import BufferedReader
 
@@ -38,6 +38,7 @@ from fretc.logs.mcap.container import (
 )
 from fretc.logs.mcap.damage import LATEST, Damage, Damages
 from fretc.logs.mcap.messages import Messages, Sink
+from fretc.logs.mcap.metadata import Described, described, together
 from fretc.logs.signals.integrity import Checked
 from fretc.logs.signals.samples import Gap
 from fretish.diagnostics.diagnostic import Code
@@ -73,11 +74,15 @@ class _Chunk:
 class Walk:
     """One way through the data section; messages go to the sink, damages stay here."""
 
-    def __init__(self, stream: BufferedReader, size: int, sink: Sink) -> None:
+    def __init__(
+        self, stream: BufferedReader, size: int, sink: Sink, wanted: Collection[str] = ()
+    ) -> None:
         self.damages = Damages()
         self.cut: int | None = None
         """Up to which byte there are whole records, in a file without an end."""
         self._stream, self._size, self._sink = stream, size, sink
+        self._wanted = wanted
+        self._found: list[Described] = []
         self._summary = no_summary(size)
         self._schemas: dict[int, Schema] = {}
         self._streams: dict[int, Stream] = {}
@@ -116,6 +121,11 @@ class Walk:
         """All damages, with the time that each has cost; None where it cost nothing."""
         read = self._whole | self._broken
         return self.damages.settled(self._summary, read, self._counts, self._size)
+
+    @property
+    def described(self) -> Described:
+        """What its metadata records say, as far as it is asked for."""
+        return together(self._found)
 
     @property
     def unprotected(self) -> bool:
@@ -234,6 +244,8 @@ class Walk:
                 self._declare(parse(Channel.read, content), at)
             case _ if opcode in _PASSED_BY:
                 parse(_PASSED_BY[opcode], content)
+                if opcode == Opcode.METADATA and (some := described(content, self._wanted)):
+                    self._found = [together([*self._found, some])]
             case _:
                 raise BrokenError("a record of the summary stands among the data")
 

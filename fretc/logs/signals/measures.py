@@ -102,7 +102,7 @@ def term(expression: e.Expression, scope: Scope) -> Term:
     """
     match expression:
         case e.Number(digits):
-            return Fraction(digits)
+            return _constant(digits)
         case e.Quantity(digits, name, _):
             return _quantity(digits, name, scope.unit)
         case e.Name(id):
@@ -122,6 +122,9 @@ def term(expression: e.Expression, scope: Scope) -> Term:
             raise ExpressionError(f"a number is needed, and `{text}` is a word")
         case _:
             raise ExpressionError("a number is needed, and this is a truth value")
+
+
+_constant = lru_cache(1024)(Fraction)
 
 
 @lru_cache(1024)
@@ -175,7 +178,12 @@ _BEYOND = 2**64
 
 def _substitute(constant: Fraction, measure: Measure, op: str) -> Values:
     """The value to compare in `measure op constant`, in the kind of the measure."""
-    exact, kind = constant / measure.scale, measure.values.dtype
+    return _in_unit(constant, measure.scale, measure.values.dtype, op)
+
+
+@lru_cache(1024)
+def _in_unit(constant: Fraction, scale: Fraction, kind: np.dtype[Any], op: str) -> Values:
+    exact = constant / scale
     is_between = _HALVES <= abs(exact) < (_BEYOND if kind == EXACT else WHOLE)
     if not op or not is_between or kind == np.float32:
         return _nearest(exact, kind)

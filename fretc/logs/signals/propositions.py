@@ -70,10 +70,16 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     """
     assert not ticks_back(proposition.expression), "it has a truth at ticks only"
     signals = {name: declarations.signals[name] for name in proposition.signals}
-    history = history_of(signals, recording)
-    steps = _steps(proposition.expression, history)
+    key = (id(proposition), *_read(signals))
+    known: tuple[Proposition, Steps] | None = recording.derived.get(key)
+    if known is not None:
+        return known[1]
+    steps = _steps(proposition.expression, history_of(signals, recording))
     in_time = steps.times <= max(recording.end_ns, recording.start_ns)
-    return Steps(steps.times[in_time], steps.states[in_time])
+    steps = Steps(steps.times[in_time], steps.states[in_time])
+    if len(steps.times) <= _KEPT:
+        recording.derived[key] = proposition, steps  # what is kept keeps its identity
+    return steps
 
 
 # Truth at points
@@ -183,6 +189,25 @@ class History:
 
 def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
     """The signals at each time that `evaluate` needs."""
+    key = _read(signals)
+    history: History | None = recording.derived.get(key)
+    if history is None:
+        history = _history_of(signals, recording)
+        if len(history.times) <= _KEPT:
+            recording.derived[key] = history
+    return history
+
+
+_KEPT = 2**14
+"""Events: of so many it costs more to compute them again than to read them again."""
+
+
+def _read(signals: Mapping[str, Signal]) -> tuple[object, ...]:
+    """All that a history depends on, beside the recording."""
+    return tuple((name, signal.max_age, signal.values) for name, signal in signals.items())
+
+
+def _history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
     samples = {name: recording.samples.get(name, _NONE) for name in signals}
     gaps = _merged(recording.gaps)
     fixed = [recording.start_ns, *(edge for gap in gaps for edge in gap)]

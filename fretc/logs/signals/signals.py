@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
+from functools import lru_cache
 from math import isfinite
 from numbers import Real
 from typing import Any, assert_never
@@ -389,8 +390,12 @@ def blind_zones(
 def _blind(signal: Signal, bound: float, limit: float, op: str) -> float:
     """In how much of the circle the bound cannot be reached; for `min` it is all or nothing."""
     if signal.reduce is Reduce.OUTLINE:
-        return blind_share(bound, limit, signal.footprint, signal.sensor)
+        return _blind_share(bound, limit, signal.footprint, signal.sensor)
     return float(bound <= limit if op in ("<", ">=") else bound < limit)
+
+
+_blind_share = lru_cache(256)(blind_share)
+"""Of a robot and a sensor it is the same in every log."""
 
 
 def _blind_zone(

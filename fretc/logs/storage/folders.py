@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -41,6 +41,8 @@ class Folder:
     """The spans of single files, where it states them."""
     compressed: str
     """`file` or `message`: how its files are packed; nothing where they are not."""
+    custom: Mapping[str, str] = field(default_factory=dict)
+    """`custom_data`: what whoever recorded it says of the run."""
 
     def lost(self, i: int, before: int | None, after: int | None) -> Gap | None:
         """The time that file `i` has covered, as far as it is known.
@@ -98,6 +100,7 @@ def _described(path: str, data: bytes) -> Folder | None:
             _span(about),
             _spans(about.get("files")),
             _compressed(about),
+            _custom(about.get("custom_data")),
         )
     except (ValueError, TypeError, KeyError, AttributeError):
         return None
@@ -116,6 +119,12 @@ def _compressed(about: Mapping[str, Any]) -> str:
     if not isinstance(mode, str):  # never as a text: that of a list of aliases has no end
         raise ValueError("the mode of compression is no text")
     return "" if mode.lower() == "none" else mode.lower()
+
+
+def _custom(data: Any) -> dict[str, str]:
+    """Texts alone count, and never a text made of a list: of aliases it has no end."""
+    items = data.items() if isinstance(data, dict) else ()
+    return {k: v for k, v in items if isinstance(k, str) and isinstance(v, str)}
 
 
 def _spans(listed: Any) -> dict[str, Gap]:

@@ -22,6 +22,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, cast
 from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
@@ -39,6 +40,8 @@ _SMALL_BLOCK = 2**14
 _SLOW = "the server sends next to nothing"
 _HASHED = 2**18
 """Bytes of one step of hashing."""
+_SMALL = 2**20
+"""Bytes of a file that is read at once, and hashed by no thread of its own."""
 _URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
 _SECRET = re.compile(r"sig|token|key|cred|secret|passw|auth", re.IGNORECASE)
 
@@ -59,6 +62,8 @@ class Input:
     """Another path of the open file itself, even if its name now belongs to another file."""
     changed: Callable[[], bool] = lambda: False
     """Whether it was written to since it was opened, or its name now belongs to another file."""
+    beginning: Callable[[], Input | None] = lambda: None
+    """A copy of the bytes that were there when it was opened; None where it has not just grown."""
 
 
 def is_url(path: str) -> bool:
@@ -116,6 +121,7 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         return storage_diagnostics.not_a_file(Source(path, "").span())
     stream = stack.enter_context(Path(path).open("rb"))  # noqa: SIM115
     before = os.fstat(stream.fileno())
+    content = stream.read(before.st_size) if before.st_size <= _SMALL else None
 
     def changed() -> bool:
         try:
@@ -124,9 +130,32 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
             return True
         return any(_mark(now) != _mark(before) for now in statuses)
 
-    digest = _Digest(stream.fileno(), before.st_size)
-    same = f"/proc/self/fd/{stream.fileno()}"
-    return Input(stream, before.st_size, digest.result, digest.begin, path, same, changed)
+    def beginning() -> Input | None:
+        now = os.stat(path)
+        if _mark(now)[:2] != _mark(before)[:2] or now.st_size <= size:
+            return None
+        stream.seek(0)
+        copy = _copy(_copied(stream, stack, size))
+        return copy if (copy.size, copy.sha256()) == (size, sha256()) else None
+
+    file, size = stream.fileno(), before.st_size
+    sha256: Callable[[], str]
+    same = f"/proc/self/fd/{file}"
+    if content is not None:
+        held = cast("io.BufferedReader", io.BytesIO(content))
+        size, sha256 = len(content), partial(_sha256, content)
+        return Input(held, size, sha256, _nothing, path, same, changed, beginning)
+    digest = _Digest(file, size)
+    sha256 = digest.result
+    return Input(stream, size, sha256, digest.begin, path, same, changed, beginning)
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _nothing() -> None:
+    """What need not be done."""
 
 
 def _mark(status: os.stat_result) -> tuple[int, ...]:
@@ -201,11 +230,13 @@ def _stdin(stack: ExitStack) -> Input | Diagnostic:
     return _copy(_copied(stdin, stack))
 
 
-def _copied(source: BinaryIO, stack: ExitStack) -> io.BufferedReader:
-    """The rest of a stream, in a file without a name."""
+def _copied(source: BinaryIO, stack: ExitStack, most: int | None = None) -> io.BufferedReader:
+    """The rest of a stream, or at most so many bytes of it, in a file without a name."""
     copy = stack.enter_context(tempfile.TemporaryFile())  # noqa: SIM115
-    while block := source.read(web.BLOCK):
+    left = sys.maxsize if most is None else most
+    while block := source.read(min(web.BLOCK, left)):
         copy.write(block)
+        left -= len(block)
         grant(len(block))
     copy.flush()
     copy.seek(0)
@@ -268,9 +299,7 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
     place = Source(shown(url), "").span()
     try:
         import fsspec
-    except ModuleNotFoundError:
-        return storage_diagnostics.no_fsspec(place)
-    try:
+
         system, path = fsspec.core.url_to_fs(url, **web.options(url))
         about = system.info(path)
         if about.get("type") == "directory":
@@ -284,9 +313,9 @@ def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
             return _copy(_copied(_Limited(file, size), stack))
         file = stack.enter_context(system.open(path, "rb", block_size=_SMALL_BLOCK))
     except ImportError as error:
-        return storage_diagnostics.no_protocol_package(url.partition("://")[0], str(error), place)
+        return storage_diagnostics.no_package(url, error, place)
     except Exception as error:  # each protocol has its own
-        raise _as_os_error(error) from error
+        raise as_os_error(error) from error
     hashed = _Hashed(file, size)
     stream = stack.enter_context(io.BufferedReader(hashed, _SMALL_BLOCK))
     return Input(cast("io.BufferedReader", stream), size, hashed.sha256, lambda: None, None, None)
@@ -312,7 +341,7 @@ class _Paced:
                 self._file.seek(start)
             data = bytes(self._file.read(length))
         except Exception as error:  # each protocol has its own
-            raise _as_os_error(error) from error
+            raise as_os_error(error) from error
         self._spent += time.monotonic() - since
         self._due += max(self._least, len(data))
         if self._spent > web.PATIENCE + self._due / web.SLOWEST:
@@ -344,7 +373,8 @@ class _Limited(io.BytesIO):
         return data
 
 
-def _as_os_error(error: Exception) -> OSError:
+def as_os_error(error: Exception) -> OSError:
+    """An error of a protocol, each of which has its own, as one of the system."""
     if isinstance(error, FileNotFoundError) and isinstance(error.__cause__, Exception):
         error = error.__cause__  # fsspec hides the real error behind "no such file"
     if isinstance(error, TimeoutError):

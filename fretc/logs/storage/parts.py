@@ -6,11 +6,12 @@ Times are nanoseconds, log times.
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Messages, Sink
+from fretc.logs.mcap.metadata import Described
 from fretc.logs.signals.integrity import EVERYTHING, Checked
 from fretc.logs.signals.samples import Gap
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -29,6 +30,8 @@ class Part:
     notes: tuple[Diagnostic, ...] = ()
     """Further diagnostics."""
     checked: Checked = EVERYTHING
+    described: Described = field(default_factory=dict)
+    """What its metadata says, as far as it is asked for."""
 
 
 class Numbered:

@@ -30,6 +30,23 @@ def no_stdin(why: str) -> Diagnostic:
     )
 
 
+def no_package(url: str, error: ImportError, place: Span) -> Diagnostic:
+    """The package that the protocol of a URL needs is not installed, or that of all URLs."""
+    if error.name == "fsspec":
+        return no_fsspec(place)
+    return no_protocol_package(url.partition("://")[0], str(error), place)
+
+
+def unlisted(error: OSError, place: Span) -> Diagnostic:
+    """A store does not say what is in it."""
+    return Diagnostic(
+        Code.UNREADABLE,
+        f"what is there cannot be listed: {error.strerror or error}",
+        place,
+        "check the address, the network, and whether your credentials may list it",
+    )
+
+
 def no_fsspec(place: Span) -> Diagnostic:
     """URLs need an extra."""
     return Diagnostic(
@@ -160,6 +177,17 @@ def no_such_file(place: Span) -> Diagnostic:
 def is_a_directory(place: Span) -> Diagnostic:
     """The path names a directory."""
     return Diagnostic(Code.IS_A_DIRECTORY, "it is a directory", place, "name the logs in it")
+
+
+def grown(size: int, place: Span) -> Diagnostic:
+    """F431: what was read is what there was when it was opened."""
+    return Diagnostic(
+        Code.GROWN,
+        f"it grew while it was read: what is judged are the first {size:,} bytes",
+        place,
+        "audit it again when its recording, or its copy, is complete",
+        severity=Severity.WARNING,
+    )
 
 
 def not_a_file(place: Span) -> Diagnostic:

@@ -2,104 +2,121 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from math import inf
 
 from fretc.audit.evidence.briefs import stretches
-from fretc.audit.evidence.schema import Result
-from fretc.report.across.lanes import RunStretches, lanes, with_marks
+from fretc.audit.evidence.schema import Result, Threshold
+from fretc.report.across.lanes import Known, LanePlan, RunStretches, plan, with_marks
 from fretc.report.across.maps import MOST_MAPS, RunResult, run_map
 from fretc.report.across.uses import RunNumbers, uses
 from fretc.report.model import phrases
-from fretc.report.model.across import Across, Lanes, RequirementAcross, RunMap
+from fretc.report.model.across import Across, RequirementAcross, RunMap
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.audits import SingleAudit
 from fretc.report.model.pictures import WordLane
 from fretc.report.pictures.histograms import is_answered, seconds_allowed
+from fretc.report.sections.details import Details, Thresholds
 from fretc.report.sections.results import result_anchor
 from fretc.report.sections.runs import Run, RunKey, run_key
 
 _ROWS, _MARKS = 180, 1_500
 """Of the pictures of all requirements together."""
+PICTURED = 16
+"""The most requirements with pictures of their own in a page; `--json` has those of all."""
 _FEWEST, _MOST = 3, 20
 """Rows of one picture of a requirement."""
 
 
-def across(assessed: Sequence[Assessment], runs: Mapping[RunKey, Run]) -> Across:
-    """The lanes of all requirements, and the lanes and the used bounds of each.
+def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> Across:
+    """The lanes of all requirements, and the lanes and the used bounds of the worst.
 
     Args:
-        assessed: all requirements; those that are retired have no lanes.
-        runs: all runs.
+        details: requirements, runs and the evidence; those that are retired have no lanes.
+        worst: the anchors of the requirements, the worst first.
+        pictured: how many of these have pictures of their own.
     """
-    active = [each for each in assessed if each.requirement.status != "retired"]
+    active = [a for a in details.assessments.values() if a.requirement.status != "retired"]
     most = max(_FEWEST, min(_MOST, _ROWS // max(1, len(active))))
     marks = max(10 * _FEWEST, _MARKS // max(1, len(active)))
-    of_each = {each.anchor: _results(each, runs) for each in active}
-    of_all = _in_order([one for of in of_each.values() for one in of], runs)
-    words = _words(active, runs)
-    maps, maps_left_out = _maps(active, of_each, runs)
+    of_all_requirements = [one for each in active for one in _results(each, details)]
+    in_force = {assessment.anchor for assessment in active}
+    chosen = {*[anchor for anchor in worst if anchor in in_force][:pictured]}
+    several = [each for each in active if each.anchor in chosen and len(each.audits) > 1]
+    of_all = plan(
+        "All requirements, a lane for each run",
+        _in_order(of_all_requirements, details.runs),
+        courses={run.anchor: run.first for run in details.runs.values()},
+    )
+    plans = {each.anchor: _plan(each, details, most, marks) for each in several}
+    known = _known(details, [at for each in (of_all, *plans.values()) for at in each.places])
+    uses_of = {
+        each.anchor: uses(*_numbers(each, details, thresholds, most))
+        for each, thresholds in details.thresholds(plans)
+    }
+    maps, maps_left_out = _maps(of_all_requirements, details)
     return Across(
-        lanes("All requirements, a lane for each run", of_all, words=words),
-        tuple(_requirement(each, of_each[each.anchor], most, marks) for each in active),
+        of_all.lanes(known),
+        tuple(
+            RequirementAcross(
+                each.id,
+                each.anchor,
+                plans[each.anchor].lanes(known) if each.anchor in plans else None,
+                uses_of.get(each.anchor),
+            )
+            for each in active
+            if each.anchor in chosen
+        ),
         maps,
         maps_left_out,
     )
 
 
-def _maps(
-    active: Sequence[Assessment],
-    of_each: Mapping[str, Sequence[RunStretches]],
-    runs: Mapping[RunKey, Run],
-) -> tuple[tuple[RunMap, ...], str]:
-    """The maps of the worst runs, and how many runs with a way have none."""
-    grouped: dict[str, list[RunResult]] = {run.anchor: [] for run in runs.values()}
-    for assessment in active:
-        for audit, of in zip(assessment.audits, of_each[assessment.anchor], strict=True):
-            grouped[of.run].append(RunResult(of, audit.result))
-    with_way = [of for of in grouped.values() if any(_has_way(one.result) for one in of)]
-    ranked = sorted(with_way, key=_badness)
+def _maps(results: Sequence[RunStretches], details: Details) -> tuple[tuple[RunMap, ...], str]:
+    """The maps of the worst runs, and how many runs have none."""
+    grouped: dict[str, list[RunStretches]] = {}
+    for each in results:
+        grouped.setdefault(each.run, []).append(each)
+    judged = [of for of in grouped.values() if any(each.is_judged for each in of)]
+    ranked = sorted(judged, key=_badness)
+    firsts = {run.anchor: run.first for run in details.runs.values()}
+    drawn = list(filter(None, (_map(of, firsts, details) for of in ranked[:MOST_MAPS])))
     left = ranked[MOST_MAPS:]
-    maps = tuple(filter(None, map(run_map, ranked[:MOST_MAPS])))
-    if not left:
-        return maps, ""
-    violations = sum(len(one.result.violations) for of in left for one in of)
-    worst = min((one.of.mark for of in left for one in of), key=lambda mark: mark.severity)
-    return maps, (
+    if not left or not drawn:
+        return tuple(drawn), ""
+    violations = sum(each.count[0] for of in left for each in of)
+    worst = min((each.mark for of in left for each in of), key=lambda mark: mark.severity)
+    return tuple(drawn), (
         f"{phrases.times(len(left), 'run')} without a map, none of them worse: the worst is "
         f"{worst.text}, with {phrases.times(violations, 'violation')}."
     )
 
 
-def _has_way(result: Result) -> bool:
-    return bool(result.course and result.course.way and result.course.way.times_ns)
+def _badness(of: Sequence[RunStretches]) -> tuple[tuple[int, bool], int]:
+    return min(each.mark.severity for each in of), -sum(each.count[0] for each in of)
 
 
-def _badness(of: Sequence[RunResult]) -> tuple[tuple[int, bool], int]:
-    return (
-        min(one.of.mark.severity for one in of),
-        -sum(len(one.result.violations) for one in of),
-    )
+def _map(
+    of: Sequence[RunStretches], firsts: Mapping[str, int], details: Details
+) -> RunMap | None:
+    """The map of a run; None where the evidence has no way of it."""
+    first = firsts[of[0].run]
+    violated = [each.place for each in of if each.count[0]]
+    found = details.evidence.details({first, *violated}) if details.evidence else ()
+    known = dict(found)
+    course = known[first].course
+    if not course or course.way is None:
+        return None
+    return run_map(course.way, [RunResult(each, known.get(each.place)) for each in of])
 
 
-def _requirement(
-    assessment: Assessment, of: Sequence[RunStretches], most: int, marks: int
-) -> RequirementAcross:
-    several = len(of) > 1
-    return RequirementAcross(
-        assessment.id,
-        assessment.anchor,
-        _lanes(assessment.id, of, most, marks) if several else None,
-        uses(*_numbers(assessment, of, most)) if several else None,
-    )
-
-
-def _lanes(id: str, of: Sequence[RunStretches], most: int, marks: int) -> Lanes | None:
+def _plan(assessment: Assessment, details: Details, most: int, marks: int) -> LanePlan:
     """Of the runs that have anything to mark; the others are counted."""
+    of = _results(assessment, details)
     marked = with_marks(of)
     calm = len(of) - len(marked)
-    note = f" No lane: {phrases.times(calm, 'run')} with nothing of it." if calm else ""
-    return lanes(f"{id} in its runs", marked, most, marks, note=note) if marked else None
+    note = f"No lane: {phrases.times(calm, 'run')} with nothing of it." if calm else ""
+    return plan(f"{assessment.id} in its runs", marked, most, marks, note)
 
 
 def _in_order(
@@ -113,7 +130,7 @@ def _in_order(
 # What the evidence says ------------------------------------------------------------------------
 
 
-def _results(assessment: Assessment, runs: Mapping[RunKey, Run]) -> list[RunStretches]:
+def _results(assessment: Assessment, details: Details) -> list[RunStretches]:
     return [
         RunStretches(
             run.anchor,
@@ -123,19 +140,22 @@ def _results(assessment: Assessment, runs: Mapping[RunKey, Run]) -> list[RunStre
             assessment.anchor,
             result_anchor(assessment, number),
             audit.mark,
-            stretches(audit.result),
+            audit.place,
+            audit.result.ticks > 0,
+            (audit.result.violations, audit.result.unknown, audit.result.open),
         )
         for number, audit in enumerate(assessment.reviewed_audits, 1)
-        for run in [runs[run_key(audit.result)]]
+        for run in [details.runs[run_key(audit.result)]]
     ]
 
 
 def _numbers(
-    assessment: Assessment, of: Sequence[RunStretches], most: int
+    assessment: Assessment, details: Details, thresholds: Thresholds, most: int
 ) -> tuple[list[RunNumbers], float | None, int, int]:
     """The runs whose results are current, the time allowed, the rows, and the other runs."""
+    of = _results(assessment, details)
     current = [
-        _run_numbers(audit, each)
+        _run_numbers(audit, each, tuple(thresholds[audit.place]))
         for audit, each in zip(assessment.audits, of, strict=True)
         if not audit.is_stale
     ]
@@ -143,7 +163,9 @@ def _numbers(
     return current, allowed, most, len(of) - len(current)
 
 
-def _run_numbers(audit: SingleAudit, each: RunStretches) -> RunNumbers:
+def _run_numbers(
+    audit: SingleAudit, each: RunStretches, thresholds: tuple[Threshold, ...]
+) -> RunNumbers:
     result = audit.result
     return RunNumbers(
         each.label,
@@ -151,27 +173,17 @@ def _run_numbers(audit: SingleAudit, each: RunStretches) -> RunNumbers:
         each.section,
         each.anchor,
         audit.mark,
-        len(result.triggers),
-        len(result.violations),
-        max(result.latencies, default=None),
-        result.thresholds,
+        result.triggers,
+        result.violations,
+        result.latency_max_s,
+        thresholds,
     )
 
 
-# Words -----------------------------------------------------------------------------------------
-
-
-def _words(
-    assessed: Sequence[Assessment], runs: Mapping[RunKey, Run]
-) -> dict[str, tuple[WordLane, ...]]:
-    """The signals of words of each run, by its anchor."""
-    lanes: dict[str, tuple[WordLane, ...]] = {}
-    for assessment in assessed:
-        for audit in assessment.audits:
-            anchor = runs[run_key(audit.result)].anchor
-            if anchor not in lanes and audit.result.course:
-                lanes[anchor] = word_lanes(audit.result)
-    return lanes
+def _known(details: Details, places: Collection[int]) -> Mapping[int, Known]:
+    """What there is to see of some results."""
+    found = details.evidence.details(places) if details.evidence else ()
+    return {place: (stretches(result), word_lanes(result)) for place, result in found}
 
 
 def word_lanes(result: Result) -> tuple[WordLane, ...]:

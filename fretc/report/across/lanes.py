@@ -6,8 +6,8 @@ without a lane are counted, and none of them is worse than one with a lane.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import inf
 from types import MappingProxyType
 
@@ -17,6 +17,7 @@ from fretc.report.model.across import LaneMark, Lanes, RunLane
 from fretc.report.model.marks import Mark
 from fretc.report.model.pictures import WordLane
 
+NO_COURSES: Mapping[str, int] = MappingProxyType({})
 MOST_LANES = 40
 """Of the picture of all requirements."""
 _DETAIL, _COARSEST = 240, 4
@@ -25,6 +26,10 @@ _MOST_MARKS = 1_200
 """Of one picture, unless so many runs have one each."""
 _NAMED = 3
 """The most runs that the text names."""
+
+
+Known = tuple[Stretches, tuple[WordLane, ...]]
+"""What there is to see of a result: its stretches, and the signals of words of its run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +46,12 @@ class RunStretches:
     anchor: str
     """That of the result."""
     mark: Mark
-    stretches: Stretches
+    place: int
+    """Of the result in the evidence."""
+    is_judged: bool
+    """Whether it has ticks: then it tells how long the run is."""
+    count: tuple[int, int, int]
+    """Violations, unknown stretches and open demands."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +59,10 @@ class _Lane:
     """A run before its marks are made."""
 
     results: tuple[RunStretches, ...]
-    words: tuple[WordLane, ...]
+    course: int | None = None
+    """The place of the result that has the signals of words; None: they are not to be shown."""
+    known: Mapping[int, Known] = field(default_factory=dict)
+    """Of those results that are read, by their places."""
 
     @property
     def first(self) -> RunStretches:
@@ -62,20 +75,25 @@ class _Lane:
 
     @property
     def length(self) -> float:
-        return max(
-            (end for each in self.results for end in _ends(each.stretches)),
-            default=0.0,
-        )
+        return max((end for known, _ in self.known.values() for end in _ends(known)), default=0.0)
+
+    @property
+    def places(self) -> Iterator[int]:
+        """The results to read: those with something to mark or words, and one that was judged."""
+        judged = [each for each in self.results if each.is_judged]
+        yield from (each.place for each in (*judged[:1], *with_marks(self.results)))
+        if self.course is not None:
+            yield self.course
+
+    @property
+    def words(self) -> tuple[WordLane, ...]:
+        return self.known[self.course][1] if self.course is not None else ()
 
     @property
     def count(self) -> tuple[int, int, int]:
         """Violations, unknown stretches and open demands."""
-        of = [each.stretches for each in self.results]
-        return (
-            sum(len(each.violations) for each in of),
-            sum(len(each.unknown) for each in of),
-            sum(len(each.open) for each in of),
-        )
+        violations, unknown, waiting = zip(*(each.count for each in self.results), strict=True)
+        return sum(violations), sum(unknown), sum(waiting)
 
 
 def _ends(stretches: Stretches) -> Iterable[float]:
@@ -84,46 +102,68 @@ def _ends(stretches: Stretches) -> Iterable[float]:
     yield from stretches.open
 
 
-def lanes(
+@dataclass(frozen=True, slots=True)
+class LanePlan:
+    """Which runs have a lane, before it is read what there is to see of them."""
+
+    title: str
+    chosen: tuple[_Lane, ...]
+    left: tuple[_Lane, ...]
+    marks: int
+    """About how many marks there may be."""
+    note: str
+    """What else to say of runs without a lane."""
+
+    @property
+    def places(self) -> Iterator[int]:
+        """The results to read."""
+        return (place for lane in self.chosen for place in lane.places)
+
+    def lanes(self, known: Mapping[int, Known]) -> Lanes | None:
+        """The lanes; None where there is no time to show.
+
+        Args:
+            known: what there is to see of these results, by their places.
+        """
+        chosen = [replace(e, known={at: known[at] for at in e.places}) for e in self.chosen]
+        end = max((lane.length for lane in chosen), default=0.0)
+        if not end:
+            return None
+        drawn = _drawn(chosen, end, self.marks)
+        left_out = " ".join(filter(None, [_left_out(self.left), self.note]))
+        text = " ".join(filter(None, [_in_words(chosen), left_out]))
+        return Lanes(self.title, max(round(end, 6), 1e-6), drawn, left_out, text)
+
+
+def plan(
     title: str,
-    results: Sequence[RunStretches],
+    results: Iterable[RunStretches],
     most: int = MOST_LANES,
     marks: int = _MOST_MARKS,
-    words: Mapping[str, tuple[WordLane, ...]] = MappingProxyType({}),
     note: str = "",
-) -> Lanes | None:
-    """The lanes of some results; None where there is no time to show.
+    courses: Mapping[str, int] = NO_COURSES,
+) -> LanePlan:
+    """Choose the runs that have a lane: all, or the worst.
 
     Args:
         title: of the picture.
         results: in the order of their runs.
-        most: lanes; of more runs, the worst come first.
+        most: lanes.
         marks: about how many marks there may be.
-        words: of each run, by its anchor.
         note: what else to say of runs without a lane.
+        courses: run → place of the result that has its signals of words.
     """
     grouped: dict[str, list[RunStretches]] = {}
     for each in results:
         grouped.setdefault(each.run, []).append(each)
-    every = [_Lane(tuple(of), words.get(run, ())) for run, of in grouped.items()]
+    every = [_Lane(tuple(of), courses.get(run)) for run, of in grouped.items()]
     ranked = every if len(every) <= most else sorted(every, key=_worst_first)
-    chosen, left = ranked[:most], ranked[most:]
-    end = max((lane.length for lane in chosen), default=0.0)
-    if not end:
-        return None
-    drawn = _drawn(chosen, end, marks)
-    left_out = " ".join(filter(None, [_left_out(left), note.strip()]))
-    text = " ".join(filter(None, [_in_words(chosen), left_out]))
-    return Lanes(title, max(round(end, 6), 1e-6), drawn, left_out, text)
+    return LanePlan(title, tuple(ranked[:most]), tuple(ranked[most:]), marks, note)
 
 
 def with_marks(results: Sequence[RunStretches]) -> list[RunStretches]:
     """Those that have something to mark."""
-    return [
-        each
-        for each in results
-        if each.stretches.violations or each.stretches.unknown or each.stretches.open
-    ]
+    return [each for each in results if any(each.count)]
 
 
 def _worst_first(lane: _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
@@ -142,7 +182,11 @@ def _drawn(chosen: Sequence[_Lane], end: float, most: int) -> tuple[RunLane, ...
 
 def _lane(lane: _Lane, nearest: float) -> RunLane:
     of = sorted(
-        (mark for each in lane.results for mark in _marks(each)),
+        (
+            mark
+            for each in with_marks(lane.results)
+            for mark in _marks(each, lane.known[each.place][0])
+        ),
         key=lambda mark: (mark.start, mark.end),
     )
     kinds = ("violated", "unknown", "open")
@@ -157,12 +201,11 @@ def _lane(lane: _Lane, nearest: float) -> RunLane:
     )
 
 
-def _marks(each: RunStretches) -> Iterable[LaneMark]:
+def _marks(each: RunStretches, stretches: Stretches) -> Iterable[LaneMark]:
     def mark(kind: str, start: float, end: float, number: int = 0) -> LaneMark:
         of = ((each.requirement,), each.anchor, each.section)
         return LaneMark(kind, start, end, 1, *of, number, "")
 
-    stretches = each.stretches
     for number, (start, end) in enumerate(stretches.violations, 1):
         yield mark("violated", start, end, number)
     for start, end in stretches.unknown:

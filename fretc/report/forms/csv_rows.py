@@ -1,5 +1,8 @@
 """`--csv`: a row for each requirement and run, for a spreadsheet.
 
+Numbers are numbers, in the unit that the head names, and texts are quoted, so that a program can
+tell them apart. A cell without a number is empty.
+
 Sources: RFC 4180 for the form; OWASP, CSV Injection, for texts that a spreadsheet would execute.
 """
 
@@ -7,23 +10,28 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 from collections.abc import Iterator
 
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT
-from fretc.report.model.views import Mark, Report, RequirementView, ResultView
+from fretc.report.model.views import Mark, Report, RequirementView, ResultRow
 
 HEAD = (
     "hazards", "requirement", "title", "status", "coverage", "verdict", "currency",
     "suspect_because", "sentence", "review", "run", "log_sha256", "run_verdict", "run_currency",
-    "run_suspect_because", "reason", "violations", "latency_median", "latency_longest",
+    "run_suspect_because", "reason", "triggers", "answers", "open", "violations",
+    "latency_median_s", "latency_longest_s",
 )  # fmt: skip
-_EXECUTED = ("=", "+", "-", "@", "\t", "\r")
+_EXECUTED = tuple("=+-@\t\r\n\N{FULLWIDTH EQUALS SIGN}\N{FULLWIDTH PLUS SIGN}"
+                  "\N{FULLWIDTH HYPHEN-MINUS}\N{FULLWIDTH COMMERCIAL AT}")  # fmt: skip
+_NUMBER = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")
+Cell = str | int | float | None
 
 
 def csv_text(report: Report) -> str:
     """The whole table, with its head."""
     stream = io.StringIO()
-    writer = csv.writer(stream)
+    writer = csv.writer(stream, quoting=csv.QUOTE_NONNUMERIC)
     writer.writerow(HEAD)
     hashes = {run.anchor: run.sha256 for run in report.runs}
     for view in report.requirements:
@@ -34,7 +42,7 @@ def csv_text(report: Report) -> str:
 
 def _rows(
     report: Report, view: RequirementView, hashes: dict[str, str]
-) -> Iterator[tuple[str, ...]]:
+) -> Iterator[tuple[Cell, ...]]:
     hazards = dict.fromkeys(row.hazard for row in report.matrix if row.anchor == view.anchor)
     head = (
         " ".join(filter(None, hazards)),
@@ -51,11 +59,11 @@ def _rows(
     for result in view.results:
         yield (*head, *_run(result, hashes))
     if not view.results:
-        yield (*head, "", "", "", "", "", "; ".join(view.reasons), "", "", "")
+        yield (*head, "", "", "", "", "", "; ".join(view.reasons), *(None,) * 6)
 
 
-def _run(result: ResultView, hashes: dict[str, str]) -> tuple[str, ...]:
-    late = result.latency
+def _run(result: ResultRow, hashes: dict[str, str]) -> tuple[Cell, ...]:
+    median = result.latency_median_s
     return (
         result.run_file,
         hashes.get(result.run, ""),
@@ -63,9 +71,12 @@ def _run(result: ResultView, hashes: dict[str, str]) -> tuple[str, ...]:
         _currency(result.mark),
         "; ".join(result.suspicions),
         result.reason,
-        str(result.violations_total),
-        late.median if late else "",
-        late.longest if late else "",
+        result.triggers,
+        result.answers,
+        result.open,
+        result.violations_total,
+        None if median is None else round(median, 9),
+        result.latency_max_s,
     )
 
 
@@ -73,6 +84,8 @@ def _currency(mark: Mark) -> str:
     return SUSPECT if mark.suspect else CURRENT
 
 
-def _harmless(cell: str) -> str:
-    """No cell is a formula."""
-    return f"'{cell}" if cell.startswith(_EXECUTED) else cell
+def _harmless(cell: Cell) -> Cell:
+    """No text is a formula; one that is a number, such as `-5`, is none."""
+    if not isinstance(cell, str) or not cell.startswith(_EXECUTED) or _NUMBER.fullmatch(cell):
+        return cell
+    return f"'{cell}"

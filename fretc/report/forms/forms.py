@@ -5,7 +5,7 @@ A function imports its form when the form is wanted, so that the table itself co
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.project.folder import Project
-    from fretc.audit.evidence.schema import Result
     from fretc.report.model.views import Report
+    from fretc.report.sections.details import Details
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +26,8 @@ class Subject:
 
     report: Report
     project: Project
-    results: Sequence[Result]
-    """Those of the evidence, in its order."""
+    details: Details
+    """The evidence behind its rows."""
     diagnostics: Sequence[Diagnostic]
     """Those of the report; the project has its own."""
 
@@ -39,7 +39,8 @@ class Form:
     name: str
     """The name of its option."""
     help: str
-    text: Callable[[Subject], str]
+    text: Callable[[Subject], str | Iterable[str]]
+    """All of it, or in pieces where it may be too long for memory."""
     default: str | None = None
     """The file that it goes to where no file is given; None: then it is not written."""
     missing: Callable[[], Diagnostic | None] = lambda: None
@@ -49,13 +50,13 @@ class Form:
 def _html(subject: Subject) -> str:
     from fretc.report.page.html import html
 
-    return html(subject.report, subject.project.rules)
+    return html(subject.report, subject.details, subject.project.rules)
 
 
-def _json(subject: Subject) -> str:
-    from fretc.report.forms.json_text import json_text
+def _json(subject: Subject) -> Iterable[str]:
+    from fretc.report.forms.json_text import json_pieces
 
-    return json_text(subject.report)
+    return json_pieces(subject.report, subject.details)
 
 
 def _csv(subject: Subject) -> str:
@@ -75,13 +76,13 @@ def _sarif(subject: Subject) -> str:
 
     project = subject.project
     diagnostics = [*project.diagnostics, *subject.diagnostics]
-    return sarif(subject.report, subject.results, project.rules, diagnostics, project.without_rule)
+    return sarif(subject.report, subject.details, project.rules, diagnostics, project.without_rule)
 
 
 def _markdown(subject: Subject) -> str:
     from fretc.report.forms.markdown import markdown
 
-    return markdown(subject.report)
+    return markdown(subject.report, subject.details)
 
 
 def _reqif(subject: Subject) -> str:
@@ -114,7 +115,7 @@ FORMS: Mapping[str, Form] = {
         Form("html", "One file, offline.", _html, default="build/report.html"),
         Form("json", "What the report says, for programs.", _json),
         Form("csv", "A row for each requirement and run, for a spreadsheet.", _csv),
-        Form("junit", "A test case for each requirement, for a CI server.", _junit),
+        Form("junit", "A test case for each requirement and run, for a CI server.", _junit),
         Form("sarif", "What the runs show, for code scanning.", _sarif),
         Form("markdown", "A comment for a pull request.", _markdown),
         Form(

@@ -1,34 +1,119 @@
-"""`--junit`: a test case for each requirement, for a CI server.
+"""`--junit`: a test case for each requirement and run, for a CI server; a suite for each run.
+
+A first suite, named after the project, has what no single run says: requirements that no run was
+held against, probabilities, counterexamples, and what was reviewed and is claimed no more.
 
 Source: the JUnit schema of the Jenkins xUnit plugin, https://github.com/jenkinsci/xunit-plugin.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from fretc.audit.evidence import verdicts
+from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.audit.outputs.junit import as_text, counted, valid
-from fretc.report.model.views import Report, RequirementView
+from fretc.report.model.views import Report, RequirementView, ResultRow
 from fretc.report.sections.proofs import is_refuted, refutations
 
 
+@dataclass(frozen=True, slots=True)
+class _Case:
+    """A test case; `kind` is the element of its outcome, empty where it passes."""
+
+    name: str
+    kind: str
+    message: str = ""
+    text: str = ""
+
+
 def junit(report: Report) -> str:
-    """One test suite; a case fails exactly where `--strict` would end with 1."""
+    """The whole file; a case is a failure, or an error, where `--strict` would end with 1."""
     root = ElementTree.Element("testsuites", name="fretc report")
-    withdrawn = {one.requirement: one.text for one in report.withdrawn}
+    withdrawn = {one.requirement for one in report.withdrawn}
     views = [view for view in report.requirements if view.id not in withdrawn]
-    counts = counted([*map(_kind, views), *("failure" for _ in withdrawn)])
-    name = valid(report.project)
-    suite = ElementTree.SubElement(root, "testsuite", {"name": name, **counts})
+    of_project = [_of_requirement(view) for view in views if _needs_own_case(view)]
+    of_project += [
+        _Case(one.requirement, "failure", f"withdrawn: {one.text}") for one in report.withdrawn
+    ]
+    suite = _suite(root, report.project, of_project)
     _accepted(suite, report)
-    for view in views:
-        _case(suite, view, name)
-    for id, text in withdrawn.items():
-        case = ElementTree.SubElement(suite, "testcase", name=valid(id), classname=name, time="0")
-        ElementTree.SubElement(case, "failure", message=valid(f"withdrawn: {text}"))
+    _cases(suite, report.project, of_project)
+    for run, cases in _by_run(views).items():
+        _cases(_suite(root, run, cases), run, cases)
     return as_text(root)
+
+
+def _by_run(views: Sequence[RequirementView]) -> dict[str, list[_Case]]:
+    """The cases of each run by its name; runs of one file have their labels, too."""
+    files = {result.run: result for view in views for result in view.results}
+    names = Counter(result.run_file for result in files.values())
+    cases: dict[str, list[_Case]] = {}
+    for view in views:
+        for result in view.results:
+            again = names[result.run_file] > 1
+            run = f"{result.run_file} ({result.run_label})" if again else result.run_file
+            cases.setdefault(run, []).append(_of_run(view, result))
+    return cases
+
+
+def _of_run(view: RequirementView, result: ResultRow) -> _Case:
+    kind = _kind_of_run(view, result)
+    if not kind:
+        return _Case(view.name, "")
+    why = "; ".join((result.reason, *result.suspicions))
+    waived = f"{view.mark.text}, {view.waiver.reason}: " if view.waiver and _is_waived(view) else ""
+    return _Case(view.name, kind, f"{waived}{result.mark.text}: {why}", view.sentence)
+
+
+def _kind_of_run(view: RequirementView, result: ResultRow) -> str:
+    """A waiver covers what a run shows, and who is retired claims nothing."""
+    kind = verdicts.junit(result.mark.word, suspect=result.mark.suspect)
+    return "skipped" if kind and (_is_waived(view) or view.mark.word == RETIRED) else kind
+
+
+def _is_waived(view: RequirementView) -> bool:
+    return view.mark.word == WAIVED
+
+
+def _needs_own_case(view: RequirementView) -> bool:
+    """Whether the cases of its runs do not say what is true of the requirement."""
+    kinds = {_kind_of_run(view, result) for result in view.results}
+    return view.probability is not None or _kind(view) not in kinds
+
+
+def _kind(view: RequirementView) -> str:
+    """The element for it; empty: it passes."""
+    if is_refuted(view):
+        return "failure"
+    return verdicts.junit(view.mark.word, suspect=view.mark.suspect)
+
+
+def _of_requirement(view: RequirementView) -> _Case:
+    kind, reasons = _kind(view), list(_reasons(view))
+    message = f"{view.mark.text}: {reasons[0]}" if reasons else view.mark.text
+    return _Case(view.name, kind, message, "\n".join((view.sentence, *reasons)))
+
+
+def _reasons(view: RequirementView) -> Iterator[str]:
+    """The waiver and the verdict behind it, the worst of the runs first, then counterexamples."""
+    if view.waiver:
+        yield f"{view.waiver.reason} (it is {view.waiver.covers.text})"
+    yield from view.reasons
+    if is_refuted(view):
+        yield from (f"{plan.method}: {plan.result}" for plan in view.planned if plan.refuted)
+        yield from (f"{p.layer}: {p.mark.text}: {p.claim}" for p in refutations(view))
+
+
+# XML -------------------------------------------------------------------------------------------
+
+
+def _suite(root: ElementTree.Element, name: str, cases: Sequence[_Case]) -> ElementTree.Element:
+    counts = counted([case.kind for case in cases])
+    return ElementTree.SubElement(root, "testsuite", {"name": valid(name), **counts})
 
 
 def _accepted(suite: ElementTree.Element, report: Report) -> None:
@@ -40,35 +125,11 @@ def _accepted(suite: ElementTree.Element, report: Report) -> None:
         ElementTree.SubElement(properties, "property", name=name, value=valid(one.accepted))
 
 
-def _kind(view: RequirementView) -> str:
-    """The element for it; empty: it passes."""
-    if is_refuted(view):
-        return "failure"
-    return verdicts.junit(view.mark.word, suspect=view.mark.suspect)
-
-
-def _case(suite: ElementTree.Element, view: RequirementView, project: str) -> None:
-    case = ElementTree.SubElement(
-        suite,
-        "testcase",
-        name=valid(f"{view.id} {view.title}".strip()),
-        classname=project,
-        time="0",
-    )
-    kind = _kind(view)
-    if kind:
-        reasons = list(_reasons(view))
-        message = valid(f"{view.mark.text}: {reasons[0]}" if reasons else view.mark.text)
-        outcome = ElementTree.SubElement(case, kind, message=message)
-        if kind != "skipped":
-            outcome.text = valid("\n".join((view.sentence, *reasons)))
-
-
-def _reasons(view: RequirementView) -> Iterator[str]:
-    """The waiver and the verdict behind it, the worst of the runs first, then counterexamples."""
-    if view.waiver:
-        yield f"{view.waiver.reason} (it is {view.waiver.covers.text})"
-    yield from view.reasons
-    if is_refuted(view):
-        yield from (f"{plan.method}: {plan.result}" for plan in view.planned if plan.refuted)
-        yield from (f"{p.layer}: {p.mark.text}: {p.claim}" for p in refutations(view))
+def _cases(suite: ElementTree.Element, classname: str, cases: Sequence[_Case]) -> None:
+    for case in cases:
+        names = {"name": valid(case.name), "classname": valid(classname), "time": "0"}
+        node = ElementTree.SubElement(suite, "testcase", names)
+        if case.kind:
+            outcome = ElementTree.SubElement(node, case.kind, message=valid(case.message))
+            if case.kind != "skipped":
+                outcome.text = valid(case.text)

@@ -1,4 +1,7 @@
-"""`--markdown`: what a reviewer of a pull request wants to see first.
+"""`--markdown`: what a reviewer of a pull request wants to see first, on one screen.
+
+It is at most forty lines, whatever the size of the report. What is left out is counted, and none of
+it is worse than what is listed.
 
 Source: GitHub Flavored Markdown Spec 0.29, tables (extension).
 """
@@ -6,55 +9,121 @@ Source: GitHub Flavored Markdown Spec 0.29, tables (extension).
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from itertools import chain
+from typing import TypeVar
 
-from fretc.audit.evidence.verdicts import SUSPECT
-from fretc.report.model.phrases import visible
-from fretc.report.model.views import Mark, Report, RequirementView, worst_first
+from fretc.audit.evidence.verdicts import BROKEN, RETIRED, SUSPECT
+from fretc.report.model import phrases
+from fretc.report.model.changes import Change, follows
+from fretc.report.model.views import (
+    Mark,
+    Report,
+    RequirementView,
+    ResultRow,
+    ResultView,
+    worst_first,
+)
+from fretc.report.sections.details import Details
+from fretc.report.sections.proofs import is_refuted, refutations
+from fretc.report.sections.signatures import BROKEN as DOES_NOT_VERIFY
 from fretish.diagnostics import signs
 
 _MARKUP = re.compile(r"([\\`*_{}\[\]()<>#+!|~&:@-])")
-_LISTED = 50
+_VIOLATED, _NOT_SHOWN, _CHANGED, _OTHERS = 8, 4, 4, 3
+"""The most lines of each list, and the most entries of a line that has several."""
+_LONGEST = 240
+"""Characters of one text."""
+T = TypeVar("T")
 
 
-def markdown(report: Report) -> str:
+def markdown(report: Report, details: Details) -> str:
     """The whole comment."""
-    return "".join(f"{line}\n" for line in _lines(report))
+    return "".join(f"{line}\n" for line in _lines(report, details))
 
 
-def _lines(report: Report) -> Iterator[str]:
-    overall = report.overall
-    yield f"## {overall.mark.glyph} {_plain(overall.headline)}"
-    yield ""
-    for sentence in overall.sentences:
-        yield f"{_plain(sentence)}  "
-    yield ""
-    yield "| requirement | verdict | coverage | review | why |"
-    yield "|---|---|---|---|---|"
-    ordered = worst_first(report.requirements)
-    for view in ordered[:_LISTED]:
-        yield _row(view)
-    if len(ordered) > _LISTED:
-        yield ""
-        yield f"… and {len(ordered) - _LISTED} more requirements."
-    yield from _changes(report)
-    yield from _accepted(report)
-    yield from _signatures(report)
-    yield ""
-    yield f"<sub>fretc {_plain(report.fretc)}</sub>"
-
-
-def _row(view: RequirementView) -> str:
-    why = view.reasons[0] if view.reasons else view.results[0].reason if view.results else ""
-    more = f" (and {len(view.reasons) - 1} more)" if len(view.reasons) > 1 else ""
-    cells = (
-        f"**{_plain(view.id)}** {_plain(view.title)}",
-        _verdict(view.mark),
-        view.coverage,
-        view.review.text,
-        f"{_plain(why)}{more}",
+def _lines(report: Report, details: Details) -> Iterator[str]:
+    claimed = [view for view in worst_first(report.requirements) if view.mark.word != RETIRED]
+    violated = [view for view in claimed if _is_violated(view)]
+    not_shown = [view for view in claimed if not _is_violated(view) and not view.mark.shows]
+    claim = partial(_claim, details)
+    blocks = (
+        [f"## {report.overall.mark.glyph} {_plain(report.overall.headline)}"],
+        _figures(report, len(claimed), len(violated), len(not_shown)),
+        [" ".join(_plain(sentence) for sentence in report.overall.sentences)],
+        _list("Violated", violated, claim, _VIOLATED),
+        _list("Not shown", not_shown, claim, _NOT_SHOWN),
+        _list("Changed since the review", _changes(report), str, _CHANGED),
+        _accepted(report),
+        _signatures(report),
+        [f"<sub>fretc {_plain(report.fretc)}</sub>"],
     )
-    return f"| {' | '.join(cells)} |"
+    filled = [list(block) for block in blocks]
+    yield from [*chain.from_iterable([*block, ""] for block in filled if any(block))][:-1]
+
+
+def _is_violated(view: RequirementView) -> bool:
+    return view.mark.word in BROKEN or is_refuted(view)
+
+
+def _figures(report: Report, claimed: int, violated: int, not_shown: int) -> Iterator[str]:
+    yield "| claimed | shown | violated | not shown | changed since the review |"
+    yield "|---|---|---|---|---|"
+    shown, changed = claimed - violated - not_shown, len(report.changes)
+    yield f"| {claimed} | {shown} | {violated} | {not_shown} | {changed} |"
+
+
+def _list(heading: str, things: Sequence[T], line: Callable[[T], str], most: int) -> Iterator[str]:
+    """A heading with the number of all, the first ones, and how many more there are."""
+    if not things:
+        return
+    yield f"### {heading}: {len(things)}"
+    yield from (f"- {line(thing)}" for thing in things[:most])
+    if len(things) > most:
+        yield f"- … and {len(things) - most} more"
+
+
+# What is violated, and what is not shown -------------------------------------------------------
+
+
+def _claim(details: Details, view: RequirementView) -> str:
+    """Verdict, title, run and cause: `✘ violated **No contact (R14)** in runs/06.mcap: ...`."""
+    where, why = _worst(details, view)
+    waived = f" ({_plain(view.waiver.reason)})" if view.waiver else ""
+    return f"{_verdict(view.mark)} **{_plain(view.name)}**{waived}{where}: {_plain(why)}"
+
+
+def _worst(details: Details, view: RequirementView) -> tuple[str, str]:
+    """The worst run, with how many more there are, and its cause; else what no single run says."""
+    open_ones = [result for result in view.results if not result.mark.shows]
+    if view.mark.word not in BROKEN and is_refuted(view):
+        counterexamples = (f"{one.layer}: {one.claim}" for one in refutations(view))
+        plans = (f"{one.method}: {one.result}" for one in view.planned if one.refuted)
+        return " but for a counterexample", next(chain(counterexamples, plans))
+    if not open_ones or view.probability is not None:
+        return "", next(iter(view.reasons), view.mark.text)
+    first = min(open_ones, key=lambda result: result.mark.severity)
+    runs = {result.run for result in open_ones if result.mark.word == first.mark.word}
+    more = f" and {phrases.times(len(runs) - 1, 'more run')}" if len(runs) > 1 else ""
+    return f" in {_plain(first.run_file)}{more}", _cause(details, first)
+
+
+def _cause(details: Details, row: ResultRow) -> str:
+    """The reason of the verdict, and why: in words, or what the signals were."""
+    (result,) = (view for _, view in details.results([row]))
+    because = f" ({'; '.join(row.suspicions)})" if row.suspicions else ""
+    return f"{row.reason}{_at_first(result)}{because}"
+
+
+def _at_first(result: ResultView) -> str:
+    """The first broken tick."""
+    first = next(iter(result.violations), None)
+    if first is None:
+        return ""
+    values = [f"{name} {value}" for name, value in first.values]
+    why = [*first.causes[:_OTHERS]] or values[:_OTHERS]
+    return f"; at {first.start} {phrases.joined(why)}" if why else ""
 
 
 def _verdict(mark: Mark) -> str:
@@ -62,48 +131,70 @@ def _verdict(mark: Mark) -> str:
     return f"{mark.glyph} {mark.word}{suspect}"
 
 
-def _changes(report: Report) -> Iterator[str]:
-    if not report.changes:
-        return
-    yield ""
-    yield "### Changed since the review"
-    yield ""
-    for change in report.changes:
-        yield f"- **{_plain(change.requirement)}**: {_plain('; '.join(change.lines))}"
-        for run, then, now in change.verdicts:
-            yield f"  - {_plain(run)}: {then} → {now}"
+# What else a reviewer must know ----------------------------------------------------------------
+
+
+def _changes(report: Report) -> list[str]:
+    """What has become of verdicts first, where something is violated now; then each change."""
+    names = {view.id: view.name for view in report.requirements}
+    followed = sorted(
+        ((change, follows(change)) for change in report.changes if follows(change)),
+        key=lambda pair: not _is_red_now(pair[0]),
+    )
+    consequences = [
+        _change(names.get(one.requirement, one.requirement), texts) for one, texts in followed
+    ]
+    changes = [
+        _change(_some([names.get(id, id) for id, _ in group.requirements]), [group.change.text])
+        for group in report.change_groups
+    ]
+    return [*consequences, *changes]
+
+
+def _is_red_now(change: Change) -> bool:
+    return any(now.startswith(BROKEN) for _, _, now in change.verdicts)
+
+
+def _change(name: str, texts: Sequence[str]) -> str:
+    left = len(texts) - _OTHERS
+    more = f" (and {left} more)" if left > 0 else ""
+    return f"**{_plain(name)}**: {_plain('; '.join(texts[:_OTHERS]))}{more}"
 
 
 def _accepted(report: Report) -> Iterator[str]:
     """The warnings that the project accepts, and why."""
-    accepted = [remark for remark in report.remarks if remark.accepted]
-    if not accepted:
-        return
-    yield ""
-    yield f"### Accepted warnings: {len(accepted)}"
-    yield ""
-    for one in accepted[:_LISTED]:
-        yield f"- **{one.code}** {_plain(one.message)}: {_plain(one.accepted)}"
-    if len(accepted) > _LISTED:
-        yield f"- … and {len(accepted) - _LISTED} more"
+    accepted = [
+        f"**{one.code}** {_plain(one.message)} ({_plain(one.accepted)})"
+        for one in report.remarks
+        if one.accepted
+    ]
+    if accepted:
+        yield f"Accepted warnings: {len(accepted)}: {_some(accepted)}"
 
 
 def _signatures(report: Report) -> Iterator[str]:
     """Those that do not verify come first; reviews stand in the table, too."""
-    signed = report.signatures.signed
-    if not signed:
-        return
-    yield ""
-    yield "### Signatures"
-    yield ""
-    for one in signed[:_LISTED]:
-        mark = one.signature.mark
-        yield f"- {mark.glyph} {one.kind} {_plain(one.name)}: {_plain(one.signature.text)}"
-    if len(signed) > _LISTED:
-        unsigned = sum(not one.signature.is_good for one in signed[_LISTED:])
-        yield f"- … and {len(signed) - _LISTED} more, {unsigned} of them unauthenticated"
+    signed = sorted(
+        report.signatures.signed,
+        key=lambda one: (one.signature.mark != DOES_NOT_VERIFY, one.signature.is_good),
+    )
+    if signed:
+        bad = sum(not one.signature.is_good for one in signed)
+        texts = [
+            f"{one.signature.mark.glyph} {one.kind} {_plain(one.name)}: "
+            f"{_plain(one.signature.text)}"
+            for one in signed
+        ]
+        yield f"Signatures: {bad} of {len(signed)} are missing or not good: {_some(texts)}"
+
+
+def _some(texts: Sequence[str]) -> str:
+    left = len(texts) - _OTHERS
+    return "; ".join([*texts[:_OTHERS], *([f"and {left} more"] if left > 0 else [])])
 
 
 def _plain(text: str) -> str:
-    """Text as text, on one line: no markup, no mention, no link."""
-    return _MARKUP.sub(r"\\\1", visible(" ".join(text.split())))
+    """Text as text, on one line and no longer than one reads: no markup, no mention, no link."""
+    words = " ".join(text.split())
+    short = words if len(words) <= _LONGEST else f"{words[: _LONGEST - 1]}…"
+    return _MARKUP.sub(r"\\\1", phrases.visible(short))

@@ -8,7 +8,7 @@ from enum import StrEnum
 
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT, VERDICTS
 from fretc.report.model import phrases
-from fretc.report.model.views import HazardView, RequirementView, ResultView
+from fretc.report.model.views import HazardView, RequirementView, ResultRow
 from fretish.documents import STATUSES
 
 _LISTED = 50
@@ -118,7 +118,7 @@ def _runs(view: RequirementView) -> Iterator[str]:
         yield f"… and {phrases.times(len(ordered) - _LISTED, 'more run')}"
 
 
-def _run(result: ResultView) -> str:
+def _run(result: ResultRow) -> str:
     return (
         f"{result.run_file}: {result.mark.text}: {'; '.join([result.reason, *result.suspicions])}"
     )

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from compiler.formalization.formalized import Formalized
-from fretc.audit.evidence.schema import Result
+from fretc.audit.evidence.declared_units import bare
 from fretc.audit.outputs import sarif as results
 from fretc.report.model.views import Report
+from fretc.report.sections.details import Details
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.documents import Requirement
 
 
 def sarif(
     report: Report,
-    audited: Sequence[Result],
+    details: Details,
     rules: Sequence[Formalized],
     diagnostics: Sequence[Diagnostic],
     failed: Sequence[Requirement] = (),
@@ -23,23 +24,20 @@ def sarif(
 
     Args:
         report: what it says.
-        audited: the results of the evidence, in its order.
+        details: the evidence behind it.
         rules: all requirements of the project.
         diagnostics: what there is to say of requirements and evidence.
         failed: requirements of the project without a rule.
     """
     all_runs = list(_all_runs(report))
-    return results.sarif(list(_single_runs(report, audited)), rules, diagnostics, all_runs, failed)
+    return results.sarif(list(_single_runs(report, details)), rules, diagnostics, all_runs, failed)
 
 
-def _single_runs(report: Report, audited: Sequence[Result]) -> Iterator[results.OneRun]:
-    """With verdict and currency as the report has them."""
-    views = {view.id: iter(view.results) for view in report.requirements}
-    for result in audited:
-        view = next(views.get(result.requirement, iter(())), None)
-        if view is None:
-            continue  # evidence of what is not among the requirements is a diagnostic
-        yield results.OneRun(result, view.mark.word, view.suspicions)
+def _single_runs(report: Report, details: Details) -> Iterator[results.OneRun]:
+    """With verdict and currency as the report has them, in the order of the evidence."""
+    views = {view.id: view.results for view in report.requirements}
+    for row, result in details.audited(row for rows in views.values() for row in rows):
+        yield results.OneRun(bare(result), row.mark.word, row.suspicions)
 
 
 def _all_runs(report: Report) -> Iterator[results.AllRuns]:

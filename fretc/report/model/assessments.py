@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from types import MappingProxyType
 
 from compiler.formalization.formalized import Formalized, plain
@@ -11,8 +12,7 @@ from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
 from fretc.audit.bases import bases
-from fretc.audit.evidence.reader import by_requirement
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.verdicts import (
     BROKEN,
     NOT_EXERCISED,
@@ -25,7 +25,7 @@ from fretc.audit.evidence.verdicts import (
 )
 from fretc.audit.measurements.trials import NO_TRIALS
 from fretc.report.model.audits import ProbabilityAudit, SingleAudit
-from fretc.report.model.suspicions import about_estimation, about_result, since_review
+from fretc.report.model.suspicions import AboutResults, about_estimation, since_review
 from fretc.report.model.views import Mark, verdict_mark
 from fretc.report.traceability.artefacts import Product, products
 from fretc.report.traceability.chain import chains
@@ -45,7 +45,7 @@ COVERAGE = (
 """How far a requirement has come; the last three hold whatever else is known of it."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Assessment:
     """One requirement and all that its verdict rests on."""
 
@@ -69,17 +69,18 @@ class Assessment:
         """The requirement's id."""
         return self.requirement.id
 
-    @property
+    @cached_property
     def reviewed_audits(self) -> tuple[SingleAudit, ...]:
         """The audits beside the review: none shows a requirement that changed since it."""
-        return tuple(audit.with_review(self.standing) for audit in self.audits)
+        review = since_review(self.standing)
+        return tuple(audit.since(review) for audit in self.audits) if review else self.audits
 
     @property
     def verdict(self) -> str:
         """`waived` where a waiver covers the verdict; else the verdict."""
         return WAIVED if self._is_waived else self.unwaived
 
-    @property
+    @cached_property
     def unwaived(self) -> str:
         """The verdict without regard to a waiver: the worst of the runs, or why there is none."""
         if self.requirement.status == RETIRED:
@@ -88,7 +89,7 @@ class Assessment:
         unformalized = [] if self.rule is not None else [UNFORMALIZED]
         return min([*words, *unformalized], key=severity)
 
-    @property
+    @cached_property
     def suspicions(self) -> tuple[str, ...]:
         """Why the verdict is not that of the requirement as it is now and as it was accepted.
 
@@ -160,7 +161,7 @@ class Assessment:
 
 def assessments(
     project: Project,
-    evidence: Evidence | None,
+    briefs: Briefs | None,
     lock: Lock | None = None,
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
     proofs: Sequence[Proof] = (),
@@ -169,27 +170,28 @@ def assessments(
 
     Args:
         project: with or without errors.
-        evidence: None where no run has been audited.
+        briefs: of the evidence; None where no run has been audited.
         lock: None where nothing has been reviewed.
         waivers: those that count today, by the requirement.
         proofs: the results of verification.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     diagnostics = {id(each.requirement): each.diagnostic for each in project.failed}
-    results = by_requirement(evidence)
+    results = briefs.by_requirement if briefs else {}
     basis_of = bases(project)
     products_of = {id: products(rule) for id, rule in rules.items()}
-    standing_of_each = standings(chains(project, evidence, products_of, proofs), lock)
-    audited_by = evidence.fretc if evidence else ""
+    standing_of_each = standings(chains(project, briefs, products_of, proofs, basis_of), lock)
+    audited_by = briefs.source.fretc if briefs else ""
     anchors: list[str] = []
     assessed: list[Assessment] = []
     for requirement, standing in zip(project.requirements, standing_of_each, strict=True):
         anchors.append(_anchor(requirement.id, anchors))
         rule = rules.get(id(requirement))
         basis = basis_of[id(requirement)] if rule is not None else None
+        suspicions = AboutResults(basis, audited_by)
         audits = tuple(
-            SingleAudit(result, tuple(about_result(result, basis, audited_by)))
-            for result in results.get(requirement.id, ())
+            SingleAudit(result, suspicions.of(result), place)
+            for place, result in results.get(requirement.id, ())
         )
         assessed.append(
             Assessment(
@@ -202,16 +204,16 @@ def assessments(
                 standing,
                 waivers.get(requirement.id),
                 rule is not None and _is_bound(rule, project.declarations),
-                _probability(requirement.id, rule, evidence, audits),
+                _probability(requirement.id, rule, briefs, audits),
             )
         )
     return tuple(assessed)
 
 
 def _probability(
-    id: str, rule: Formalized | None, evidence: Evidence | None, audits: Sequence[SingleAudit]
+    id: str, rule: Formalized | None, briefs: Briefs | None, audits: Sequence[SingleAudit]
 ) -> ProbabilityAudit | None:
-    estimations = evidence.probabilities if evidence is not None else ()
+    estimations = briefs.source.probabilities if briefs is not None else ()
     estimation = next((one for one in estimations if one.requirement == id), None)
     if estimation is None:
         return None
@@ -220,7 +222,7 @@ def _probability(
         reasons = dict.fromkeys((*stale, "the sentence gives no probability now"))
         return ProbabilityAudit(estimation, tuple(reasons))
     results = [audit.result for audit in audits]
-    runs = [(each.content, each.health.intact, each.trials or NO_TRIALS) for each in results]
+    runs = [(each.content, each.intact, each.trials or NO_TRIALS) for each in results]
     doubts = about_estimation(estimation, rule.sentence.probability, runs)
     return ProbabilityAudit(estimation, tuple(dict.fromkeys((*stale, *doubts))))
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from fretc.audit.evidence.briefs import Brief
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import Result
-from fretc.report.model.suspicions import since_review
 from fretc.report.model.views import Mark, verdict_mark
-from fretc.report.traceability.lock import Standing
 from monitors import kernel
 
 
@@ -16,8 +14,10 @@ from monitors import kernel
 class SingleAudit:
     """The result of one run, and why it does not count, if it does not."""
 
-    result: Result
+    result: Brief
     suspicions: tuple[str, ...]
+    place: int = 0
+    """Of the result in the evidence."""
 
     @property
     def verdict(self) -> str:
@@ -35,10 +35,13 @@ class SingleAudit:
         """Verdict and currency."""
         return verdict_mark(self.verdict, suspect=self.is_stale)
 
-    def with_review(self, standing: Standing) -> SingleAudit:
-        """The same beside a review: no run shows a requirement that changed since it."""
-        suspicions = since_review(standing) if self.mark.shows else ()
-        return replace(self, suspicions=suspicions) if suspicions else self
+    def since(self, review: tuple[str, ...]) -> SingleAudit:
+        """The same beside a review: no run shows a requirement that changed since it.
+
+        Args:
+            review: what has changed since it; empty where it stands.
+        """
+        return SingleAudit(self.result, review, self.place) if review and self.mark.shows else self
 
 
 @dataclass(frozen=True, slots=True)

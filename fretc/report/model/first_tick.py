@@ -30,10 +30,8 @@ def reading(signal: str, violation: Violation, result: Result, ages: Mapping[str
     age = _age(signal, violation)
     if value is None or age is None or limit is None or round(age, 9) <= limit:
         return text
-    old, most = phrases.seconds(age), phrases.seconds(limit)
-    return (
-        f"unknown: {text} is {'just over ' if old == most else ''}{old} old, and counts for {most}"
-    )
+    old, most = phrases.duration(round(age, 9), [limit]), phrases.exact_duration(limit)
+    return f"unknown: {text} is {old} old, and counts for {most}"
 
 
 def _bounds(signal: str, result: Result) -> list[float]:

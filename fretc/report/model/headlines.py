@@ -7,13 +7,14 @@ from itertools import groupby
 
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
+from fretc.report.model.suspicions import changed_since, since_review
 
 _GROUPS = 3
 """The most reasons that a headline names; it counts the others."""
 
 
 def violated(assessments: Sequence[Assessment]) -> str:
-    """Violated requirements: `R1 is violated; R2 was violated, and the sentence has changed`.
+    """Violated requirements: `No contact (R14) is violated`.
 
     Args:
         assessments: at least one, all of them violated or refuted.
@@ -36,13 +37,11 @@ def outdated(assessments: Sequence[Assessment]) -> str:
 
 def _groups(stale: Sequence[Assessment]) -> list[str]:
     """A phrase for each verdict and reason, the worst first."""
-    ordered = sorted(
-        stale, key=lambda assessment: (assessment.mark.severity, assessment.suspicions)
-    )
+    ordered = sorted(stale, key=lambda assessment: (assessment.mark.severity, _reasons(assessment)))
     groups = [
         (list(same), reasons)
         for (_, reasons), same in groupby(
-            ordered, key=lambda assessment: (assessment.mark.word, assessment.suspicions)
+            ordered, key=lambda assessment: (assessment.mark.word, _reasons(assessment))
         )
     ]
     parts = [
@@ -53,9 +52,18 @@ def _groups(stale: Sequence[Assessment]) -> list[str]:
     return [*parts, f"{phrases.times(rest, 'more requirement')} suspect"] if rest else parts
 
 
+def _reasons(assessment: Assessment) -> tuple[str, ...]:
+    """Its suspicions; what has changed since its review has sentences of its own."""
+    standing = assessment.standing
+    if standing.review is None:
+        return assessment.suspicions
+    since, brief = since_review(standing), changed_since(standing.review)
+    return tuple(brief if reason in since else reason for reason in assessment.suspicions)
+
+
 def _named(assessments: Sequence[Assessment], one: str = "is", many: str = "are") -> str:
-    ids = [assessment.id for assessment in assessments]
-    return f"{phrases.some(ids)} {one if len(ids) == 1 else many}"
+    names = [assessment.requirement.name for assessment in assessments]
+    return f"{phrases.some(names)} {one if len(names) == 1 else many}"
 
 
 def _words(assessments: Sequence[Assessment]) -> Sequence[str]:

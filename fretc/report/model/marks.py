@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 from fretc.audit.evidence.verdicts import SUSPECT, VERDICTS, severity, shows
 from fretish.diagnostics.signs import Sign
@@ -34,6 +35,7 @@ class Mark:
         return severity(self.word, suspect=self.suspect)
 
 
+@lru_cache(maxsize=64)
 def verdict_mark(word: str, *, suspect: bool = False) -> Mark:
     """The mark of a verdict."""
     return sign_mark(word, VERDICTS[word].sign, suspect=suspect)

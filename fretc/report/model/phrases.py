@@ -7,8 +7,11 @@ from pathlib import PurePosixPath, PureWindowsPath
 
 from fretc.report.traceability.chain import Node
 from fretish.bindings import amounts
+from fretish.bindings.amounts import duration as duration
+from fretish.bindings.amounts import exact_duration as exact_duration
 from fretish.bindings.amounts import instant as instant
 from fretish.bindings.amounts import value as value
+from fretish.documents import named as named
 
 _NARROW = "\N{NARROW NO-BREAK SPACE}"
 
@@ -40,7 +43,7 @@ def decimal(number: float) -> str:
 
 
 def seconds(number: float) -> str:
-    """`39.8 s`."""
+    """A time from the first tick of a run: `39.8 s`."""
     return f"{decimal(number)} s"
 
 

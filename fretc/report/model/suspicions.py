@@ -8,30 +8,46 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from fretc.audit.evidence.basis import Basis, why
+from fretc.audit.evidence.briefs import Brief, Recorded
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import Result
 from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.measurements.trials import Trials
-from fretc.report.model import phrases
 from fretc.report.traceability.chain import outdated
-from fretc.report.traceability.lock import Standing
+from fretc.report.traceability.changes import in_words
+from fretc.report.traceability.lock import Review, Standing
 from fretish import syntax
 from monitors import kernel
 
 
-def about_result(result: Result, basis: Basis | None, audited_by: str) -> Iterator[str]:
-    """Why the result of one run does not count.
+class AboutResults:
+    """Why results of one requirement do not count; what many have in common is compared once."""
 
-    Args:
-        result: as the evidence has it.
-        basis: what a verdict would rest on now; None: the sentence cannot be formalized.
-        audited_by: the version of fretc that wrote the evidence.
-    """
-    if basis is None:
-        yield "the sentence cannot be formalized now"
-    else:
-        yield from map(why, outdated(result, audited_by, basis))
-    if result.verdict in (kernel.SATISFIED, kernel.VACUOUS) and not result.health.intact:
+    def __init__(self, basis: Basis | None, audited_by: str) -> None:
+        """Begin with what a verdict would rest on now.
+
+        Args:
+            basis: None: the sentence cannot be formalized.
+            audited_by: the version of fretc that wrote the evidence.
+        """
+        self._basis, self._audited_by = basis, audited_by
+        self._outdated: dict[Recorded, tuple[str, ...]] = {}
+
+    def of(self, result: Brief) -> tuple[str, ...]:
+        """Why the result of one run does not count."""
+        recorded = result.rests_on
+        if recorded not in self._outdated:
+            self._outdated[recorded] = tuple(self._changes(recorded))
+        return (*self._outdated[recorded], *_about_log(result))
+
+    def _changes(self, recorded: Recorded) -> Iterator[str]:
+        if self._basis is None:
+            yield "the sentence cannot be formalized now"
+        else:
+            yield from map(why, outdated(recorded, self._audited_by, self._basis))
+
+
+def _about_log(result: Brief) -> Iterator[str]:
+    if result.verdict in (kernel.SATISFIED, kernel.VACUOUS) and not result.intact:
         yield "the log is damaged, and a damaged log cannot show this"
     if result.verdict == kernel.SATISFIED and result.violations:
         yield "the evidence contradicts itself: it lists violations"
@@ -67,5 +83,9 @@ def since_review(standing: Standing) -> tuple[str, ...]:
     """What has changed since the review, in one phrase; empty where the review stands."""
     if standing.review is None or not standing.is_suspect:
         return ()
-    names = phrases.some([phrases.thing(cause) for cause in standing.causes])
-    return (f"{names} changed since the review of {standing.review.date}",)
+    return (f"{changed_since(standing.review)}: {in_words(standing.changes)}",)
+
+
+def changed_since(review: Review) -> str:
+    """That something has changed since a review, without what it is."""
+    return f"something has changed since the review of {review.date}"

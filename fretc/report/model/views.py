@@ -10,11 +10,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from fretc.report.model.across import Across
+from fretc.report.model.changes import Change, ChangeGroup
+from fretc.report.model.front import Front
 from fretc.report.model.marks import Mark as Mark
 from fretc.report.model.marks import sign_mark as sign_mark
 from fretc.report.model.marks import verdict_mark as verdict_mark
 from fretc.report.model.pictures import Histogram, Timeline
 from fretc.report.traceability.artefacts import Product
+from fretish.documents import named
 
 SCHEMA = "fretc-report-1"
 
@@ -58,8 +61,8 @@ class TopicView:
 
 
 @dataclass(frozen=True, slots=True)
-class RunView:
-    """One recorded run and whether it can be trusted."""
+class RunSummary:
+    """One recorded run and whether it can be trusted, without its topics."""
 
     anchor: str
     label: str
@@ -75,6 +78,12 @@ class RunView:
     checked: str
     gaps: tuple[str, ...]
     findings: tuple[Remark, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RunView(RunSummary):
+    """One recorded run with its topics."""
+
     topics: tuple[TopicView, ...]
 
 
@@ -117,15 +126,6 @@ class Planned:
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
-    """The verdict of one run in the matrix, or of several; `anchor` leads to the details."""
-
-    mark: Mark
-    label: str
-    anchor: str
-
-
-@dataclass(frozen=True, slots=True)
 class Row:
     """A requirement and a hazard that it traces to; `hazard` is empty where it traces to none."""
 
@@ -137,10 +137,13 @@ class Row:
     status: str
     anchor: str
     mark: Mark
+    runs: int
+    """How many runs have the verdict; of a waived one, that behind the waiver."""
     limit: str
     """Why no run can violate it; empty where one can."""
-    artefacts: tuple[Product, ...]
-    cells: tuple[Cell, ...]
+    proof: Mark | None
+    """What is proved of it: the closed loop, or its monitor; None: neither."""
+    review: Mark
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,19 +165,6 @@ class Orphans:
     requirements: tuple[str, ...]
     parents: tuple[str, ...]
     evidence: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """The changes of a requirement since its review; `verdicts` are run, then and now."""
-
-    requirement: str
-    anchor: str
-    state: str
-    lines: tuple[str, ...]
-    links: Listing
-    """The links that the changes make suspect."""
-    verdicts: tuple[tuple[str, str, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -317,6 +307,7 @@ class Latency:
     is_bounded: bool
     bound: str
     waits: tuple[str, ...]
+    median_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -351,6 +342,33 @@ class Listing:
 
     lines: tuple[str, ...]
     total: int
+
+
+@dataclass(frozen=True, slots=True)
+class ResultRow:
+    """The result of one run in numbers; `fretc.report.sections.details` reads the rest of it."""
+
+    place: int
+    """Of the result in the evidence, from 0."""
+    number: int
+    """Among those of its requirement, from 1."""
+    requirement: str
+    """The anchor of its requirement."""
+    anchor: str
+    run: str
+    run_label: str
+    run_file: str
+    mark: Mark
+    suspicions: tuple[str, ...]
+    reason: str
+    triggers: int
+    answers: int
+    at_once: int
+    """Of the answers, those at the tick of their trigger."""
+    open: int
+    violations_total: int
+    latency_median_s: float | None
+    latency_max_s: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -432,9 +450,11 @@ class RequirementView:
     exercise: str
     """How often all runs together have triggered it, in words."""
     histograms: tuple[Histogram, ...]
+    """Empty until `fretc.report.sections.details` reads them, for a form that has them."""
     probability: ProbabilityView | None
     """None where the sentence has no probability, or the evidence has no estimation."""
-    results: tuple[ResultView, ...]
+    results: tuple[ResultRow, ...]
+    """Of all runs, in rows; the JSON form has each in full, as a `ResultView`."""
     reasons: tuple[str, ...]
     """Why it is not shown; empty where it is."""
     limit: str
@@ -443,6 +463,11 @@ class RequirementView:
     """How far along the chain it is; one of `fretc.report.model.assessments.COVERAGE`."""
     review: ReviewView
     waiver: WaiverView | None
+
+    @property
+    def name(self) -> str:
+        """As a person calls it: `No contact (R14)`."""
+        return named(self.id, self.title)
 
 
 def worst_first(views: Iterable[RequirementView]) -> list[RequirementView]:
@@ -481,7 +506,9 @@ class Report:
     evidence: str
     audited_by: str
     overall: Overall
-    runs: tuple[RunView, ...]
+    front: Front
+    runs: tuple[RunSummary, ...]
+    """Runs with errors first; the JSON form has each with its topics, as a `RunView`."""
     claims: str
     counts: tuple[Count, ...]
     not_shown: tuple[NotShown, ...]
@@ -507,4 +534,7 @@ class Report:
     commands: tuple[Command, ...]
     manifest: tuple[Hash, ...]
     across: Across
+    """With pictures of some requirements, the worst; the JSON form has those of all."""
     """All runs in one picture each: their violations, and what they used of the bounds."""
+    change_groups: tuple[ChangeGroup, ...]
+    """Each change since the review once, with the requirements that it touches."""

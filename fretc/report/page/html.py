@@ -13,46 +13,67 @@ from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from fretc.report.across.layout import drawn_lanes, drawn_map, drawn_uses
+from fretc.report.model.changes import Change, follows, new_violations
 from fretc.report.model.phrases import visible
-from fretc.report.model.views import Report, worst_first
+from fretc.report.model.views import Report
+from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import Selection, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
 from fretc.report.pictures.plots import drawing, histogram
 from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
+from fretc.report.sections.details import Details
 
-_ACROSS = 12
-"""The most requirements with pictures of all their runs; `--json` has those of all."""
+_MOST_CHANGES, _MOST_RUNS = 100, 20
+"""The most changes in a list, and the most runs of one requirement with another verdict."""
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
-def html(report: Report, rules: Sequence[Formalized] = ()) -> str:
+def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> str:
     """The whole file.
 
     Args:
         report: all parts.
+        details: the evidence behind its rows.
         rules: formalized requirements; the page draws what they mean.
     """
-    choice = selection(report)
+    choice = selection(report, details)
     page = slimmed(report, choice)
+    matrix = picture(report, choice.anchors)
     script, style = render(_SCRIPT), render(_STYLE)
     return render(
         "report/report.html.j2",
-        report=_visible(asdict(page)),
-        selection=_visible(asdict(replace(choice, anchors=frozenset()))),
+        report=visible_texts(asdict(page)),
+        selection=visible_texts(asdict(replace(choice, anchors=frozenset()))),
         anchors=choice.anchors,
-        pictures=_visible(_pictures(choice)),
-        histograms=_visible(_histograms(page)),
-        scales=_visible(_scales(page)),
+        pictures=visible_texts(_pictures(choice)),
+        histograms=visible_texts(_histograms(choice, details)),
+        scales=visible_texts(_scales(page)),
         diagrams=_diagrams(page, rules),
-        argument=_visible(_argument(report)),
-        across=_visible(_across(report, choice, _links(choice))),
-        script_hash=_hash(script),
-        style_hash=_hash(style),
+        matrix=visible_texts(asdict(matrix)),
+        rows=_rows(matrix),
+        argument=visible_texts(_argument(report)),
+        across=visible_texts(_across(report, choice, _links(choice))),
+        changes=visible_texts({each.anchor: asdict(each) for each in page.changes if each.anchor}),
+        consequences=visible_texts(_consequences(page.changes)),
+        most=_MOST_CHANGES,
+        most_runs=_MOST_RUNS,
+        script_hash=hash_source(script),
+        style_hash=hash_source(style),
     )
 
 
-def _hash(text: str) -> str:
+def _consequences(changes: Sequence[Change]) -> list[dict[str, Any]]:
+    """The requirements of which something follows, those with the most violations first."""
+    found = [
+        {**asdict(each), "new_violations": new_violations(each), "follows": follows(each)}
+        for each in changes
+        if follows(each)
+    ]
+    return sorted(found, key=lambda each: -int(each["new_violations"]))
+
+
+def hash_source(text: str) -> str:
     """As a Content-Security-Policy names an inline script or style.
 
     Source: Content Security Policy Level 3, section 2.3.1, hash-source.
@@ -85,7 +106,6 @@ def _links(choice: Selection) -> frozenset[str]:
 def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[str, Any]:
     """The pictures of all runs; those of some requirements, the worst first, by their anchors."""
     everything = report.across.lanes
-    worst = {view.anchor for view in worst_first(report.requirements)[:_ACROSS]}
     return {
         "lanes": everything and asdict(drawn_lanes(everything, "across-lanes", links)),
         "maps": [
@@ -99,19 +119,26 @@ def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[st
                 "uses": each.uses and asdict(drawn_uses(each.uses, f"uses-{each.anchor}", links)),
             }
             for each in report.across.requirements
-            if each.anchor in worst and not choice.by_anchor[each.anchor].is_short
+            if not choice.by_anchor[each.anchor].is_short
         },
     }
 
 
-def _histograms(page: Report) -> dict[str, list[dict[str, Any]]]:
-    return {
-        view.anchor: [
-            asdict(histogram(each, f"histogram-{view.anchor}.{number}"))
-            for number, each in enumerate(view.histograms, 1)
+def _histograms(choice: Selection, details: Details) -> dict[str, list[dict[str, Any]]]:
+    whole = [] if choice.is_compact else [*choice.by_anchor]
+    drawn: dict[str, list[dict[str, Any]]] = {anchor: [] for anchor in choice.by_anchor}
+    for anchor, some in details.histograms(whole):
+        drawn[anchor] = [
+            asdict(histogram(each, f"histogram-{anchor}.{number}"))
+            for number, each in enumerate(some, 1)
         ]
-        for view in page.requirements
-    }
+    return drawn
+
+
+def _rows(matrix: Picture) -> dict[str, str]:
+    """The first row of each requirement in the matrix, where it has rows of requirements."""
+    lines = (line for block in matrix.blocks for line in block.lines if line.id)
+    return {line.row.anchor: line.id for line in lines}
 
 
 def _diagrams(page: Report, rules: Sequence[Formalized]) -> Mapping[str, dict[str, Any]]:
@@ -167,14 +194,14 @@ def _scales(page: Report) -> dict[str, dict[str, Any]]:
     }
 
 
-def _visible(value: Any) -> Any:
+def visible_texts(value: Any) -> Any:
     """The same value with escapes for characters that hide or turn text."""
     match value:
         case str():
             return visible(value)
         case dict():
-            return {visible(key): _visible(item) for key, item in value.items()}
+            return {visible(key): visible_texts(item) for key, item in value.items()}
         case list() | tuple():
-            return [_visible(item) for item in value]
+            return [visible_texts(item) for item in value]
         case _:
             return value

@@ -7,28 +7,39 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import zip_longest
+from itertools import islice, zip_longest
 
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
-from fretc.report.model.views import Mark, Report, RequirementView, ResultView, RunView
+from fretc.report.model.views import (
+    Mark,
+    Report,
+    RequirementView,
+    ResultRow,
+    ResultView,
+    RunSummary,
+    RunView,
+)
+from fretc.report.sections.details import Details
 
-COMPACT = 5_000
+COMPACT = 1_000
 """Above this number of results, only runs that are not satisfied have a row."""
 DETAILED, PICTURES = 100, 60
 """The most results with all details, and the most pictures of violations, in one page."""
+_FEW_DETAILED, _FEW_PICTURES = 40, 20
+"""The same in a compact page."""
 _ROWS = 10
 """The most rows of a requirement in a compact page."""
 _RUNS, _RUN_ROWS = 8, 200
 """Above the first number, runs stand in a table; the second is the most rows of that table."""
 _FOLDED = 60
 """Up to this number of results, the page has the details of satisfied runs too, folded."""
-_VIOLATIONS = 12
-"""The most violations of one result in a page with more than `_FOLDED` results."""
+_VIOLATIONS, _FEW_VIOLATIONS = 12, 6
+"""The most violations of one result above `_FOLDED` results, and in a compact page."""
 _WHOLE = 200
 """Above this number of requirements, a compact page has no formulas, artefacts and pictures."""
 _REASONS = 3
-"""The most reasons of a requirement in a compact page."""
+"""The most reasons of a requirement in the list of what is not shown, and in a compact page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +71,7 @@ class SectionRuns:
     left_out: tuple[str, ...]
     """Sentences about what the page leaves out, and where that is."""
     is_short: bool
-    """Whether formulas, propositions, artefacts and histograms are left out."""
+    """Whether formulas, propositions and artefacts are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +81,7 @@ class Selection:
     by_anchor: Mapping[str, SectionRuns]
     runs: tuple[RunView, ...]
     """Runs with a section of their own."""
-    run_rows: tuple[RunView, ...]
+    run_rows: tuple[RunSummary, ...]
     """Runs in a table; empty where each run has a section."""
     runs_left_out: str
     notes: tuple[str, ...]
@@ -79,19 +90,31 @@ class Selection:
     """The anchors of all results and runs in the page."""
 
 
-def selection(report: Report) -> Selection:
-    """The selection for a report."""
+def selection(report: Report, details: Details) -> Selection:
+    """The selection for a report, from its rows; the details of no others are read."""
     total = sum(len(view.results) for view in report.requirements)
     compact = total > COMPACT
-    detailed = _detailed(report.requirements, None if total <= _FOLDED else _VIOLATIONS)
+    limits = _limits(total, compact)
+    detailed = _detailed(report.requirements, limits.results)
+    rest = [
+        row
+        for view in report.requirements
+        for row in view.results
+        if total <= _FOLDED and row.anchor not in detailed and _is_good(row)
+    ]
+    views = {row.anchor: view for row, view in details.results((*detailed.values(), *rest))}
+    open_ = _shortened([views[anchor] for anchor in detailed], limits)
+    folded = {row.anchor: views[row.anchor] for row in rest}
     by_anchor = {
-        view.anchor: _section_runs(view, detailed, compact, total, len(report.requirements))
+        view.anchor: _section_runs(view, open_, folded, compact, len(report.requirements))
         for view in report.requirements
     }
     many = len(report.runs) > _RUNS
-    run_rows = report.runs[:_RUN_ROWS] if many else ()  # runs with errors and damage come first
     alone = [run for run in report.runs if run.findings or run.gaps or not run.intact]
-    sections = tuple(alone[:_RUNS]) if many else report.runs
+    sections = details.run_views(alone[:_RUNS] if many else report.runs)
+    own = {run.anchor: run for run in sections}
+    rows = report.runs[:_RUN_ROWS] if many else ()  # runs with errors and damage come first
+    run_rows = tuple(own.get(run.anchor, run) for run in rows)
     left = len(report.runs) - len(run_rows) if many else 0
     anchors = {
         *(row.anchor for each in by_anchor.values() for row in each.rows),
@@ -123,13 +146,13 @@ def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
         return
     yield (
         f"This page is compact, because {phrases.whole(total)} results are more than "
-        f"{phrases.whole(COMPACT)}: runs that satisfy a requirement are counted, and have no rows "
-        "of their own."
+        f"{phrases.whole(COMPACT)}: runs that satisfy a requirement have a mark in the matrix and "
+        "no row of their own, and there are neither diagrams nor histograms."
     )
     if requirements > _WHOLE:
         yield (
-            f"With more than {_WHOLE} requirements, their formulas, propositions, artefacts and "
-            "histograms are left out as well."
+            f"With more than {_WHOLE} requirements, their formulas, propositions and artefacts are "
+            "left out as well."
         )
     yield "`fretc report --json` and `--csv` write all of it; the evidence file has every event."
 
@@ -137,47 +160,63 @@ def _notes(total: int, compact: bool, requirements: int) -> Iterator[str]:
 # The results of a requirement ------------------------------------------------------------------
 
 
-def _is_good(result: ResultView) -> bool:
+def _is_good(result: ResultRow) -> bool:
     return result.mark.shows
 
 
-def _detailed(views: Sequence[RequirementView], listed: int | None) -> Mapping[str, ResultView]:
-    """The results with all details: the worst of each requirement, then the next of each, ...
+@dataclass(frozen=True, slots=True)
+class _Limits:
+    """The most of what a page has."""
 
-    Args:
-        views: the requirements with all their results.
-        listed: the most violations of one result; None: all that the report lists.
-    """
+    results: int
+    """With details."""
+    pictures: int
+    violations: int | None
+    """Of one result; None: no limit."""
+
+
+def _limits(total: int, compact: bool) -> _Limits:
+    if compact:
+        return _Limits(min(DETAILED, _FEW_DETAILED), min(PICTURES, _FEW_PICTURES), _FEW_VIOLATIONS)
+    return _Limits(DETAILED, PICTURES, None if total <= _FOLDED else _VIOLATIONS)
+
+
+def _detailed(views: Sequence[RequirementView], most: int) -> Mapping[str, ResultRow]:
+    """The results with all details: the worst of each requirement, then the next of each, ..."""
     wanted = [
         sorted(
             (r for r in view.results if not _is_good(r) or len(view.results) == 1),
             key=lambda result: result.mark.severity,
-        )[:DETAILED]
+        )[:most]
         for view in views
     ]
-    details: dict[str, ResultView] = {}
-    pictures = PICTURES
-    for result in (r for turn in zip_longest(*wanted) for r in turn if r is not None):
-        if len(details) == DETAILED:
-            break
+    in_turn = (r for turn in zip_longest(*wanted) for r in turn if r is not None)
+    return {row.anchor: row for row in islice(in_turn, most)}
+
+
+def _shortened(results: Sequence[ResultView], limits: _Limits) -> Mapping[str, ResultView]:
+    """The results in their order, with the pictures and violations that the page has room for."""
+    short: dict[str, ResultView] = {}
+    pictures = limits.pictures
+    for result in results:
         kept = result.timelines[:pictures]
         pictures -= len(kept)
-        violations = result.violations[:listed]
-        details[result.anchor] = replace(result, timelines=kept, violations=violations)
-    return details
+        violations = result.violations[: limits.violations]
+        short[result.anchor] = replace(result, timelines=kept, violations=violations)
+    return short
 
 
 def _section_runs(
     view: RequirementView,
     detailed: Mapping[str, ResultView],
+    foldable: Mapping[str, ResultView],
     compact: bool,
-    total: int,
     requirements: int,
 ) -> SectionRuns:
-    details = tuple(detailed[r.anchor] for r in view.results if r.anchor in detailed)
-    rest = [result for result in view.results if result.anchor not in detailed]
-    folded = tuple(filter(_is_good, rest)) if total <= _FOLDED else ()
-    rows: Sequence[ResultView] = view.results if len(view.results) > 1 else ()
+    worst_first = sorted(view.results, key=lambda result: result.mark.severity)
+    details = [r for r in worst_first if r.anchor in detailed]
+    folded = [r for r in view.results if r.anchor in foldable]
+    rows: Sequence[ResultRow] = view.results if len(view.results) > 1 else ()
     if compact:
         bad = [result for result in rows if not _is_good(result)]
         rows = sorted(bad, key=lambda result: result.mark.severity)[:_ROWS]
@@ -186,15 +225,15 @@ def _section_runs(
     open_ = {result.anchor for result in (*details, *folded)}
     return SectionRuns(
         rows=tuple(_row(result, result.anchor in open_) for result in rows),
-        details=details,
-        folded=folded,
+        details=tuple(detailed[result.anchor] for result in details),
+        folded=tuple(foldable[result.anchor] for result in folded),
         left_out=tuple(_left_out(view, rows, details, folded)),
         is_short=compact and requirements > _WHOLE,
     )
 
 
-def _row(result: ResultView, has_details: bool) -> RunRow:
-    latency = result.latency
+def _row(result: ResultRow, has_details: bool) -> RunRow:
+    longest = result.latency_max_s
     why = f"; {SUSPECT}, because {'; '.join(result.suspicions)}" if result.suspicions else ""
     return RunRow(
         anchor=result.anchor,
@@ -204,8 +243,8 @@ def _row(result: ResultView, has_details: bool) -> RunRow:
         mark=result.mark,
         triggers=result.triggers,
         violations=result.violations_total,
-        longest=phrases.seconds(latency.longest_s) if latency else "\N{EN DASH}",
-        longest_s=latency.longest_s if latency else -1.0,
+        longest="\N{EN DASH}" if longest is None else phrases.duration(longest),
+        longest_s=-1.0 if longest is None else longest,
         reason=f"{result.reason}{why}",
         has_details=has_details,
     )
@@ -213,9 +252,9 @@ def _row(result: ResultView, has_details: bool) -> RunRow:
 
 def _left_out(
     view: RequirementView,
-    rows: Sequence[ResultView],
-    details: Sequence[ResultView],
-    folded: Sequence[ResultView],
+    rows: Sequence[ResultRow],
+    details: Sequence[ResultRow],
+    folded: Sequence[ResultRow],
 ) -> Iterator[str]:
     bad = sum(not _is_good(result) for result in view.results)
     good = len(view.results) - bad
@@ -240,39 +279,28 @@ def _left_out(
 
 
 def slimmed(report: Report, chosen: Selection) -> Report:
-    """The report without what the page leaves out.
-
-    A link to a result that the page leaves out leads to its requirement.
-    """
+    """The report without what the page leaves out."""
     views = tuple(_slim(view, chosen) for view in report.requirements)
-    matrix = tuple(
-        replace(
-            row,
-            cells=tuple(
-                cell if cell.anchor in chosen.anchors else replace(cell, anchor=row.anchor)
-                for cell in row.cells
-            ),
-        )
-        for row in report.matrix
-    )
     not_shown = tuple(
-        replace(each, reasons=_few(each.reasons)) if chosen.is_compact else each
-        for each in report.not_shown
+        replace(each, reasons=_few(each.reasons, "in its section")) for each in report.not_shown
     )
-    return replace(report, requirements=views, matrix=matrix, not_shown=not_shown, runs=chosen.runs)
+    return replace(report, requirements=views, not_shown=not_shown, runs=chosen.runs)
 
 
 def _slim(view: RequirementView, chosen: Selection) -> RequirementView:
     """A section without its results: the template takes those from the selection."""
-    reasons = _few(view.reasons) if chosen.is_compact else view.reasons
+    where = "in the table of its runs"
+    reasons = _few(view.reasons, where) if chosen.is_compact else view.reasons
     kept = replace(view, results=(), reasons=reasons)
+    if chosen.is_compact:
+        kept = replace(kept, diagram="")
     if not chosen.by_anchor[view.anchor].is_short:
         return kept
-    return replace(kept, formulas=(), propositions=(), artefacts=(), histograms=(), diagram="")
+    return replace(kept, formulas=(), propositions=(), artefacts=())
 
 
-def _few(reasons: Sequence[str]) -> tuple[str, ...]:
+def _few(reasons: Sequence[str], where: str) -> tuple[str, ...]:
     left = len(reasons) - _REASONS
     if left <= 1:
         return tuple(reasons)
-    return (*reasons[:_REASONS], "and more, in the table of its runs")
+    return (*reasons[:_REASONS], f"and {left} more, {where}")

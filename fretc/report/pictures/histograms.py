@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from math import ceil, floor
 from statistics import median
 
 from compiler.formalization.formalized import Formalized
-from fretc.audit.evidence.schema import Result, Threshold
+from fretc.audit.evidence.briefs import Brief
+from fretc.audit.evidence.schema import Threshold
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.pictures import Bin, Histogram
@@ -39,9 +41,9 @@ def exercise(assessment: Assessment) -> str:
         return ""
     if not results:
         return f"none of {phrases.times(len(assessment.audits), 'run')} counts: all are suspect"
-    triggers = sum(len(result.triggers) for result in results)
-    answers = sum(len(result.latencies) for result in results)
-    waiting = sum(len(result.open) for result in results)
+    triggers = sum(result.triggers for result in results)
+    answers = sum(result.answers for result in results)
+    waiting = sum(result.open for result in results)
     unanswered = sum(map(_unanswered, results)) if is_answered(assessment.rule) else 0
     asked = sum(bool(result.triggers) for result in results)
     suspect = len(assessment.audits) - len(results)
@@ -52,22 +54,33 @@ def exercise(assessment: Assessment) -> str:
         f"{phrases.whole(answers)} answered" if answers else "",
         f"{phrases.whole(unanswered)} without an answer" if unanswered else "",
         f"{phrases.whole(waiting)} open at the end" if waiting else "",
-        phrases.times(sum(len(r.violations) for r in results), "violation"),
+        phrases.times(sum(result.violations for result in results), "violation"),
         f"{phrases.times(suspect, 'suspect run')} left out" if suspect else "",
     ]
     return ", ".join(filter(None, parts))
 
 
-def histograms(assessment: Assessment) -> tuple[Histogram, ...]:
-    """One of latency, then one for each threshold; none of fewer than two values."""
+def histograms(
+    assessment: Assessment,
+    latencies: Mapping[int, Sequence[float]],
+    thresholds: Mapping[int, Sequence[Threshold]],
+) -> tuple[Histogram, ...]:
+    """One of latency, then one for each threshold; none of fewer than two values.
+
+    Args:
+        assessment: of the requirement.
+        latencies: of each of its results, by place.
+        thresholds: the same, in declared units.
+    """
     results = _current_results(assessment)
-    late = [latency for result in results for latency in result.latencies]
+    places = [audit.place for audit in assessment.audits if not audit.is_stale]
+    late = [latency for place in places for latency in latencies[place]]
     latency_histogram = [_latency(late, results, assessment.rule)] if len(late) > 1 else []
-    margins = list(_margins(results)) if len(results) > 1 else []
-    return (*latency_histogram, *margins[:_MARGINS])
+    margins = _margins(thresholds[place] for place in places) if len(results) > 1 else iter(())
+    return (*latency_histogram, *islice(margins, _MARGINS))
 
 
-def _current_results(assessment: Assessment) -> list[Result]:
+def _current_results(assessment: Assessment) -> list[Brief]:
     return [audit.result for audit in assessment.audits if not audit.is_stale]
 
 
@@ -79,24 +92,24 @@ def is_answered(rule: Formalized | None) -> bool:
     return rule is not None and rule.watch.answer is not None
 
 
-def _unanswered(result: Result) -> int:
+def _unanswered(result: Brief) -> int:
     """Triggers that no longer wait and got no answer: time ran out, or their scope ended."""
-    return max(0, len(result.triggers) - len(result.latencies) - len(result.open))
+    return max(0, result.triggers - result.answers - result.open)
 
 
-def _latency(late: Sequence[float], runs: Sequence[Result], rule: Formalized | None) -> Histogram:
+def _latency(late: Sequence[float], runs: Sequence[Brief], rule: Formalized | None) -> Histogram:
     bound = seconds_allowed(rule)
     bins = _bins(late, [0.0, *([bound] if bound is not None else [])], _below)
-    label = f"bound {phrases.seconds(bound)}" if bound is not None else ""
+    label = f"bound {phrases.exact_duration(bound)}" if bound is not None else ""
     unanswered = sum(map(_unanswered, runs)) if is_answered(rule) else 0
-    waiting = sum(len(result.open) for result in runs)
+    waiting = sum(result.open for result in runs)
     beyond = sum(value > bound + 1e-9 for value in late) if bound is not None else 0
     limit = (
         f"{label}, {phrases.whole(beyond)} later" if bound is not None else "no bound in seconds"
     )
     text = (
         f"{phrases.times(len(late), 'answer')} in {phrases.times(len(runs), 'run')}: "
-        f"{_late(late)}; "
+        f"{_late(late, bound)}; "
         f"{limit}. {_in_words(bins, 's', _UP_TO)}{_without(unanswered, waiting)}"
     )
     return Histogram(
@@ -133,24 +146,25 @@ def seconds_allowed(rule: Formalized | None) -> float | None:
 # Margin ----------------------------------------------------------------------------------------
 
 
-def _late(late: Sequence[float]) -> str:
+def _late(late: Sequence[float], bound: float | None) -> str:
     """The median and the longest; of one answer only how long it took."""
-    middle, longest = phrases.seconds(median(late)), phrases.seconds(max(late))
+    bounds = [] if bound is None else [bound]
+    middle, longest = (phrases.duration(each, bounds) for each in (median(late), max(late)))
     return longest if len(late) == 1 else f"median {middle}, longest {longest}"
 
 
-def _margins(results: Sequence[Result]) -> Iterator[Histogram]:
+def _margins(runs: Iterable[Sequence[Threshold]]) -> Iterator[Histogram]:
     """One for each threshold with a margin in at least two runs, in the order of propositions."""
     grouped: dict[tuple[str, str, str, float, str], list[Threshold]] = defaultdict(list)
-    for result in results:
-        for each in result.thresholds:
+    for thresholds in runs:
+        for each in thresholds:
             name = (each.proposition, each.signal, each.operator, each.bound, each.unit)
             grouped[name].append(each)
-    for (proposition, signal, operator, bound, unit), thresholds in grouped.items():
-        margins = [each.margin for each in thresholds if each.margin is not None]
+    for (proposition, signal, operator, bound, unit), same in grouped.items():
+        margins = [each.margin for each in same if each.margin is not None]
         if len(margins) < 2:
             continue
-        crossed = sum(each.comparison == "crossed" for each in thresholds)
+        crossed = sum(each.comparison == "crossed" for each in same)
         bins = _bins(margins, [0.0], _above)
         comparison = f"{signal} {operator} {phrases.value(bound, unit)}"
         text = (

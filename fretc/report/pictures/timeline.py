@@ -11,7 +11,7 @@ from compiler.formalization.formalized import Formalized
 from fretc.audit.evidence.schema import Moment, Result, Violation
 from fretc.report.model.causes import causes, falsity, in_words
 from fretc.report.model.first_tick import reading
-from fretc.report.model.phrases import joined, seconds, times, value
+from fretc.report.model.phrases import duration, joined, seconds, times, value
 from fretc.report.model.pictures import Flag, Lane, Panel, SpanMark, Timeline, WordLane
 from fretc.report.pictures.signals import left_out, panels, word_lanes
 
@@ -159,7 +159,7 @@ def _extent(points: Sequence[tuple[float, float, float]], panel: Panel) -> str:
 
 
 def _total(stretches: Sequence[tuple[float, float]]) -> str:
-    return seconds(sum(end - start for start, end in stretches))
+    return duration(sum(end - start for start, end in stretches))
 
 
 def _not_drawn(names: Sequence[str]) -> str:

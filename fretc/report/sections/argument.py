@@ -19,7 +19,7 @@ from compiler.logic.claims import METHODS, Layer, Result
 from fretc.audit.evidence.verdicts import BROKEN
 from fretc.audit.measurements.confidence_intervals import REFUTED, SUPPORTED
 from fretc.report.model import phrases
-from fretc.report.model.views import ProofView, Report, RequirementView, ResultView
+from fretc.report.model.views import ProofView, Report, RequirementView, ResultRow
 from fretc.report.sections.proofs import SHARED, covering, is_proved
 
 
@@ -225,7 +225,7 @@ def _counter_evidence(view: RequirementView, id: str) -> Iterator[_CounterEviden
             )
 
 
-def _violated(view: RequirementView, violating: Sequence[ResultView], old: bool) -> str:
+def _violated(view: RequirementView, violating: Sequence[ResultRow], old: bool) -> str:
     runs = phrases.times(len(view.results), "audited run")
     worst = sorted(violating, key=lambda result: -result.violations_total)[:_NAMED]
     left = len(violating) - len(worst)

@@ -1,23 +1,34 @@
-"""The matrix of hazards, requirements, artefacts and runs, and the links that are missing."""
+"""The rows of the matrix of hazards and requirements, and the links that are missing."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterable, Sequence
 
+from compiler.logic.claims import Layer
 from compiler.project.ancestry import without_hazard
 from compiler.project.folder import Project
-from fretc.audit.evidence.schema import Evidence
-from fretc.audit.evidence.verdicts import RETIRED
+from fretc.audit.evidence.briefs import Briefs
+from fretc.audit.evidence.verdicts import RETIRED, WAIVED
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.views import Cell, HazardView, Orphans, RequirementView, Row
-from fretc.report.sections.results import result_anchor
-from fretc.report.sections.runs import Run, RunKey, run_key
+from fretc.report.model.views import (
+    HazardView,
+    Mark,
+    Orphans,
+    RequirementView,
+    Row,
+    sign_mark,
+)
+from fretc.report.sections.proofs import is_proved_layer, is_refuted
+from fretish.diagnostics import signs
 from fretish.reading.natural_order import natural
 
-_SINGLE = 6
-"""Above this number, the runs of one verdict share one cell."""
+_LOOP = Mark("closed loop proved", "◆", "")
+_MONITOR = Mark("monitor proved", "◇", "")
+_REFUTED = sign_mark("counterexample", signs.BAD)
+_REVIEWED = Mark("reviewed", "●", "")
+_CHANGED = Mark("changed since the review", "○", signs.OPEN.kind)
+_UNREVIEWED = Mark("not reviewed", "", "")
 
 
 def hazard_views(project: Project) -> tuple[HazardView, ...]:
@@ -32,22 +43,19 @@ def matrix(
     project: Project,
     assessments: Sequence[Assessment],
     sections: Sequence[RequirementView],
-    runs: dict[RunKey, Run],
 ) -> tuple[Row, ...]:
     """A row for each hazard and requirement below it; then the requirements below none."""
     parents = {assessment.id: assessment.requirement.parents for assessment in assessments}
     chains = [_chains(assessment.id, parents, project) for assessment in assessments]
     pairs = list(zip(assessments, sections, chains, strict=True))
     rows = [
-        _row(hazard, via[hazard], assessment, section, project, runs)
+        _row(hazard, via[hazard], assessment, section, project)
         for hazard in sorted(project.hazards)
         for assessment, section, via in pairs
         if hazard in via
     ]
     rest = [
-        _row("", (), assessment, section, project, runs)
-        for assessment, section, via in pairs
-        if not via
+        _row("", (), assessment, section, project) for assessment, section, via in pairs if not via
     ]
     return (*rows, *rest)
 
@@ -75,7 +83,6 @@ def _row(
     assessment: Assessment,
     section: RequirementView,
     project: Project,
-    runs: dict[RunKey, Run],
 ) -> Row:
     return Row(
         hazard=hazard,
@@ -86,36 +93,37 @@ def _row(
         status=section.status,
         anchor=assessment.anchor,
         mark=assessment.mark,
+        runs=_runs(section),
         limit=section.limit,
-        artefacts=section.artefacts,
-        cells=_cells(assessment, runs),
+        proof=_proof(section),
+        review=_review(assessment),
     )
 
 
-def _cells(assessment: Assessment, runs: dict[RunKey, Run]) -> tuple[Cell, ...]:
-    """A cell for each run, the worst first; many runs of one verdict share a cell."""
-    if not assessment.audits:
-        return (Cell(assessment.mark, "", assessment.anchor),)
-    counts = Counter(audit.mark for audit in assessment.reviewed_audits)
-    single = [
-        Cell(audit.mark, runs[run_key(audit.result)].label, result_anchor(assessment, number))
-        for number, audit in enumerate(assessment.reviewed_audits, 1)
-        if counts[audit.mark] <= _SINGLE
-    ]
-    shared = [
-        Cell(mark, f"in {phrases.times(count, 'run')}", assessment.anchor)
-        for mark, count in counts.items()
-        if count > _SINGLE
-    ]
-    return tuple(sorted([*single, *shared], key=lambda cell: cell.mark.severity))
+def _runs(section: RequirementView) -> int:
+    covered = section.waiver if section.mark.word == WAIVED else None
+    word = covered.covers.word if covered else section.mark.word
+    return sum(result.mark.word == word for result in section.results)
+
+
+def _proof(section: RequirementView) -> Mark | None:
+    if is_refuted(section):
+        return _REFUTED
+    if is_proved_layer(section, Layer.LOOP):
+        return _LOOP
+    return _MONITOR if is_proved_layer(section, Layer.MONITOR) else None
+
+
+def _review(assessment: Assessment) -> Mark:
+    if assessment.standing.review is None:
+        return _UNREVIEWED
+    return _CHANGED if assessment.standing.is_suspect else _REVIEWED
 
 
 # Orphans ---------------------------------------------------------------------------------------
 
 
-def orphans(
-    project: Project, assessments: Sequence[Assessment], evidence: Evidence | None
-) -> Orphans:
+def orphans(project: Project, assessments: Sequence[Assessment], briefs: Briefs | None) -> Orphans:
     """Every place where the chain from hazard to verdict ends too early."""
     return Orphans(
         hazards=tuple(_uncovered(project, assessments)),
@@ -126,7 +134,7 @@ def orphans(
         parents=tuple(_undeclared(project, assessments)),
         evidence=tuple(
             f"{id} has evidence, but is not among the requirements"
-            for id in unknown_ids(assessments, evidence)
+            for id in unknown_ids(assessments, briefs)
         ),
     )
 
@@ -163,8 +171,8 @@ def _undeclared(project: Project, assessments: Sequence[Assessment]) -> Iterable
                 yield f"{assessment.id} names {parent}, which is not declared"
 
 
-def unknown_ids(assessments: Sequence[Assessment], evidence: Evidence | None) -> tuple[str, ...]:
+def unknown_ids(assessments: Sequence[Assessment], briefs: Briefs | None) -> tuple[str, ...]:
     """The ids in the evidence that are not ids of the project."""
     ids = {assessment.id for assessment in assessments}
-    results = evidence.results if evidence else ()
-    return tuple(sorted({result.requirement for result in results} - ids, key=natural))
+    audited = briefs.by_requirement.keys() if briefs else ()
+    return tuple(sorted({*audited} - ids, key=natural))

@@ -33,6 +33,7 @@ def overall(
     reservations: Sequence[str],
     withdrawn: Sequence[WithdrawnRequirement],
     signatures: Signatures,
+    changed: Sequence[str] = (),
 ) -> Overall:
     """Mark, headline and sentences.
 
@@ -44,11 +45,12 @@ def overall(
         reservations: about requirements that are shown.
         withdrawn: requirements that were reviewed and are claimed no more.
         signatures: all of them.
+        changed: what has changed since the review, in sentences.
     """
     active = [one for one in assessments if one.verdict != RETIRED]
     active_views = [view for view in sections if view.status != RETIRED]
     missing = [plan for view in active_views for plan in view.planned if not plan.has_result]
-    refuted = [view.id for view in active_views if is_refuted(view)]
+    refuted = [view.name for view in active_views if is_refuted(view)]
     red = [one for one in active if one.is_broken]
     stale = outdated(active)
     good = [one for one in active if one.is_shown]
@@ -59,6 +61,7 @@ def overall(
             None,
             (
                 *((stale,) if red else ()),
+                *changed,
                 *_held(active, good, len(runs)),
                 *(f"{one.text}." for one in withdrawn),
                 _refuted(refuted),
@@ -122,7 +125,8 @@ def _held_in_runs(active: Sequence[Assessment], good: Sequence[Assessment], runs
     if len(active) == 1:
         where = _where(len(active[0].audits))
         held = f"held in {where}" if good else f"was not shown to hold in {where}"
-        return f"The one requirement, {active[0].id}, {held if where else 'was not audited'}."
+        name = active[0].requirement.name
+        return f"The one requirement, {name}, {held if where else 'was not audited'}."
     everywhere = all(len(one.audits) == runs for one in good)
     where = _where(runs) if everywhere else "each run in which they were audited"
     return f"{len(good)} of {len(active)} requirements held in {where}."
@@ -143,14 +147,14 @@ def _waived(active: Sequence[Assessment]) -> str:
     if not waived:
         return ""
     verb = "is" if len(waived) == 1 else "are"
-    names = phrases.some([f"{one.id} ({one.unwaived_mark.text})" for one in waived])
-    return f"{names} {verb} waived, and not shown."
+    names = phrases.some([f"{one.requirement.name}: {one.unwaived_mark.text}" for one in waived])
+    return f"{phrases.times(len(waived), 'requirement')} {verb} waived, and not shown: {names}."
 
 
 def _unsigned(sections: Sequence[RequirementView]) -> str:
     """A waiver lets a requirement pass, whoever has written it."""
     waived = [view for view in sections if view.waiver and view.mark.word == WAIVED]
-    names = [view.id for view in waived if view.waiver and not view.waiver.signature.is_good]
+    names = [view.name for view in waived if view.waiver and not view.waiver.signature.is_good]
     return f"Nobody is known to have signed the waiver of {phrases.some(names)}." if names else ""
 
 

@@ -87,6 +87,12 @@ def is_proved(proof: ProofView) -> bool:
     return proof.mark.word == Result.PROVED and not proof.mark.suspect
 
 
+def is_proved_layer(view: RequirementView, layer: str) -> bool:
+    """Whether all claims of a layer are proved of what is there now, and there is one."""
+    own = [proof for proof in view.proofs if proof.layer == layer]
+    return bool(own) and all(map(is_proved, own))
+
+
 def is_refuted(view: RequirementView) -> bool:
     """Whether verification has a counterexample, whatever the audited runs show."""
     return any(plan.refuted for plan in view.planned) or bool(refutations(view))

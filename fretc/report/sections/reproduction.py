@@ -17,9 +17,8 @@ from compiler.files.shell_quoting import (
     words,
 )
 from compiler.project.folder import Project
-from fretc.audit.bases import bases
-from fretc.audit.evidence.basis import BINDINGS, of_all
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.basis import of_all, of_bindings
+from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
 from fretc.report.model import phrases
 from fretc.report.model.views import Command, Hash, RequirementView
@@ -46,7 +45,7 @@ def commands(
     """
 
     def audit() -> str:
-        logs = " ".join(_log(run.result.run) for run in runs) or "LOG..."
+        logs = " ".join(_log(run.facts.run) for run in runs) or "LOG..."
         level = "" if confidence == CONFIDENCE else f" --confidence {confidence}"
         return f"fretc audit {logs} {_options(project)}{level} -o {_quoted(evidence)}"
 
@@ -108,10 +107,8 @@ def _files(project: Project) -> list[Source]:
 
 
 def _check(runs: Sequence[Run]) -> str:
-    results = [
-        run.result for run in runs if "log" in run.result.hashes and _is_file(run.result.run)
-    ]
-    return check_of((result.hashes["log"], phrases.place(result.run)) for result in results)
+    facts = [run.facts for run in runs if run.facts.log and _is_file(run.facts.run)]
+    return check_of((each.log, phrases.place(each.run)) for each in facts)
 
 
 def _is_file(run: str) -> bool:
@@ -142,16 +139,18 @@ def _emission(files: Sequence[str], emits: str) -> str:
 
 def _of_bindings(project: Project) -> str:
     """SHA-256 as in the evidence: of the bindings that requirements in force read."""
-    basis_of = bases(project)
+    rules = {id(rule.requirement): rule for rule in project.rules}
     inforce = [each for each in project.requirements if each.status != "retired"]
-    return of_all({each.id: basis_of[id(each)][BINDINGS] for each in inforce})
+    return of_all(
+        {each.id: of_bindings(rules.get(id(each)), project.declarations) for each in inforce}
+    )
 
 
 def manifest(
     project: Project,
     sections: Sequence[RequirementView],
     runs: Sequence[Run],
-    evidence: Evidence | None,
+    evidence: EvidenceSource | None,
     proofs: Proofs | None,
     signers: Signers | None = None,
 ) -> tuple[Hash, ...]:
@@ -171,7 +170,5 @@ def manifest(
         lines.append(Hash("verification", phrases.place(proofs.file), proofs.sha256))
     if signers is not None:
         lines.append(Hash("signers", phrases.place(signers.file), signers.sha256))
-    lines.extend(
-        Hash("run", phrases.place(run.result.run), run.result.hashes.get("log", "")) for run in runs
-    )
+    lines.extend(Hash("run", phrases.place(run.facts.run), run.facts.log) for run in runs)
     return tuple(line for line in lines if is_sha256(line.sha256))

@@ -14,9 +14,11 @@ from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
+from fretc.audit.evidence.probabilities import shown
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import (
+    BoundsView,
     Formula,
     Parent,
     ProbabilityView,
@@ -24,12 +26,12 @@ from fretc.report.model.views import (
     Remark,
     RequirementView,
     SignalView,
+    verdict_mark,
 )
-from fretc.report.pictures.histograms import exercise, histograms
+from fretc.report.pictures.histograms import exercise
 from fretc.report.sections.plans import planned
-from fretc.report.sections.probability import probability_view
 from fretc.report.sections.proofs import SHARED, proof_views
-from fretc.report.sections.results import reasons, result_views
+from fretc.report.sections.results import reasons, result_rows
 from fretc.report.sections.reviews import review, waiver
 from fretc.report.sections.runs import Run, RunKey
 from fretc.report.traceability.artefacts import Product
@@ -44,7 +46,7 @@ from fretish.printer import sentence
 def section(
     assessment: Assessment,
     project: Project,
-    runs: dict[RunKey, Run],
+    runs: Mapping[RunKey, Run],
     anchors: Mapping[str, str],
     audited: bool,
     proofs: Sequence[Proof] = (),
@@ -94,8 +96,8 @@ def section(
         probability=_probability(assessment),
         proofs=own_proofs,
         exercise=exercise(assessment),
-        histograms=histograms(assessment),
-        results=result_views(assessment, runs, project.declarations),
+        histograms=(),
+        results=result_rows(assessment, runs),
         reasons=reasons(assessment, runs, audited=audited),
         limit=_limit(rule),
         coverage=assessment.coverage,
@@ -112,7 +114,20 @@ def _limit(rule: Formalized | None) -> str:
 def _probability(assessment: Assessment) -> ProbabilityView | None:
     if assessment.probability is None:
         return None
-    return probability_view(assessment.probability.estimation, assessment.probability.suspicions)
+    estimation, suspicions = assessment.probability.estimation, assessment.probability.suspicions
+    share = "not known" if estimation.estimate is None else f"{estimation.estimate:.4f}"
+    return ProbabilityView(
+        mark=verdict_mark(estimation.answer, suspect=bool(suspicions)),
+        suspicions=suspicions,
+        stated=estimation.text,
+        bound=float(estimation.bound),
+        reason=estimation.reason,
+        lines=estimation.lines[1:],
+        estimate=estimation.estimate,
+        bars=(BoundsView("by whole logs", estimation.bounds.low, estimation.bounds.high),),
+        text=f"Estimate {share}; bounds, by whole logs, {shown(estimation.bounds)}; "
+        f"the bound of the sentence is {estimation.bound}.",
+    )
 
 
 def remark(diagnostic: Diagnostic) -> Remark:

@@ -24,10 +24,12 @@ from fretc.report.model.suspicions import since_review
 from fretc.report.model.views import (
     Latency,
     Listing,
+    ResultRow,
     ResultView,
     ThresholdView,
     ViolationView,
 )
+from fretc.report.pictures.histograms import seconds_allowed
 from fretc.report.pictures.timeline import answered, timelines
 from fretc.report.sections.runs import Run, RunKey, run_key
 from fretish import syntax
@@ -45,13 +47,34 @@ _NAMED = 10
 """The most runs among the reasons why a requirement is not shown."""
 
 
-def result_views(
-    assessment: Assessment, runs: dict[RunKey, Run], declared: Declarations | None
-) -> tuple[ResultView, ...]:
-    """The view of each audit of a requirement, in the order of the runs."""
+def result_rows(assessment: Assessment, runs: Mapping[RunKey, Run]) -> tuple[ResultRow, ...]:
+    """A row for each audit of a requirement, in the order of the runs."""
     return tuple(
-        _view(audit, assessment, number, runs[run_key(audit.result)], declared)
+        _row(audit, assessment, number, runs[run_key(audit.result)])
         for number, audit in enumerate(assessment.reviewed_audits, 1)
+    )
+
+
+def _row(audit: SingleAudit, assessment: Assessment, number: int, run: Run) -> ResultRow:
+    result = audit.result
+    return ResultRow(
+        place=audit.place,
+        number=number,
+        requirement=assessment.anchor,
+        anchor=result_anchor(assessment, number),
+        run=run.anchor,
+        run_label=run.label,
+        run_file=phrases.place(result.run),
+        mark=audit.mark,
+        suspicions=audit.suspicions,
+        reason=result.reason,
+        triggers=result.triggers,
+        answers=result.answers,
+        at_once=result.at_once,
+        open=result.open,
+        violations_total=result.violations,
+        latency_median_s=result.latency_median_s,
+        latency_max_s=result.latency_max_s,
     )
 
 
@@ -60,23 +83,30 @@ def result_anchor(assessment: Assessment, number: int) -> str:
     return f"{assessment.anchor.replace('req-', 'result-', 1)}.{number}"
 
 
-def _view(
-    audit: SingleAudit, assessment: Assessment, number: int, run: Run, declared: Declarations | None
+def result_view(
+    result: Result, row: ResultRow, assessment: Assessment, declared: Declarations | None
 ) -> ResultView:
-    result = audit.result
+    """The view of a result.
+
+    Args:
+        result: in declared units.
+        row: of the same result.
+        assessment: of its requirement.
+        declared: the bindings.
+    """
     # A stale result was judged by other bindings: the clock and the ages of now are not its own.
-    is_stale = assessment.audits[number - 1].is_stale
+    is_stale = assessment.audits[row.number - 1].is_stale
     bindings, rule = (None, None) if is_stale else (declared, assessment.rule)
     tick, ages = _tick(result, bindings.clock if bindings else None), _ages(bindings)
     return ResultView(
-        anchor=result_anchor(assessment, number),
-        run=run.anchor,
-        run_label=run.label,
-        run_file=phrases.place(result.run),
-        mark=audit.mark,
-        suspicions=audit.suspicions,
-        reason=result.reason,
-        triggers=len(result.triggers),
+        anchor=row.anchor,
+        run=row.run,
+        run_label=row.run_label,
+        run_file=row.run_file,
+        mark=row.mark,
+        suspicions=row.suspicions,
+        reason=row.reason,
+        triggers=row.triggers,
         exercised=_exercised(result),
         latency=_latency(result, assessment.rule),
         thresholds=tuple(map(_threshold, result.thresholds)),
@@ -132,6 +162,7 @@ def _latency(result: Result, rule: Formalized | None) -> Latency | None:
     if not result.latencies:
         return None
     longest = max(result.latencies)
+    bounds = [bound for bound in [seconds_allowed(rule)] if bound is not None]
     at_once = sum(latency <= 0 for latency in result.latencies)
     answers = phrases.times(len(result.latencies), "trigger")
     unknown = len(result.uncertain - {moment.tick for moment in result.open})
@@ -142,13 +173,19 @@ def _latency(result: Result, rule: Formalized | None) -> Latency | None:
         at_once=at_once,
         answers=f"{answers}, {phrases.whole(at_once)} of them at the same tick"
         f"{_perhaps(unknown, len(result.latencies))}",
-        median=phrases.seconds(median(result.latencies)),
-        longest=f"{phrases.seconds(longest)}{after}",
+        median=phrases.duration(median(result.latencies), bounds),
+        longest=f"{phrases.duration(longest, bounds)}{after}",
         longest_s=longest,
-        is_bounded=rule is None or not syntax.is_eventual(rule.sentence.timing),
+        is_bounded=is_bounded(rule),
         bound=_bound(rule),
         waits=_waits(result),
+        median_s=round(median(result.latencies), 9),
     )
+
+
+def is_bounded(rule: Formalized | None) -> bool:
+    """Whether the sentence allows an answer only for some time, as far as is known."""
+    return rule is None or not syntax.is_eventual(rule.sentence.timing)
 
 
 def _bound(rule: Formalized | None) -> str:
@@ -173,11 +210,15 @@ def _waits(result: Result) -> tuple[str, ...]:
     ends = groupby(sorted(waiting, key=lambda wait: wait[::-1]), key=lambda wait: wait[1])
     waits = [(end, [start for start, _ in group]) for end, group in ends]
     waits.sort(key=lambda wait: (wait[1][0] - wait[0], wait[0]))
-    return tuple(
+    return tuple(_wait(starts, end) for end, starts in waits[:_WAITS])
+
+
+def _wait(starts: Sequence[float], end: float) -> str:
+    first = "the first " if len(starts) > 1 else ""
+    return (
         f"{phrases.seconds(starts[0])} to {phrases.seconds(end)}: "
         f"{phrases.times(len(starts), 'trigger')}, "
-        f"{'the first ' if len(starts) > 1 else ''}waited {phrases.seconds(end - starts[0])}"
-        for end, starts in waits[:_WAITS]
+        f"{first}waited {phrases.duration(round(end - starts[0], 9))}"
     )
 
 
@@ -264,22 +305,26 @@ def _unknown(result: Result) -> Listing:
 # Reasons ---------------------------------------------------------------------------------------
 
 
-def reasons(assessment: Assessment, runs: dict[RunKey, Run], *, audited: bool) -> tuple[str, ...]:
+def reasons(
+    assessment: Assessment, runs: Mapping[RunKey, Run], *, audited: bool
+) -> tuple[str, ...]:
     """Why a requirement is not shown, the worst first; empty where it is, or is retired."""
     if assessment.is_shown or assessment.unwaived == RETIRED:
         return ()
     lines = [(severity(UNFORMALIZED), text) for text in _unformalized(assessment)]
+    left = len(lines) - _NAMED
     if assessment.probability is not None:
         probability = assessment.probability
         lines.append((probability.mark.severity, _probability_reason(probability)))
     else:
         audits = [audit for audit in assessment.audits if not audit.mark.shows]
-        lines += [(audit.mark.severity, _run_reason(audit, runs)) for audit in audits]
+        left += len(audits)
+        worst = sorted(audits, key=lambda audit: audit.mark.severity)[:_NAMED]
+        lines += [(audit.mark.severity, _run_reason(audit, runs)) for audit in worst]
         if not assessment.audits and assessment.rule is not None:
             why = "the audit did not cover it" if audited else "no run has been audited"
             lines.append((severity(NOT_EXERCISED), why))
     texts = [text for _, text in sorted(lines, key=lambda line: line[0])]
-    left = len(texts) - _NAMED
     few = (*texts[:_NAMED], f"and {phrases.times(left, 'more run')}") if left > 0 else tuple(texts)
     return (*few, *since_review(assessment.standing))
 
@@ -294,7 +339,7 @@ def _probability_reason(probability: ProbabilityAudit) -> str:
     return f"over all runs: {estimation.answer}, {estimation.reason}{why}"
 
 
-def _run_reason(audit: SingleAudit, runs: dict[RunKey, Run]) -> str:
+def _run_reason(audit: SingleAudit, runs: Mapping[RunKey, Run]) -> str:
     result = audit.result
     label = runs[run_key(result)].label
     return f"{label}: {audit.verdict}, {result.reason}{_because(audit.suspicions)}"

@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
+from compiler.project.folder import Project
 from fretc.attestation.signatures import SignatureBook
+from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.verdicts import SUSPECT
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
-from fretc.report.model.views import Change, Listing, ReviewView, WaiverView, sign_mark
+from fretc.report.model.changes import (
+    Change,
+    ChangeGroup,
+    ChangeText,
+    follows,
+    new_violations,
+    only_change,
+)
+from fretc.report.model.views import ReviewView, WaiverView, sign_mark
 from fretc.report.sections.signatures import of_review, of_waiver
-from fretc.report.traceability.chain import Suspect
-from fretc.report.traceability.comparison import Difference, difference
-from fretc.report.traceability.lock import WithdrawnRequirement
+from fretc.report.traceability.changes import Change as TextChange
+from fretc.report.traceability.comparison import OTHER_TEXTS, Difference, difference
+from fretc.report.traceability.lock import Review, WithdrawnRequirement
 from fretish.diagnostics import signs
 
-_LISTED = 40
 _ACCEPTED = sign_mark("reviewed", signs.GOOD)
 _UNSIGNED = sign_mark("reviewed", signs.OPEN)
 _OPEN = sign_mark("not reviewed", signs.UNUSED)
@@ -28,12 +38,12 @@ def review(assessment: Assessment, book: SignatureBook) -> ReviewView:
     if accepted is None:
         return ReviewView(_OPEN, "", "", (), None)
     signature = of_review(book, accepted)
-    by = f"{accepted.reviewer}, {accepted.role}, {accepted.date}"
+    by = _by(accepted)
     if not assessment.standing.is_suspect:
         mark = _ACCEPTED if signature.is_good else _UNSIGNED
         return ReviewView(mark, by, accepted.comment, (), signature)
-    causes = tuple(map(phrases.thing, assessment.standing.causes))
-    return ReviewView(_SUSPECT, by, accepted.comment, causes, signature)
+    lines = tuple(change.text for change in assessment.standing.changes)
+    return ReviewView(_SUSPECT, by, accepted.comment, lines, signature)
 
 
 def waiver(assessment: Assessment, book: SignatureBook) -> WaiverView | None:
@@ -65,22 +75,77 @@ def summary(assessments: Sequence[Assessment], book: SignatureBook) -> str:
     return f"{len(standings)} of {count} reviewed{stands}.{who}"
 
 
-def changes(assessments: Sequence[Assessment]) -> tuple[Change, ...]:
+def changes(assessments: Sequence[Assessment], project: Project) -> tuple[Change, ...]:
     """The changes of each requirement since its review; one without changes is left out."""
-    pairs = [(each, difference(each.standing)) for each in assessments if each.standing.review]
+    reviewed = [each for each in assessments if each.standing.review]
+    pairs = [(each, difference(each.standing, project)) for each in reviewed]
     return tuple(_change(each, change) for each, change in pairs if change.state != "same")
+
+
+def change_groups(
+    assessments: Sequence[Assessment], changes: Sequence[Change]
+) -> tuple[ChangeGroup, ...]:
+    """Each change once, with all requirements that it touches.
+
+    One that may be why its requirements have the most new violations each comes first.
+    """
+    violations = {change.anchor: new_violations(change) for change in changes}
+    touched: dict[ChangeText, list[tuple[str, str]]] = {}
+    links: Counter[ChangeText] = Counter()
+    judged: set[ChangeText] = set()
+    for each in assessments:
+        for change in each.standing.changes:
+            text = _text(change)
+            touched.setdefault(text, []).append((each.id, each.anchor))
+            if change.node.kind in KINDS:
+                judged.add(text)
+            links[text] += sum(map(change.makes_suspect, each.standing.suspects))
+    groups = [ChangeGroup(text, tuple(of), links[text]) for text, of in touched.items()]
+
+    def worst_first(group: ChangeGroup) -> tuple[float, int]:
+        anchors = [anchor for _, anchor in group.requirements] if group.change in judged else []
+        new = sum(violations.get(anchor, 0) for anchor in anchors)
+        return -new / len(group.requirements), -group.links
+
+    return tuple(sorted(groups, key=worst_first))
+
+
+def change_sentences(changes: Sequence[Change], groups: Sequence[ChangeGroup]) -> Iterator[str]:
+    """What has changed since the review, what became of verdicts, and what contradicts it."""
+    for group in groups[:_SENTENCES]:
+        named = phrases.some([id for id, _ in group.requirements])
+        only = only_change(group, changes)
+        more = follows(only) if only else ()
+        yield f"Changed since the review: {'; '.join([f'{named}: {group.change.text}', *more])}."
+    left = len(groups) - _SENTENCES
+    if left > 0:
+        yield f"{phrases.times(left, 'more change')} since the review."
+    grouped = sum(new_violations(change) for change in changes)
+    if grouped:
+        runs = "is" if grouped == 1 else "are"
+        yield f"{phrases.times(grouped, 'violation')} {runs} new since the review."
+
+
+_SENTENCES = 3
 
 
 def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[Change, ...]:
     """A change for each requirement that is gone; a retired one is among `changes` already."""
     return tuple(
         Change(
-            one.review.requirement,
-            "",
-            "gone",
-            (one.text,),
-            Listing((), 0),
-            tuple((run, then, "none") for run, then in sorted(one.review.verdicts.items())),
+            requirement=one.review.requirement,
+            title=one.review.texts.title if one.review.texts else "",
+            anchor="",
+            state="gone",
+            by=_by(one.review),
+            texts=(),
+            lines=(one.text,),
+            contradictions=(),
+            consequences=(),
+            suspicion="",
+            verdicts=tuple(
+                (run, then, "none") for run, then in sorted(one.review.verdicts.items())
+            ),
         )
         for one in withdrawn
         if not one.retired
@@ -88,24 +153,36 @@ def withdrawals(withdrawn: Sequence[WithdrawnRequirement]) -> tuple[Change, ...]
 
 
 def _change(assessment: Assessment, difference: Difference) -> Change:
-    lines = tuple(f"{how}: {phrases.thing(node)}" for node, how in difference.changes)
-    links = tuple(_link(suspect) for suspect in difference.suspects[:_LISTED])
-    verdicts = tuple((run, then or "none", now or "none") for run, then, now in difference.verdicts)
-    listing = Listing(links, len(difference.suspects))
-    return Change(assessment.id, assessment.anchor, difference.state, lines, listing, verdicts)
+    texts = tuple(map(_text, difference.changes))
+    other = (OTHER_TEXTS,) if difference.has_other_texts else ()
+    return Change(
+        requirement=assessment.id,
+        title=assessment.requirement.title,
+        anchor=assessment.anchor,
+        state=difference.state,
+        by=_by(difference.review) if difference.review else "",
+        texts=texts,
+        lines=(*(each.text for each in texts), *other),
+        contradictions=difference.contradictions,
+        consequences=difference.consequences,
+        suspicion=difference.suspicion,
+        verdicts=tuple((run, b or "none", now or "none") for run, b, now in difference.verdicts),
+    )
 
 
-def _link(suspect: Suspect) -> str:
-    causes = phrases.joined([phrases.thing(cause) for cause in suspect.causes])
-    source, target = phrases.thing(suspect.link.source), phrases.thing(suspect.link.target)
-    return f"{source} → {target}, because of {causes}"
+def _text(change: TextChange) -> ChangeText:
+    return ChangeText(change.what, change.before, change.after, change.text, change.segments)
+
+
+def _by(review: Review) -> str:
+    return f"{review.reviewer}, {review.role}, {review.date}"
 
 
 def reservations(assessment: Assessment) -> Iterator[str]:
     """Sentences that qualify a review."""
     if assessment.standing.review is None:
         return
-    new = [how for node, how in difference(assessment.standing).changes if node.kind == "log"]
-    if "new" in new and not assessment.standing.is_suspect:
-        count = phrases.times(new.count("new"), "run")
+    new = assessment.standing.chain.verdicts.keys() - assessment.standing.review.verdicts.keys()
+    if new and not assessment.standing.is_suspect:
+        count = phrases.times(len(new), "run")
         yield f"{assessment.id} was audited against {count} after its review."

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from dataclasses import replace as changed
 
+from compiler.files.records import replace
 from compiler.project.folder import Project
-from fretc.audit.evidence.schema import Checked, Evidence, Finding, Result, Topic
+from fretc.audit.evidence.briefs import Brief, Briefs, RunFacts
+from fretc.audit.evidence.schema import Checked, Finding, Topic
 from fretc.report.model import phrases
-from fretc.report.model.views import Remark, RunView, TopicView, sign_mark
+from fretc.report.model.views import Remark, RunSummary, TopicView, sign_mark
 from fretc.report.traceability.acceptances import as_diagnostic
 from fretish.diagnostics import signs
 from fretish.diagnostics.diagnostic import Severity
@@ -21,10 +24,14 @@ _UNREAD = sign_mark("not readable", signs.UNKNOWN)
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One audited file; `result` is any of its results."""
+    """One audited file."""
 
     number: int
-    result: Result
+    facts: RunFacts
+    """Without its topics, which are many: `topic_views` has those of one run."""
+    has_topics: bool
+    first: int = 0
+    """The place of its first result in the evidence: that one has the course of the run."""
 
     @property
     def anchor(self) -> str:
@@ -40,62 +47,70 @@ class Run:
 RunKey = tuple[str, str]
 
 
-def run_key(result: Result) -> RunKey:
+def run_key(result: Brief | RunFacts) -> RunKey:
     """Name and hash of the file: results of one run have the same key."""
-    return result.run, result.hashes.get("log", "")
+    return result.run, result.log
 
 
-def runs(evidence: Evidence | None) -> dict[RunKey, Run]:
+def runs(briefs: Briefs | None) -> dict[RunKey, Run]:
     """The runs of the evidence, numbered from 1 in its order."""
     numbered: dict[RunKey, Run] = {}
-    for result in evidence.results if evidence else ():
-        numbered.setdefault(run_key(result), Run(len(numbered) + 1, result))
+    for facts in briefs.source.runs() if briefs else ():
+        bare = changed(facts, health=replace(facts.health, topics={}))
+        first = briefs.firsts.get(run_key(facts), 0) if briefs else 0
+        run = Run(len(numbered) + 1, bare, bool(facts.health.topics), first)
+        numbered.setdefault(run_key(facts), run)
     return numbered
 
 
-def run_views(runs: Iterable[Run], project: Project) -> tuple[RunView, ...]:
+def run_summaries(runs: Iterable[Run], project: Project) -> tuple[RunSummary, ...]:
     """The view of each run, runs with errors first."""
-    return tuple(_view(run, project) for run in sorted(runs, key=_severity))
+    return tuple(_summary(run, project) for run in sorted(runs, key=_severity))
 
 
 def _severity(run: Run) -> tuple[bool, bool, bool, bool]:
     """The key that sorts runs: errors, damage, other findings, gaps."""
-    health = run.result.health
+    health = run.facts.health
     return not _errors(run), health.intact, not health.findings, not health.gaps
 
 
 def _errors(run: Run) -> list[str]:
     """The codes of its errors, each once."""
-    codes = (f.code for f in run.result.health.findings if f.severity == Severity.ERROR.value)
+    codes = (f.code for f in run.facts.health.findings if f.severity == Severity.ERROR.value)
     return list(dict.fromkeys(codes))
 
 
-def _view(run: Run, project: Project) -> RunView:
-    result = run.result
-    health = result.health
-    return RunView(
+def _summary(run: Run, project: Project) -> RunSummary:
+    facts = run.facts
+    health = facts.health
+    return RunSummary(
         anchor=run.anchor,
         label=run.label,
-        file=phrases.place(result.run),
-        sha256=result.hashes.get("log", ""),
+        file=phrases.place(facts.run),
+        sha256=facts.log,
         size=phrases.size(health.size),
-        recorded=phrases.instant(result.start_ns),
-        duration=_duration(result),
-        ticks=phrases.times(result.ticks, "tick"),
-        clock=result.clock,
+        recorded=phrases.instant(facts.start_ns),
+        duration=_duration(facts),
+        ticks=phrases.times(facts.ticks, "tick"),
+        clock=facts.clock,
         intact=health.intact,
-        health=_INTACT if health.intact else _DAMAGED if health.topics else _UNREAD,
-        checked=_checked(health.checked, hashed="log_summary" not in result.hashes),
-        gaps=_gaps(result),
+        health=_INTACT if health.intact else _DAMAGED if run.has_topics else _UNREAD,
+        checked=_checked(health.checked, hashed=not facts.log_summary),
+        gaps=_gaps(facts),
         findings=tuple(_finding(each, project) for each in sorted(health.findings, key=_badness)),
-        topics=tuple(_topic(name, topic, project) for name, topic in sorted(health.topics.items())),
     )
 
 
-def _duration(result: Result) -> str:
-    if result.start_ns is None or result.end_ns is None:
+def topic_views(facts: RunFacts, project: Project) -> tuple[TopicView, ...]:
+    """The topics of one run."""
+    topics = sorted(facts.health.topics.items())
+    return tuple(_topic(name, topic, project) for name, topic in topics)
+
+
+def _duration(facts: RunFacts) -> str:
+    if facts.start_ns is None or facts.end_ns is None:
         return "not known"
-    return phrases.seconds((result.end_ns - result.start_ns) / 1e9)
+    return phrases.seconds((facts.end_ns - facts.start_ns) / 1e9)
 
 
 def _checked(checked: Checked | None, *, hashed: bool) -> str:
@@ -121,12 +136,12 @@ def _checked(checked: Checked | None, *, hashed: bool) -> str:
     return "; ".join(parts if hashed else [*parts, "not hashed"])
 
 
-def _gaps(result: Result) -> tuple[str, ...]:
-    start = result.start_ns or 0
+def _gaps(facts: RunFacts) -> tuple[str, ...]:
+    start = facts.start_ns or 0
     return tuple(
         f"{phrases.seconds((gap.start_ns - start) / 1e9)} to "
         f"{phrases.seconds((gap.end_ns - start) / 1e9)}"
-        for gap in result.health.gaps
+        for gap in facts.health.gaps
     )
 
 
@@ -167,7 +182,7 @@ def _topic(name: str, topic: Topic, project: Project) -> TopicView:
 def _longest_gap(topic: Topic) -> str:
     if topic.longest_gap_ns is None or topic.count < 2:
         return _NONE
-    return phrases.seconds(topic.longest_gap_ns / 1e9)
+    return phrases.duration(topic.longest_gap_ns / 1e9)
 
 
 def _rate(topic: Topic) -> str:
@@ -186,13 +201,13 @@ def _named(run: Run) -> str:
 
 def _is_open(run: Run, project: Project) -> bool:
     """Whether it has a finding that the project does not accept."""
-    return not all(_accepted(finding, project) for finding in run.result.health.findings)
+    return not all(_accepted(finding, project) for finding in run.facts.health.findings)
 
 
 def trust(runs: Sequence[Run], project: Project) -> str:
     """The condition of the runs, in one sentence; empty where there is no run."""
-    damaged = [_named(run) for run in runs if not run.result.health.intact]
-    wrong = [_named(run) for run in runs if run.result.health.intact and _errors(run)]
+    damaged = [_named(run) for run in runs if not run.facts.health.intact]
+    wrong = [_named(run) for run in runs if run.facts.health.intact and _errors(run)]
     with_findings = [run.label for run in runs if _is_open(run, project)]
     if not runs:
         return ""

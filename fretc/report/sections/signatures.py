@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from fretc.attestation import statement as attestation
 from fretc.attestation.signatures import SignatureBook, Signing, State
 from fretc.attestation.statement import Subject
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.report.model import phrases
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import Signatures, SignatureView, Signed, sign_mark
@@ -47,7 +47,7 @@ def _view(signing: Signing) -> SignatureView:
 def signatures(
     book: SignatureBook,
     assessments: Sequence[Assessment],
-    evidence: Evidence | None,
+    evidence: EvidenceSource | None,
     proofs: Proofs | None,
 ) -> Signatures:
     """The table of signatures; those that do not verify come first."""
@@ -69,7 +69,7 @@ def _broken(book: SignatureBook) -> Iterator[Signed]:
 
 
 def _files(
-    book: SignatureBook, evidence: Evidence | None, proofs: Proofs | None
+    book: SignatureBook, evidence: EvidenceSource | None, proofs: Proofs | None
 ) -> Iterator[Signed]:
     if evidence is not None:
         subject = Subject(attestation.EVIDENCE, phrases.place(evidence.file), evidence.sha256)

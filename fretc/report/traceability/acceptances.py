@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from compiler.files.records import UNSET
 from compiler.project.acceptances import idle
 from compiler.project.folder import Project
-from fretc.audit.evidence.schema import Evidence, Finding
+from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.schema import Finding
 from fretc.report.traceability.checks import checks, unreviewed
 from fretc.report.traceability.lock import Lock, Standing
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -17,7 +18,10 @@ _CODES = {code.number: code for code in Code}
 
 
 def warnings(
-    project: Project, standings: Sequence[Standing], lock: Lock | None, evidence: Evidence | None
+    project: Project,
+    standings: Sequence[Standing],
+    lock: Lock | None,
+    evidence: EvidenceSource | None,
 ) -> tuple[Diagnostic, ...]:
     """What there is to say of a project beside its own diagnostics.
 
@@ -53,11 +57,11 @@ def as_diagnostic(finding: Finding) -> Diagnostic:
     )
 
 
-def _of_logs(evidence: Evidence) -> Iterator[Diagnostic]:
+def _of_logs(evidence: EvidenceSource) -> Iterator[Diagnostic]:
     """The findings of all runs, each once."""
-    findings = (each for result in evidence.results for each in result.health.findings)
+    findings = (each for run in evidence.runs() for each in run.health.findings)
     yield from dict.fromkeys(as_diagnostic(each) for each in findings)
 
 
-def _recorded(evidence: Evidence) -> set[str]:
-    return {topic for result in evidence.results for topic in result.health.topics}
+def _recorded(evidence: EvidenceSource) -> set[str]:
+    return {topic for run in evidence.runs() for topic in run.health.topics}

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from compiler.files.edition import __version__
 from compiler.formalization.formalized import Formalized
@@ -19,13 +19,15 @@ from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.acceptances import TOPIC, Acceptance
 from compiler.project.folder import Project
-from fretc.audit.bases import bases
+from compiler.project.hazards import Hazard
+from fretc.audit.bases import audited_topics, bases
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
-from fretc.audit.evidence.reader import by_requirement
-from fretc.audit.evidence.schema import Evidence, Result
+from fretc.audit.evidence.briefs import Brief, Briefs, Recorded
+from fretc.report.traceability import texts
 from fretc.report.traceability.artefacts import Product, shared_products
 from fretc.report.traceability.artefacts import products as products_of
+from fretc.report.traceability.texts import Texts
 from fretish.bindings.canonical import described, digest
 from fretish.documents import Requirement
 
@@ -34,14 +36,15 @@ TEXT, WORDS, FORMULAS, ARTEFACT = "text", "words", "formulas", "artefact"
 ACCEPTANCE = "acceptance"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
 PROOF, SHARED = "proof", "shared"
-_ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
+DERIVED = (FORMULAS, ARTEFACT, VERDICT, PROOF)
+"""Kinds of nodes that are made of those upstream; of any other the fingerprint is its own."""
+ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
 """Kinds of nodes that may come after a review without a change of what was reviewed."""
 _READINGS = ("ltl", "json")
 """Targets that only print formulas, which have fingerprints of their own."""
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Node:
+class Node(NamedTuple):
     """One thing of the chain: `hazard` HAZ-001, `artefact` r1_monitor.py, `log` traces/a.mcap."""
 
     kind: str
@@ -52,8 +55,7 @@ class Node:
         return f"{self.kind}:{self.name}"
 
 
-@dataclass(frozen=True, slots=True, order=True)
-class Link:
+class Link(NamedTuple):
     """The target depends on the source."""
 
     source: Node
@@ -62,36 +64,90 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """All nodes and links of one requirement."""
+    """All nodes and links of one requirement.
+
+    Those of its runs are many and all alike: they are made when they are asked for.
+    """
 
     requirement: str
-    prints: Mapping[Node, str]
-    """SHA-256 of each node but the review; white space, comments and order do not count."""
-    links: tuple[Link, ...]
-    verdicts: Mapping[str, str]
-    """Run → the word of its verdict."""
-    outdated: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)
-    """Each verdict and proof that is out of date → the nodes that differ."""
-    unhashed: tuple[str, ...] = ()
-    """Runs without a SHA-256 of their log."""
+    definition: Mapping[Node, str]
+    """SHA-256 of each node but the review, and those of the runs."""
+    steps: tuple[Link, ...]
+    """All links but those of the runs, sorted."""
+    results: Sequence[Brief] = ()
+    """Of each run."""
+    sources: tuple[Node, ...] = ()
+    """What each verdict depends on, beside its log."""
+    differences: Mapping[Recorded, tuple[Node, ...]] = field(default_factory=dict)
+    """What a verdict may rest on that is out of date → the nodes that differ."""
+    outdated_proofs: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)
+    """Each proof that is out of date → the nodes that differ."""
+    texts: Texts | None = None
+    """What the fingerprints are taken of, as it is written."""
+
+    @property
+    def prints(self) -> Mapping[Node, str]:
+        """SHA-256 of each node but the review; white space, comments and order do not count."""
+        prints = dict(self.definition)
+        for result in self.results:
+            prints[Node(LOG, result.run)] = _print_of_log(result)
+            prints[_verdict(result)] = result.judgement
+        return prints
+
+    @property
+    def links(self) -> tuple[Link, ...]:
+        """All of them, sorted."""
+        review = Node(REVIEW, self.requirement)
+        links = dict.fromkeys(self.steps)
+        for result in self.results:
+            verdict = _verdict(result)
+            links |= dict.fromkeys(Link(source, verdict) for source in self.sources)
+            links[Link(Node(LOG, result.run), verdict)] = None
+            links[Link(verdict, review)] = None
+        return tuple(sorted(links))
+
+    @property
+    def verdicts(self) -> Mapping[str, str]:
+        """Run → the word of its verdict."""
+        return {result.run: result.verdict for result in self.results}
+
+    @property
+    def outdated(self) -> Mapping[Node, tuple[Node, ...]]:
+        """Each verdict and proof that is out of date → the nodes that differ."""
+        if not self.differences:
+            return self.outdated_proofs
+        pairs = ((_verdict(each), self.differences.get(each.rests_on)) for each in self.results)
+        return {node: nodes for node, nodes in pairs if nodes} | {**self.outdated_proofs}
+
+    @property
+    def unhashed(self) -> tuple[str, ...]:
+        """Runs without a SHA-256 of their log."""
+        return tuple(result.run for result in self.results if not _print_of_log(result))
+
+
+def _verdict(result: Brief) -> Node:
+    return Node(VERDICT, f"{result.requirement} {result.run}")
 
 
 def chains(
     project: Project,
-    evidence: Evidence | None,
+    briefs: Briefs | None,
     artefacts: Mapping[int, Sequence[Product]] | None = None,
     proofs: Sequence[Proof] = (),
+    known: Mapping[int, Basis] | None = None,
 ) -> tuple[Chain, ...]:
     """The chain of each requirement, in the order of the project.
 
     Args:
         project: with or without errors; a requirement without a rule has a chain that ends early.
-        evidence: None where no run has been audited.
+        briefs: of the evidence; None where no run has been audited.
         artefacts: the products of each requirement, by its `id()`; None: `products` makes them.
         proofs: the results of verification.
+        known: what a verdict on each requirement rests on now; None: `bases` makes it.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
-    results, common = by_requirement(evidence), _common(project, evidence, proofs)
+    results = briefs.by_requirement if briefs else {}
+    common = _common(project, briefs, proofs, known)
     return tuple(
         _ChainBuilder(common, requirement).build(
             requirement,
@@ -99,7 +155,7 @@ def chains(
             products_of(rules.get(id(requirement)))
             if artefacts is None
             else artefacts.get(id(requirement), ()),
-            results.get(requirement.id, ()),
+            [each for _, each in results.get(requirement.id, ())],
             [proof for proof in proofs if proof.requirement == requirement.id],
         )
         for requirement in project.requirements
@@ -119,17 +175,29 @@ class _Common:
     """Those in the header of each requirement, by its `id()`; None → those in the settings."""
     shared: Mapping[str, str]
     """Name of each shared product → its SHA-256; empty where there is no proof."""
+    topics: frozenset[str]
+    """Those that an audit of the project reads."""
+    written: Mapping[str, Any]
+    """The tables of the bindings."""
 
 
-def _common(project: Project, evidence: Evidence | None, proofs: Sequence[Proof]) -> _Common:
+def _common(
+    project: Project,
+    briefs: Briefs | None,
+    proofs: Sequence[Proof],
+    known: Mapping[int, Basis] | None,
+) -> _Common:
     shared = shared_products(project.declarations) if proofs else ()
+    topics = audited_topics(project)
     return _Common(
         project,
         {requirement.id: requirement for requirement in project.requirements},
-        bases(project),
-        evidence.fretc if evidence else "",
+        bases(project, topics) if known is None else known,
+        briefs.source.fretc if briefs else "",
         _by_requirement(project.acceptances),
         {product.file: product.sha256 for product in shared},
+        topics,
+        texts.written_tables(project.declarations),
     )
 
 
@@ -150,14 +218,18 @@ class _ChainBuilder:
         self._basis = common.bases[id(requirement)]
         self._prints: dict[Node, str] = {}
         self._links: dict[Link, None] = {}
-        self._outdated: dict[Node, tuple[Node, ...]] = {}
+        self._outdated_proofs: dict[Node, tuple[Node, ...]] = {}
+        self._accept: dict[str, str] = {}
+        self._hazards: dict[str, texts.HazardTexts] = {}
+        self._elsewhere: dict[str, texts.Elsewhere] = {}
+        self._above: dict[str, texts.Above] = {}
 
     def build(
         self,
         requirement: Requirement,
         rule: Formalized | None,
         artefacts: Iterable[Product],
-        results: Sequence[Result],
+        results: Sequence[Brief],
         proofs: Sequence[Proof],
     ) -> Chain:
         self._add_parents(requirement, {requirement.id})
@@ -168,27 +240,60 @@ class _ChainBuilder:
         self._link(Node(TEXT, requirement.id), sentence)
         nodes = self._add_artefacts(rule, sentence, artefacts) if rule is not None else {}
         sources = self._add_sources(nodes.get("monitor"), audited=bool(results))
-        for result in results:
-            self._add_result(result, sources)
+        of_verdicts = self._sources_of_verdicts(sources) if results else ()
         if rule is not None:
             self._add_proofs(rule, proofs)
         review = Node(REVIEW, requirement.id)
-        sources_of_links = {link.source for link in self._links}
-        for node in [node for node in self._prints if node not in sources_of_links]:
+        followed = {*of_verdicts, *(link.source for link in self._links)}
+        for node in [node for node in self._prints if node not in followed]:
             self._link(node, review)
         return Chain(
             requirement.id,
             self._prints,
             tuple(sorted(self._links)),
-            {result.run: result.verdict for result in results},
-            self._outdated,
-            tuple(result.run for result in results if not _print_of_log(result)),
+            results,
+            of_verdicts,
+            self._differences(results, sources),
+            self._outdated_proofs,
+            self._texts(requirement, rule, proofs, audited=bool(results)),
+        )
+
+    def _texts(
+        self,
+        requirement: Requirement,
+        rule: Formalized | None,
+        proofs: Sequence[Proof],
+        *,
+        audited: bool,
+    ) -> Texts:
+        """What the fingerprints are taken of."""
+        declarations, written = self._project.declarations, self._common.written
+        return Texts(
+            sentence=requirement.wording.text,
+            canonical=texts.canonical_text(rule),
+            title=requirement.title,
+            text=requirement.text,
+            rationale=requirement.rationale,
+            status=requirement.status,
+            parents=requirement.parents,
+            verify=requirement.verify,
+            params=dict(requirement.params),
+            accept=self._accept,
+            hazards=self._hazards,
+            elsewhere=self._elsewhere,
+            above=self._above,
+            bindings=texts.bindings(rule, declarations, written) if declarations else None,
+            topics=tuple(sorted(self._common.topics)) if audited and declarations else None,
+            proofs={_claim(each): (each.result, *each.assumptions) for each in proofs}
+            if rule
+            else {},
+            loop=texts.loop(written) if proofs and declarations else {},
+            fretc=__version__ if rule else "",
         )
 
     def _add_status_and_plans(self, requirement: Requirement) -> None:
         """Add status and planned methods: a review depends on them, and no verdict does."""
-        retired = requirement.status == "retired"
-        self._add(in_force(self._id), digest("retired") if retired else IN_FORCE)
+        self._add(in_force(self._id), print_of_status(requirement.status))
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
 
@@ -198,24 +303,27 @@ class _ChainBuilder:
         known = self._common.acceptances
         for each in (*known.get(id(requirement), ()), *known.get(None, ())):
             if each.about != TOPIC or each.subject in ("", *topics):
-                self._add(Node(ACCEPTANCE, each.name), digest(_normal(each.reason)))
+                self._accept[each.name] = each.reason
+                self._add(Node(ACCEPTANCE, each.name), print_of_words(each.reason))
 
     def _add_parents(self, requirement: Requirement, visited: set[str]) -> None:
         """Add the hazards and requirements that it traces to, all the way up."""
         text = Node(TEXT, requirement.id)
-        self._add(text, digest(_wording(requirement)))
+        self._add(text, print_of_header(texts.above(requirement)))
         for parent in requirement.parents:
             hazard, above = self._project.hazards.get(parent), self._common.texts.get(parent)
             if hazard is not None:
-                self._add(Node(HAZARD, parent), digest(_normal(asdict(hazard))))
+                self._hazards[parent] = texts.hazard_texts(hazard)
+                self._add(Node(HAZARD, parent), print_of_hazard(hazard))
                 self._link(Node(HAZARD, parent), text)
             elif parent in self._project.parents:
                 outside = self._project.parents[parent]
-                content = _normal([outside.title, outside.text])
-                self._add(Node(PARENT, parent), digest(content))
+                self._elsewhere[parent] = texts.elsewhere(outside)
+                self._add(Node(PARENT, parent), print_of_words([outside.title, outside.text]))
                 self._link(Node(PARENT, parent), text)
             elif above is not None and parent not in visited:
                 visited.add(parent)
+                self._above[parent] = texts.above(above)
                 self._add_parents(above, visited)
                 self._link(Node(TEXT, parent), text)
 
@@ -263,26 +371,35 @@ class _ChainBuilder:
             self._add(nodes[kind], self._basis[kind])
         return nodes
 
-    def _add_result(self, result: Result, sources: Mapping[str, Node]) -> None:
-        """Add the verdict of a run; a monitor stands between the sentence and the verdict."""
-        verdict, log = Node(VERDICT, f"{result.requirement} {result.run}"), Node(LOG, result.run)
-        self._add(log, _print_of_log(result))
-        self._add(verdict, digest(_judgement(result)))
+    def _sources_of_verdicts(self, sources: Mapping[str, Node]) -> tuple[Node, ...]:
+        """What each verdict depends on; a monitor stands between the sentence and the verdict."""
         has_monitor = sources[basis.MONITOR] in self._prints
-        for kind, source in sources.items():
-            if source in self._prints and not (has_monitor and kind == basis.SENTENCE):
-                self._link(source, verdict)
-        self._link(log, verdict)
-        old = outdated(result, self._common.audited_by, self._basis)
-        if old:
-            self._outdated[verdict] = tuple(sources[kind] for kind in old)
+        return tuple(
+            source
+            for kind, source in sources.items()
+            if source in self._prints and not (has_monitor and kind == basis.SENTENCE)
+        )
+
+    def _differences(
+        self, results: Sequence[Brief], sources: Mapping[str, Node]
+    ) -> Mapping[Recorded, tuple[Node, ...]]:
+        """Each basis of results that is out of date → the nodes that differ."""
+        kinds_of = {
+            recorded: outdated(recorded, self._common.audited_by, self._basis)
+            for recorded in {result.rests_on for result in results}
+        }
+        return {
+            recorded: tuple(sources[kind] for kind in kinds)
+            for recorded, kinds in kinds_of.items()
+            if kinds
+        }
 
     def _add_proofs(self, rule: Formalized, proofs: Sequence[Proof]) -> None:
         """Add each proof, with the texts and assumptions that it is about."""
         now = self._common.shared
         for proof in proofs:
-            node = Node(PROOF, f"{rule.id} {proof.layer}: {proof.claim}")
-            self._add(node, digest([proof.result, sorted(proof.assumptions)]))
+            node = Node(PROOF, f"{rule.id} {_claim(proof)}")
+            self._add(node, print_of_proof(proof.result, proof.assumptions))
             self._link(Node(FORMULAS, rule.id), node)
             for name, fingerprint in proof.artefacts.items():
                 source = Node(SHARED, name) if name in now else Node(ARTEFACT, name)
@@ -292,7 +409,8 @@ class _ChainBuilder:
                     continue
                 self._link(source, node)
                 if self._prints[source] != fingerprint:
-                    self._outdated[node] = (*self._outdated.get(node, ()), source)
+                    before = self._outdated_proofs.get(node, ())
+                    self._outdated_proofs[node] = (*before, source)
 
     def _add(self, node: Node, fingerprint: str) -> None:
         self._prints[node] = fingerprint
@@ -308,20 +426,25 @@ IN_FORCE = digest("in force")
 """The fingerprint of the status of a requirement that is claimed, as a draft or approved."""
 
 
+def print_of_status(status: str) -> str:
+    """Whether it is claimed: a draft and an approved one are."""
+    return digest("retired") if status == "retired" else IN_FORCE
+
+
 def in_force(requirement: str) -> Node:
     """Whether a requirement is claimed, or retired."""
     return Node(STATUS, requirement)
 
 
-def outdated(result: Result, audited_by: str, now: Basis) -> tuple[str, ...]:
+def outdated(recorded: Recorded, audited_by: str, now: Basis) -> tuple[str, ...]:
     """The kinds of things that a result rests on and that have changed since its audit."""
-    recorded = {**result.hashes, basis.FRETC: audited_by}
-    return basis.outdated(recorded, {**now, basis.FRETC: __version__})
+    then = {**dict(zip(basis.KINDS, recorded, strict=True)), basis.FRETC: audited_by}
+    return basis.outdated(then, {**now, basis.FRETC: __version__})
 
 
-def _print_of_log(result: Result) -> str:
+def _print_of_log(result: Brief) -> str:
     """SHA-256 of the log, or of its summary where the audit read its index only; or ""."""
-    return result.hashes.get("log") or result.hashes.get("log_summary") or ""
+    return result.log or result.fingerprints.log_summary or ""
 
 
 def _topics(rule: Formalized | None, project: Project) -> set[str]:
@@ -332,20 +455,29 @@ def _topics(rule: Formalized | None, project: Project) -> set[str]:
     return {signal.path.topic for signal in read.signals.values()}
 
 
-def _wording(requirement: Requirement) -> dict[str, Any]:
+def print_of_header(header: texts.Above) -> str:
     """The texts and parents of a requirement, without status and planned methods."""
-    texts = (requirement.title, requirement.text, requirement.rationale)
-    return {"texts": _normal(list(texts)), "parents": sorted(requirement.parents)}
+    words = [header.title, header.text, header.rationale]
+    return digest({"texts": _normal(words), "parents": sorted(header.parents)})
 
 
-def _judgement(result: Result) -> dict[str, Any]:
-    return {
-        "verdict": result.verdict,
-        "finite": result.finite,
-        "triggers": len(result.triggers),
-        "violations": [[v.first.tick, v.last.tick] for v in result.violations],
-        "open": [moment.tick for moment in result.open],
-    }
+def print_of_hazard(hazard: Hazard) -> str:
+    """Its texts and its id."""
+    return print_of_words(asdict(hazard))
+
+
+def print_of_words(value: Any) -> str:
+    """Texts, whatever their white space."""
+    return digest(_normal(value))
+
+
+def print_of_proof(result: str, assumptions: Iterable[str]) -> str:
+    """What was proved of a claim, and under which assumptions."""
+    return digest([result, sorted(assumptions)])
+
+
+def _claim(proof: Proof) -> str:
+    return f"{proof.layer}: {proof.claim}"
 
 
 def _formulas(rule: Formalized) -> str:
@@ -395,40 +527,48 @@ def suspects(chain: Chain, locked: Mapping[Node, str]) -> tuple[Suspect, ...]:
         chain: as it is now.
         locked: the fingerprints in the review.
     """
+    prints, links, outdated_nodes = chain.prints, chain.links, chain.outdated
     changed_nodes = {
-        node for node in changed(chain.prints, locked) if node in locked or node.kind not in _ADDED
+        node for node in changed(prints, locked) if node in locked or node.kind not in ADDED
     }
-    upstream = _upstream(chain)
+    late = outdated_nodes.keys() & locked.keys()
+    if not changed_nodes and not late:
+        return ()
+    upstream = upstream_of(prints, links)
     causes_of: dict[Link, set[Node]] = {}
-    for link in chain.links:
+    for link in links:
         above = {link.source, *upstream[link.source]}
         causes_of[link] = changed_nodes & above
-        for node in chain.outdated.keys() & above & locked.keys():
-            causes_of[link] |= {*chain.outdated[node]}
-    for node in chain.outdated.keys() & locked.keys():
-        for source in chain.outdated[node]:
+        for node in late & above:
+            causes_of[link] |= {*outdated_nodes[node]}
+    for node in late:
+        for source in outdated_nodes[node]:
             causes_of.setdefault(Link(source, node), set()).add(source)
-    links = [
+    suspect = [
         Suspect(link, tuple(sorted(_first(causes_of[link], upstream))))
         for link in sorted(causes_of, key=lambda link: (len(upstream.get(link.source, ())), link))
         if causes_of[link]
     ]
-    gone = tuple(sorted(node for node in locked if node not in chain.prints))
+    gone = tuple(sorted(node for node in locked if node not in prints))
     review = Node(REVIEW, chain.requirement)
-    links.extend(Suspect(Link(node, review), (node,)) for node in gone)
-    return tuple(links)
+    suspect.extend(Suspect(Link(node, review), (node,)) for node in gone)
+    return tuple(suspect)
 
 
 def _first(causes: set[Node], upstream: Mapping[Node, frozenset[Node]]) -> Iterator[Node]:
     """The causes that do not follow from another cause."""
-    return (cause for cause in causes if not upstream.get(cause, frozenset()) & causes)
+    return (
+        cause
+        for cause in causes
+        if cause.kind not in DERIVED or not upstream.get(cause, frozenset()) & causes
+    )
 
 
-def _upstream(chain: Chain) -> dict[Node, frozenset[Node]]:
+def upstream_of(nodes: Iterable[Node], links: Sequence[Link]) -> dict[Node, frozenset[Node]]:
     """Each node → all nodes that lead to it."""
-    above: dict[Node, set[Node]] = {node: set() for link in chain.links for node in _ends(link)}
-    above |= {node: set() for node in chain.prints if node not in above}
-    for link in chain.links:
+    above: dict[Node, set[Node]] = {node: set() for link in links for node in link}
+    above |= {node: set() for node in nodes if node not in above}
+    for link in links:
         above[link.target].add(link.source)
     upstream: dict[Node, frozenset[Node]] = {}
 
@@ -441,7 +581,3 @@ def _upstream(chain: Chain) -> dict[Node, frozenset[Node]]:
     for node in above:
         reach(node)
     return upstream
-
-
-def _ends(link: Link) -> tuple[Node, Node]:
-    return link.source, link.target

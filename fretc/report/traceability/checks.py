@@ -16,7 +16,7 @@ from compiler.logic.claims import METHODS
 from compiler.project.ancestry import without_hazard
 from compiler.project.folder import Project
 from compiler.targets.target import Options
-from fretc.report.traceability.chain import Node
+from fretc.report.traceability.changes import in_words
 from fretc.report.traceability.lock import Standing
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
@@ -180,11 +180,21 @@ def _changes(project: Project, standings: Sequence[Standing]) -> Iterator[Diagno
         yield Diagnostic(
             Code.CHANGED_SINCE_REVIEW,
             f"{id} was reviewed on {standing.review.date}, and since then "
-            f"{', '.join(map(_named, standing.causes))} changed",
+            f"this has changed: {in_words(standing.changes)}",
             places.get(id, Source("", "").span()),
             help=f"look at `fretc diff`, then accept it: `fretc lock {quote(id)} ...`",
             severity=Severity.WARNING,
         )
+        if standing.has_other_texts:
+            yield Diagnostic(
+                Code.OTHER_TEXTS,
+                f"the texts that the review of {id} keeps are not those of its fingerprints: what "
+                "was accepted is not known",
+                places.get(id, Source("", "").span()),
+                help="take the lock from version control again, or review anew: "
+                f"`fretc lock {quote(id)} ...`",
+                severity=Severity.WARNING,
+            )
 
 
 def unreviewed(project: Project, standings: Sequence[Standing]) -> Iterator[Diagnostic]:
@@ -198,7 +208,3 @@ def unreviewed(project: Project, standings: Sequence[Standing]) -> Iterator[Diag
                 help=f"review it, then accept it: `fretc lock {requirement.id} ...`",
                 severity=Severity.WARNING,
             )
-
-
-def _named(node: Node) -> str:
-    return "the clock" if node.kind == "clock" else f"{node.kind} {node.name}"

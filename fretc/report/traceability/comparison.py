@@ -1,16 +1,25 @@
-"""The difference between a project and its lock: nodes, links, verdicts."""
+"""The difference between a project and its lock: changes, verdicts, contradictions, links."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from fretc.report.traceability.chain import Node, Suspect
-from fretc.report.traceability.lock import Lock, Standing
+from compiler.project.folder import Project
+from compiler.project.stated_numbers import drifted
+from fretc.audit.evidence.verdicts import VERDICTS, severity
+from fretc.report.traceability.chain import VERDICT, Suspect
+from fretc.report.traceability.changes import Change
+from fretc.report.traceability.lock import Lock, Review, Standing
+from fretish.diagnostics.diagnostic import Code
+from monitors import kernel
 
 _MOST = 6
-"""The most suspect links of one requirement that `text` prints."""
+"""The most runs of one requirement with other verdicts that `text` names."""
+_NAMED = 3
+"""The most changes that are named as the cause of suspect links."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,46 +29,164 @@ class Difference:
     requirement: str
     state: str
     """`same`, `changed`, `new` (only now) or `gone` (only in the baseline)."""
-    changes: tuple[tuple[Node, str], ...]
-    """Each thing with `changed`, `new` or `gone`."""
-    suspects: tuple[Suspect, ...]
+    review: Review | None
+    changes: tuple[Change, ...]
+    contradictions: tuple[str, ...]
+    """What beside the changes has stayed as it was, and says something else."""
     verdicts: tuple[tuple[str, str, str], ...]
-    """Run, verdict in the baseline, verdict now; an empty word: none."""
+    """Run, verdict in the baseline, verdict now; an empty word: none. The worst now comes first."""
+    outdated: int
+    """Verdicts on what it was before a change."""
+    suspects: tuple[Suspect, ...]
+    has_other_texts: bool = False
+    """The texts of the review are not those of its fingerprints."""
+
+    @property
+    def consequences(self) -> tuple[str, ...]:
+        """`14 verdicts became violated`, `2 became satisfied`, and so on."""
+        both = [(then, now) for _, then, now in self.verdicts if then and now]
+        new = [now for _, then, now in self.verdicts if not then]
+        gone = [then for _, then, now in self.verdicts if not now]
+        became = _counts([now for _, now in both])
+        lines = [f"{_verdicts(count)} became {word}" for word, count in became]
+        lines += [f"{_runs(len(new))} new: {_in_words(new)}"] if new and self.state != "new" else []
+        lines += [f"{_runs(len(gone))} gone: {_in_words(gone)}"] if gone else []
+        if self.outdated:
+            verb = "is" if self.outdated == 1 else "are"
+            lines.append(f"{_verdicts(self.outdated)} {verb} of before the change: audit again")
+        return tuple(lines)
+
+    @property
+    def suspicion(self) -> str:
+        """`5 links are suspect: max_age of x changed`; empty where there is none."""
+        return suspicion_of([self])
 
 
-def differences(standings: tuple[Standing, ...], baseline: Lock) -> tuple[Difference, ...]:
+def suspicion_of(differences: Sequence[Difference]) -> str:
+    """The number of suspect links of all these requirements, and why they are."""
+    suspects = [suspect for each in differences for suspect in each.suspects]
+    reasons = (
+        change.what
+        for each in differences
+        for change in each.changes
+        if any(map(change.makes_suspect, each.suspects))
+    )
+    named = [*dict.fromkeys(reasons)]
+    names = [*named[:_NAMED], *([f"{len(named) - _NAMED} more"] if len(named) > _NAMED else [])]
+    why = f": {', '.join(names)} changed" if names else ""
+    count = len(suspects)
+    return f"{count} {'link is' if count == 1 else 'links are'} suspect{why}" if count else ""
+
+
+def _counts(words: Sequence[str]) -> list[tuple[str, int]]:
+    return sorted(Counter(words).items(), key=lambda pair: _severity(pair[0]))
+
+
+def _severity(word: str) -> tuple[int, bool]:
+    """By which words are sorted, the worst first; a lock may have one that is no verdict."""
+    return severity(word) if word in VERDICTS else (len(VERDICTS), False)
+
+
+def _in_words(words: Sequence[str]) -> str:
+    return ", ".join(f"{count} {word}" for word, count in _counts(words))
+
+
+def _verdicts(count: int) -> str:
+    return f"{count} verdict{'' if count == 1 else 's'}"
+
+
+def _runs(count: int) -> str:
+    return "1 run is" if count == 1 else f"{count} runs are"
+
+
+def differences(
+    standings: tuple[Standing, ...], baseline: Lock, project: Project | None = None
+) -> tuple[Difference, ...]:
     """Every requirement of either state, in the order of the project, then those that are gone."""
-    now = tuple(difference(standing) for standing in standings)
+    now = tuple(difference(standing, project) for standing in standings)
     ids = {standing.chain.requirement for standing in standings}
     return (*now, *(_removed(id, baseline) for id in baseline.reviews if id not in ids))
 
 
-def difference(standing: Standing) -> Difference:
-    """One requirement, against its review; `new` where it has none."""
+def difference(standing: Standing, project: Project | None = None) -> Difference:
+    """One requirement, against its review; `new` where it has none.
+
+    Args:
+        standing: the requirement beside its review.
+        project: whose numbers are compared with its words; None: no contradiction is looked for.
+    """
     chain, review = standing.chain, standing.review
     if review is None:
-        verdicts = _verdicts({}, chain.verdicts)
-        return Difference(chain.requirement, "new", (), (), verdicts)
-    changes = tuple((node, _how(node, chain.prints, review.prints)) for node in standing.changes)
-    verdicts = _verdicts(review.verdicts, chain.verdicts)
-    state = "changed" if changes or verdicts or standing.suspects else "same"
-    return Difference(chain.requirement, state, changes, standing.suspects, verdicts)
+        verdicts = _different({}, chain.verdicts)
+        return Difference(chain.requirement, "new", None, (), (), verdicts, 0, ())
+    verdicts = _different(review.verdicts, chain.verdicts)
+    is_changed = bool(standing.changes or verdicts or standing.suspects)
+    return Difference(
+        chain.requirement,
+        "changed" if is_changed else "same",
+        review,
+        standing.changes,
+        contradictions(standing, project) if standing.changes and project else (),
+        verdicts,
+        sum(node.kind == VERDICT for node in chain.outdated) if standing.changes else 0,
+        standing.suspects,
+        standing.has_other_texts,
+    )
 
 
 def _removed(id: str, baseline: Lock) -> Difference:
-    return Difference(id, "gone", (), (), _verdicts(baseline.reviews[id].verdicts, {}))
+    review = baseline.reviews[id]
+    return Difference(id, "gone", review, (), (), _different(review.verdicts, {}), 0, ())
 
 
-def _how(node: Node, now: Mapping[Node, str], before: Mapping[Node, str]) -> str:
-    return "changed" if node in now and node in before else "new" if node in now else "gone"
-
-
-def _verdicts(
+def _different(
     before: Mapping[str, str], now: Mapping[str, str]
 ) -> tuple[tuple[str, str, str], ...]:
-    runs = sorted({*before, *now})
-    pairs = [(run, before.get(run, ""), now.get(run, "")) for run in runs]
-    return tuple(pair for pair in pairs if pair[1] != pair[2])
+    pairs = [(run, before.get(run, ""), now.get(run, "")) for run in {*before, *now}]
+    return tuple(sorted((pair for pair in pairs if pair[1] != pair[2]), key=_worst_first))
+
+
+def _worst_first(pair: tuple[str, str, str]) -> tuple[bool, tuple[int, bool], str]:
+    """Runs that are gone come after what is known now."""
+    return not pair[2], _severity(pair[2] or pair[1]), pair[0]
+
+
+# Contradictions --------------------------------------------------------------------------------
+
+
+def contradictions(standing: Standing, project: Project) -> tuple[str, ...]:
+    """The words of a requirement that state another number than what is judged.
+
+    One that has stood there since the review `still` does.
+    """
+    id = standing.chain.requirement
+    then = standing.review.texts if standing.review else None
+    now = standing.chain.texts
+    fields: dict[tuple[str, bool], list[str]] = {}
+    for rule in project.rules:
+        if rule.id == id and rule.declarations is not None:
+            for field, words in drifted(rule, rule.declarations):
+                same = then is not None and getattr(then, field) == getattr(now, field)
+                fields.setdefault((words, same), []).append(_FIELDS[field])
+    found = [_statement(names, words, same) for (words, same), names in fields.items()]
+    for failed in project.failed:
+        if failed.requirement.id == id:
+            drifts = (each for each in failed.diagnostics if each.code is Code.NUMBER_DRIFT)
+            found.extend(each.message for each in drifts)
+    return tuple(dict.fromkeys(found))
+
+
+_FIELDS = {"title": "its title", "text": "its text", "params": "its `params`"}
+
+
+def _statement(fields: Sequence[str], words: str, still: bool) -> str:
+    *first, last = dict.fromkeys(fields)
+    named = f"{', '.join(first)} and {last}" if first else last
+    verb = "say" if first or last == _FIELDS["params"] else "says"
+    return f"{named} {'still ' if still else ''}{verb} {words}"
+
+
+# Plain values and text -------------------------------------------------------------------------
 
 
 def as_record(difference: Difference) -> dict[str, Any]:
@@ -67,7 +194,11 @@ def as_record(difference: Difference) -> dict[str, Any]:
     return {
         "requirement": difference.requirement,
         "state": difference.state,
-        "changes": [{"thing": str(node), "how": how} for node, how in difference.changes],
+        "reviewed": difference.review.date if difference.review else None,
+        "changes": [change.as_record for change in difference.changes],
+        "contradictions": list(difference.contradictions),
+        "consequences": list(difference.consequences),
+        "texts_of_the_review": "not its own" if difference.has_other_texts else "its own",
         "suspect_links": [
             {
                 "from": str(suspect.link.source),
@@ -83,21 +214,65 @@ def as_record(difference: Difference) -> dict[str, Any]:
     }
 
 
-def text(difference: Difference) -> Iterator[str]:
-    """Lines for a person."""
-    states = {"same": "as it was reviewed", "new": "not reviewed", "gone": "not there any more"}
-    yield f"{difference.requirement}  {states.get(difference.state, difference.state)}"
-    for node, how in difference.changes:
-        yield f"  {how:<8} {node.kind} {node.name}"
-    for run, before, now in difference.verdicts:
-        yield f"  verdict  {run}: {before or 'none'} → {now or 'none'}"
-    links = difference.suspects
-    for suspect in links[:_MOST]:
-        causes = ", ".join(f"{cause.kind} {cause.name}" for cause in suspect.causes)
-        yield f"  suspect  {_named(suspect.link.source)} → {_named(suspect.link.target)} ({causes})"
-    if len(links) > _MOST:
-        yield f"  suspect  and {len(links) - _MOST} more links"
+def text(differences: Sequence[Difference]) -> Iterator[str]:
+    """Lines for a person: what is not as it was, each change once, then what is as it was."""
+    alike: dict[object, list[Difference]] = {}
+    for each in differences:
+        alike.setdefault(_likeness(each), []).append(each)
+    for group in sorted(alike.values(), key=lambda group: group[0].state == "same"):
+        yield from _text(group)
 
 
-def _named(node: Node) -> str:
-    return f"{node.kind} {node.name}"
+def _likeness(difference: Difference) -> object:
+    """Equal where two requirements differ alike, and no verdict of theirs is another one."""
+    if difference.state == "same":
+        return "same"
+    if difference.verdicts or difference.state != "changed" or difference.review is None:
+        return difference.requirement
+    by = (difference.review.date, difference.review.reviewer)
+    changes = tuple(change.text for change in difference.changes)
+    others = (difference.contradictions, difference.outdated, difference.has_other_texts)
+    return (by, changes, *others)
+
+
+def _text(group: Sequence[Difference]) -> Iterator[str]:
+    first, review = group[0], group[0].review
+    by = f"the review of {review.date} by {review.reviewer}" if review else ""
+    states = {
+        "same": f"as {'it was' if len(group) == 1 else 'they were'} reviewed",
+        "changed": f"changed since {by}",
+        "new": "not reviewed",
+        "gone": f"not there any more; there is {by}",
+    }
+    named = ", ".join(each.requirement for each in group[:_MOST])
+    more = f" and {len(group) - _MOST} more" if len(group) > _MOST else ""
+    yield f"{named}{more}  {states[first.state]}"
+    if first.state == "same":
+        return
+    for change in first.changes:
+        yield f"  {change.text}"
+    if first.has_other_texts:
+        yield f"  {OTHER_TEXTS}"
+    for line in first.contradictions:
+        yield f"  {line}"
+    yield from _verdict_lines(first)
+    suspicion = suspicion_of(group)
+    if suspicion:
+        yield f"  {suspicion}"
+
+
+OTHER_TEXTS = "the texts in its review are not those of its fingerprints, and do not count"
+
+
+def _verdict_lines(difference: Difference) -> Iterator[str]:
+    """What became of verdicts; then runs by name, no violated one without being counted."""
+    for line in difference.consequences:
+        yield f"  {line}"
+    for run, before, now in difference.verdicts[:_MOST]:
+        yield f"    {run}: {before or 'none'} → {now or 'none'}"
+    left = difference.verdicts[_MOST:]
+    if left:
+        violated = sum(now == kernel.VIOLATED for _, _, now in left)
+        yield f"    and {_runs(len(left)).removesuffix(' is').removesuffix(' are')} more" + (
+            f", {violated} of them violated" if violated else ""
+        )

@@ -28,6 +28,10 @@ from fretc.report.traceability.chain import (
     in_force,
     suspects,
 )
+from fretc.report.traceability.changes import Change, changes
+from fretc.report.traceability.meanings import agree
+from fretc.report.traceability.texts import Texts, as_table
+from fretc.report.traceability.texts import read as read_texts
 from fretish.bindings.canonical import digest
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
@@ -38,7 +42,9 @@ from fretish.reading.toml_text import read as read_tables
 from monitors import kernel
 
 NAME = "fretc.lock"
-SCHEMA = "fretc-lock-2"
+SCHEMA = "fretc-lock-3"
+_SCHEMAS = ("fretc-lock-2", SCHEMA)
+"""Those that are read; a lock of the first has no texts."""
 _OLDER = ("fretc-lock-1",)
 _TABLE = "review"
 _TEXTS = ("reviewer", "role", "date", "comment")
@@ -60,6 +66,8 @@ class Review:
     """SHA-256 of everything upstream of the review."""
     verdicts: Mapping[str, str]
     """Run → the word of its verdict."""
+    texts: Texts | None = None
+    """What was accepted, as it was written; None: an earlier version of fretc wrote the review."""
 
     @property
     def was_in_force(self) -> bool:
@@ -76,7 +84,8 @@ class Review:
         """SHA-256 of all of it: a review that is edited by hand is nobody's."""
         texts = {name: getattr(self, name) for name in ("requirement", *_TEXTS)}
         prints = {str(node): sha for node, sha in self.prints.items()}
-        return digest([texts, prints, dict(self.verdicts)])
+        written = [] if self.texts is None else [as_table(self.texts)]
+        return digest([texts, prints, dict(self.verdicts), *written])
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +97,10 @@ class Lock:
 
 def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) -> Review:
     """A review of the present state of a requirement."""
-    return Review(chain.requirement, reviewer, role, date, comment, chain.prints, chain.verdicts)
+    id, prints, texts = chain.requirement, chain.prints, chain.texts
+    readable = texts is not None and isinstance(read_texts(as_table(texts)), Texts)
+    kept = texts if texts is not None and readable and agree(id, texts, prints) else None
+    return Review(id, reviewer, role, date, comment, prints, chain.verdicts, kept)
 
 
 def verdicts_of(chain: Chain) -> str:
@@ -219,6 +231,7 @@ def text(lock: Lock) -> str:
             "seal": review.seal,
             "fingerprints": {str(n): sha for n, sha in sorted(review.prints.items())},
             "verdicts": dict(sorted(review.verdicts.items())),
+            **({} if review.texts is None else {"texts": as_table(review.texts)}),
         }
     return f"{_HEAD}{tomli_w.dumps(tables)}"
 
@@ -260,7 +273,7 @@ def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
     if schema in _OLDER or isinstance(schema, dict):  # a review of a requirement called `schema`
         yield _older(tables)
         return
-    if schema != SCHEMA:
+    if schema not in _SCHEMAS:
         yield _wrong(tables, f"the lock is not of the form `{SCHEMA}`", "schema")
     for name, value in tables.data.items():
         if name not in ("schema", _TABLE) or (name == _TABLE and not isinstance(value, dict)):
@@ -280,6 +293,10 @@ def _mistakes(tables: Tables) -> Iterator[Diagnostic]:
                 yield _wrong(tables, f"`{name}` of {id} must be a table of texts", _TABLE, id, name)
             elif name == "fingerprints":
                 yield from _no_prints(tables, id, table)
+        texts = read_texts(fields["texts"]) if "texts" in fields else None
+        if isinstance(texts, str):
+            what = f"`texts` of {id} cannot be read: {texts}"
+            yield _wrong(tables, what, _TABLE, id, "texts")
 
 
 def _no_prints(tables: Tables, id: str, table: Mapping[str, str]) -> Iterator[Diagnostic]:
@@ -325,7 +342,14 @@ def _review(id: str, fields: Mapping[str, Any]) -> Review:
         **{name: fields[name] for name in _TEXTS},
         prints={_node(name): sha for name, sha in fields["fingerprints"].items()},
         verdicts=fields["verdicts"],
+        texts=_texts(fields),
     )
+
+
+def _texts(fields: Mapping[str, Any]) -> Texts | None:
+    texts = read_texts(fields["texts"]) if "texts" in fields else None
+    assert not isinstance(texts, str), "it has been read before"
+    return texts
 
 
 def _node(text: str) -> Node:
@@ -346,8 +370,10 @@ class Standing:
 
     suspects: tuple[Suspect, ...]
     """The suspect links; none where there is no review."""
-    changes: tuple[Node, ...]
-    """The nodes that have changed since the review."""
+    changes: tuple[Change, ...]
+    """What has changed since the review, without what only follows from it."""
+    has_other_texts: bool = False
+    """The texts of the review are not those of its fingerprints: they count for nothing."""
 
     @property
     def is_suspect(self) -> bool:
@@ -369,8 +395,14 @@ def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[Standing, ...
 def _standing(chain: Chain, review: Review | None) -> Standing:
     if review is None:
         return Standing(chain, None, (), ())
-    prints = review.prints
-    return Standing(chain, review, suspects(chain, prints), changed(chain.prints, prints))
+    prints, texts = review.prints, review.texts
+    suspect = suspects(chain, prints)
+    if not suspect and not changed(chain.prints, prints):
+        return Standing(chain, review, (), ())
+    vouched = texts is None or agree(chain.requirement, texts, prints)
+    causes = tuple(dict.fromkeys(cause for each in suspect for cause in each.causes))
+    found = changes(chain, prints, review.verdicts, texts if vouched else None, causes)
+    return Standing(chain, review, suspect, found, not vouched)
 
 
 @dataclass(frozen=True, slots=True)

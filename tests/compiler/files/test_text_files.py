@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from compiler.files.text_files import write
-from fretish.diagnostics.diagnostic import Code
+from compiler.files.text_files import read, write
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
 
 
@@ -110,3 +110,12 @@ def test_the_command_says_it(fretc: Fretc, tmp_path_factory: pytest.TempPathFact
         "meant\n"
     )
     assert target.read_text() == "precious"
+
+
+def test_a_link_that_leads_nowhere_is_named_as_one(tmp_path: Path) -> None:
+    link = tmp_path / "r1.fret"
+    link.symlink_to("../gone.fret")
+    wrong = read(str(link))
+    assert isinstance(wrong, Diagnostic)
+    assert wrong.help is not None
+    assert "`../gone.fret`" in wrong.help

@@ -50,6 +50,7 @@ def result(**fields: Any) -> Result:
         "states": lambda each: decoded(each, tuple[State, ...]),
         "answers": lambda each: decoded(each, tuple[Answer, ...]),
         "triggers": lambda each: decoded(each, tuple[Moment, ...]),
+        "open": lambda each: decoded(each, tuple[Moment, ...]),
         "violations": lambda each: decoded([BROKEN | one for one in each], tuple[Violation, ...]),
         "thresholds": lambda each: decoded([BOUND | one for one in each], tuple[Threshold, ...]),
         "propositions": lambda each: decoded(each, dict[str, Tally]),

@@ -1,4 +1,4 @@
-from fretc.audit.constancy import never_changed, tallies_of
+from fretc.audit.constancy import Total, never_changed, tallies_of, totals
 from fretc.audit.measurements.tallies import Tally
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
@@ -7,7 +7,8 @@ from tests.fretc.logs.logs import X
 
 
 def messages(*tallies: Tally) -> list[str]:
-    return [finding.message for finding in never_changed({"low": tallies}, X)]
+    of_all = totals({"low": each} for each in tallies)
+    return [finding.message for finding in never_changed(of_all, X)]
 
 
 def test_what_changed_in_one_log_is_not_told() -> None:
@@ -31,16 +32,13 @@ def test_nothing_is_told_of_logs_without_a_tick() -> None:
 
 def test_a_proposition_of_two_requirements_counts_once_in_each_run() -> None:
     low = {"low": {"true": 1, "false": 2, "unknown": 3, "changes": 0}}
-    results = [
-        result(run="a", requirement="R1", propositions=low),
-        result(run="a", requirement="R2", propositions=low),
-        result(run="b", requirement="R1", propositions={}),
-    ]
-    assert tallies_of(results) == {"low": [Tally(1, 2, 3, 0)]}
+    both = [result(requirement=id, propositions=low) for id in ("R1", "R2")]
+    runs = [tallies_of(both), tallies_of([result(propositions={})])]
+    assert totals(runs) == {"low": Total(Tally(1, 2, 3, 0), 1)}
 
 
 def test_what_an_error_in_the_bindings_explains_is_not_told_again() -> None:
-    unknown, low = {"low": [Tally(0, 0, 7, 0)]}, {"low": [Tally(0, 7, 1, 0)]}
+    unknown, low = {"low": Total(Tally(0, 0, 7, 0), 1)}, {"low": Total(Tally(0, 7, 1, 0), 1)}
     missing = Diagnostic(Code.NO_TOPIC, "the topic `/y` is not in the log", X.source.span())
     elsewhere = Diagnostic(Code.NO_SUCH_FILE, "there is no such file", Source("a", "").span())
     assert [*never_changed(unknown, X, [missing])] == []

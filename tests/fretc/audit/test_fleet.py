@@ -1,6 +1,7 @@
 """The same audit on Dask: a real cluster of two processes, one of which is killed."""
 
 import os
+import re
 import shutil
 import signal
 import socket
@@ -54,6 +55,12 @@ def fretc(fretc: Fretc) -> Fretc:
     return fretc
 
 
+def tables() -> dict[Path, bytes]:
+    """The bytes of all tables of the store, but for the register."""
+    found = Path("build/evidence").glob("*/*.parquet")
+    return {path: path.read_bytes() for path in found if path.parent.name != "register"}
+
+
 def plan() -> Plan:
     files = requirement_files("requirements")
     assert not isinstance(files, Diagnostic)
@@ -89,14 +96,13 @@ def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
 @pytest.mark.slow
 def test_the_command_gives_the_same_on_a_fleet(fretc: Fretc, cluster: Any) -> None:
     here = fretc("audit", *LOGS)
-    evidence = Path("build/evidence.json").read_bytes()
-    Path("build/evidence.json").unlink()
+    evidence = tables()
+    shutil.rmtree("build")
     address = cluster.scheduler_address.replace("tcp", "dask")
     there = fretc("audit", *LOGS, "--engine", address)
     assert (there.status, there.err) == (here.status, here.err)
     assert untimed(there.out) == untimed(here.out)
-    assert Path("build/evidence.json").read_bytes() == evidence
-    assert not Path("build/evidence.json.journal").exists()
+    assert tables() == evidence
 
 
 @pytest.mark.slow
@@ -218,10 +224,13 @@ def test_without_the_extra_the_line_that_installs_it_is_told(
 @pytest.mark.slow
 def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
     fretc("audit", *LOGS)
-    evidence = Path("build/evidence.json").read_bytes()
-    Path("build/evidence.json").unlink()
-    journal = Path("build/evidence.json.journal")
-    command = [sys.executable, "-c", "from fretc.cli import main; main()", "audit", *LOGS]
+    evidence = tables()
+    shutil.rmtree("build")
+    code = (
+        "import fretc.audit.into_store as s; s._PATIENCE = 0; s._SHARE = 0\n"
+        "from fretc.cli import main; main()"
+    )
+    command = [sys.executable, "-c", code, "audit", *LOGS]
     run = subprocess.Popen(
         [*command, "--engine", "dask", "--jobs", "2"],
         env={**os.environ, "PYTHONPATH": str(ROOT)},
@@ -230,16 +239,15 @@ def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
         start_new_session=True,
     )
     deadline = time.monotonic() + 60
-    while not (journal.exists() and journal.read_bytes().count(b"\n") > 1):
+    while not any(Path("build/evidence/results").glob("*.parquet")):
         assert time.monotonic() < deadline
         time.sleep(0.01)
     os.killpg(run.pid, signal.SIGINT)  # as Ctrl-C does: all processes of the terminal
     _, errors = run.communicate(timeout=60)
-    lines = journal.read_bytes().count(b"\n") - 1
-    words = f"stopped: {lines} of 12 logs are kept, `--resume` goes on from there\n"
-    assert (run.returncode, errors) == (130, words)
-    assert fretc("audit", *LOGS, "--resume").err.startswith(f"{lines} of 12 logs are audited")
-    assert Path("build/evidence.json").read_bytes() == evidence
+    (count,) = re.findall(r"^stopped: (\d+) of 12 logs are kept, the same command goes", errors)
+    assert run.returncode == 130
+    assert fretc("audit", *LOGS).err.startswith(f"{count} of 12 logs are unchanged")
+    assert tables() == evidence
 
 
 @pytest.mark.slow

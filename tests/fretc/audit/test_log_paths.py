@@ -102,7 +102,7 @@ def test_a_name_that_looks_like_a_pattern_is_a_name() -> None:
 
 
 def test_standard_input_and_urls_are_taken_as_they_are() -> None:
-    named = ["-", "s3://bucket/run?.mcap", "https://host/a.mcap?x=*"]
+    named = ["-", "s3://bucket/run.mcap", "https://host/a.mcap?x=*"]
     assert logs([*named, "-"]) == named
 
 

@@ -13,7 +13,10 @@ from typing import Any
 import pytest
 
 from fretc.audit import many_logs as auditing
+from fretc.audit.evidence.writer import text
 from fretc.audit.plan import Plan
+from fretc.audit.store.anywhere import read
+from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, Run, untimed
 from tests.json_schemas import validate
 
@@ -30,7 +33,9 @@ def fretc(fretc: Fretc) -> Fretc:
 
 
 def evidence() -> Any:
-    return json.loads(Path("build/evidence.json").read_text("utf-8"))
+    found = read("build/evidence" if Path("build/evidence").is_dir() else "build/evidence.json")
+    assert not isinstance(found, Diagnostic), found.message
+    return json.loads(text(found.document))
 
 
 def change(path: str, old: str, new: str) -> None:
@@ -207,9 +212,10 @@ def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fre
     for jobs in ("1", "2", "7"):
         run = fretc("audit", "runs", "--jobs", jobs)
         assert run.status == 2
-        texts.append((untimed(run.out), Path("build/evidence.json").read_bytes()))
+        texts.append((untimed(run.out), evidence()))
+        shutil.rmtree("build")
     assert texts[0] == texts[1] == texts[2]
-    assert [result["run"] for result in evidence()["results"]] == [
+    assert [result["run"] for result in texts[0][1]["results"]] == [
         "runs/a.mcap",
         "runs/b.mcap",
         "runs/bad.mcap",
@@ -239,10 +245,10 @@ def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audit
 ) -> None:
     real = auditing.audited
 
-    def deadly(plan: Plan, log: str) -> auditing.LogAudit:
+    def deadly(plan: Plan, log: str, *rest: Any) -> auditing.LogAudit:
         if log == "bad.mcap":
             os.kill(os.getpid(), signal.SIGKILL)
-        return real(plan, log)
+        return real(plan, log, *rest)
 
     monkeypatch.setattr(auditing, "audited", deadly)
     shutil.copy("run.mcap", "bad.mcap")
@@ -254,7 +260,7 @@ def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audit
         "signal 9\n"
         "  --> bad.mcap\n"
         "help: was there memory enough? audit this log on a machine that has more\n"
-        "wrote build/evidence.json\n"
+        "wrote build/evidence\n"
     )
     content = evidence()
     validate("evidence.schema.json", content)
@@ -288,8 +294,12 @@ def test_evidence_that_cannot_be_written_is_told_before_the_audit(fretc: Fretc) 
     assert run == Run(
         2,
         "",
-        "F905 `requirements` cannot be written: it is no regular file\nhelp: name another file\n",
+        "F905 `requirements` cannot be written: it is a folder with something else in it\n"
+        "help: name a new folder, an empty one, or a store that `fretc audit` has written\n",
     )
+    Path("x.json").mkdir()
+    run = fretc("audit", "run.mcap", "no.mcap", "--evidence", "x.json")
+    assert run.err.startswith("F905 `x.json` cannot be written: it is no regular file\n")
 
 
 @pytest.mark.slow

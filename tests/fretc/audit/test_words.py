@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.audit.evidence.reader import read
-from fretc.audit.evidence.schema import Evidence
+from fretc.audit.evidence.reader import Evidence, read
 from tests.command import Fretc
 from tests.command import write as put
 from tests.fretc.logs.logs import MS, S, Sent, payload, write

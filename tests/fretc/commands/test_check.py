@@ -111,8 +111,9 @@ def test_what_changed_since_its_review_is_told(good: Fretc) -> None:
     run = good("check")
     assert run.status == 3
     assert (
-        "F512 warning: R1 was reviewed on 2026-01-01, and since then sentence R1 changed" in run.err
-    )
+        "F512 warning: R1 was reviewed on 2026-01-01, and since then this has changed: sentence: "
+        "whenever near the robot shall within 300 milliseconds → 400 milliseconds …\n"
+    ) in run.err
 
 
 def test_a_review_of_what_is_gone_is_told(good: Fretc) -> None:

@@ -51,10 +51,10 @@ def test_a_changed_threshold_is_told_with_the_links_below_it(fretc: Fretc, folde
     run = fretc("diff")
     assert run.status == 3
     assert run.out == (
-        "R1  changed\n"
-        "  changed  bindings R1\n"
-        "  suspect  bindings R1 → verdict R1 logs/a.mcap (bindings R1)\n"
-        "  suspect  verdict R1 logs/a.mcap → review R1 (bindings R1)\n"
+        "R1  changed since the review of 2026-11-22 by A. Meier\n"
+        "  near: clearance < 5 cm → 90 cm\n"
+        "  1 verdict is of before the change: audit again\n"
+        "  2 links are suspect: near changed\n"
     )
 
 
@@ -67,7 +67,16 @@ def test_another_verdict_is_told(fretc: Fretc, folder: Path) -> None:
     assert run.status == 3
     (told,) = json.loads(run.out)
     assert told["verdicts"] == [{"run": "logs/a.mcap", "before": "satisfied", "now": "violated"}]
-    assert told["changes"] == [{"thing": "verdict:R1 logs/a.mcap", "how": "changed"}]
+    assert told["changes"] == [
+        {
+            "thing": "verdict:R1 logs/a.mcap",
+            "what": "verdict of logs/a.mcap",
+            "before": "satisfied",
+            "after": "violated",
+            "text": "verdict of logs/a.mcap: satisfied → violated",
+        }
+    ]
+    assert told["consequences"] == ["1 verdict became violated"]
     assert told["suspect_links"] == [
         {
             "from": "verdict:R1 logs/a.mcap",
@@ -98,7 +107,7 @@ def test_a_requirement_that_was_deleted_and_one_that_is_new_are_told(
     run = fretc("diff")
     assert run.status == 3
     assert "R2  not reviewed\n" in run.out
-    assert "R1  not there any more\n" in run.out
+    assert "R1  not there any more; there is the review of 2026-11-22 by A. Meier\n" in run.out
 
 
 @pytest.mark.parametrize(
@@ -164,8 +173,8 @@ def test_a_proof_that_turned_out_otherwise_is_told(fretc: Fretc, folder: Path) -
     verified(proved("it holds", "counterexample"))
     run = fretc("diff")
     assert run.status == 3
-    assert "  changed  proof R1 loop: it holds\n" in run.out
-    assert "  suspect  proof R1 loop: it holds → review R1 (proof R1 loop: it holds)\n" in run.out
+    assert "  proof of loop: it holds: proved → counterexample\n" in run.out
+    assert "  1 link is suspect: proof of loop: it holds changed\n" in run.out
 
 
 def test_another_assumption_makes_the_proof_below_it_suspect(fretc: Fretc, folder: Path) -> None:
@@ -181,8 +190,10 @@ def test_another_assumption_makes_the_proof_below_it_suspect(fretc: Fretc, folde
     bindings.write_text(bindings.read_text().replace('braking = "200 ms"', 'braking = "900 ms"'))
     run = fretc("diff")
     assert run.status == 3
-    known = "shared [interceptor] and [assume]"
-    assert f"  suspect  {known} → proof R1 loop: it holds ({known})\n" in run.out
+    known = "shared:[interceptor] and [assume]"
+    assert "  braking of [assume]: 200 ms → 900 ms\n" in run.out
+    links = json.loads(fretc("diff", "--format", "json").out)[0]["suspect_links"]
+    assert {"from": known, "to": "proof:R1 loop: it holds", "because_of": [known]} in links
     assert "verdict" not in run.out, "what logs show does not depend on it"
 
 
@@ -193,7 +204,7 @@ def test_a_proof_after_the_review_changes_nothing_that_was_reviewed(
     verified(proved("it holds"))
     run = fretc("diff")
     assert "suspect" not in run.out
-    assert "  new      proof R1 loop: it holds\n" in run.out
+    assert "  proof of loop: it holds: none → proved\n" in run.out
 
 
 # What is accepted ------------------------------------------------------------------------------
@@ -284,7 +295,7 @@ def test_of_many_violated_runs_some_are_named(fretc: Fretc, folder: Path) -> Non
 
 
 def test_what_all_runs_refute_is_accepted_by_name_only() -> None:
-    chain = Chain("R1", {}, (), {"a.mcap": "no data"})
+    chain = Chain("R1", {}, ())
     (wrong,) = unnamed_violations([chain], {"R1"})
     assert wrong.message == "R1 is refuted by all runs"
     assert unnamed_violations([chain], {"R2"}) == ()

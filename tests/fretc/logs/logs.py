@@ -74,6 +74,7 @@ def write(
     statistics: bool = True,
     index: IndexType = IndexType.ALL,
     definitions: dict[str, bytes] | None = None,
+    metadata: Sequence[tuple[str, dict[str, str]]] = (),
 ) -> Path:
     """The messages in the order given; `per_chunk` messages make a chunk."""
     with path.open("wb") as stream:
@@ -87,6 +88,8 @@ def write(
             index_types=index,
         )
         writer.start()
+        for name, values in metadata:
+            writer.add_metadata(name, values)
         channels: dict[tuple[str, str], int] = {}
         for i, message in enumerate(sent):
             key = (message.topic, message.type)

@@ -43,7 +43,10 @@ DEFINITIONS = {
         sourceLanguage=TEXT,
     ),
     "artifactLocation": kind(
-        uri={"type": "string", "format": "uri-reference"}, uriBaseId=TEXT, index=INDEX
+        uri={"type": "string", "format": "uri-reference"},
+        uriBaseId=TEXT,
+        index=INDEX,
+        description=ref("message"),
     ),
     "invocation": kind(
         "executionSuccessful",
@@ -90,6 +93,10 @@ DEFINITIONS = {
         "tool",
         tool=ref("tool"),
         invocations=many("invocation", unique=False),
+        originalUriBaseIds={
+            "type": "object",
+            "additionalProperties": ref("artifactLocation"),
+        },
         artifacts=many("artifact"),
         columnKind={"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
         results=many("result", unique=False),
@@ -99,6 +106,7 @@ DEFINITIONS = {
         "name",
         name=TEXT,
         semanticVersion=TEXT,
+        informationUri={"type": "string", "format": "uri"},
         rules=many("reportingDescriptor"),
         notifications=many("reportingDescriptor"),
     ),

@@ -22,6 +22,7 @@ from fretc.report.forms.junit import junit
 from fretc.report.forms.markdown import markdown
 from fretc.report.forms.sarif import sarif
 from fretc.report.make import ReportBuild
+from tests.fretc.report import junit_schema
 from tests.fretc.report.cases import R1, moment, project, report_of, requirement, result
 from tests.json_schemas import validate
 
@@ -209,19 +210,65 @@ def is_suspect(one: Mapping[str, Any], known: Project) -> bool:
 
 def forms(build: ReportBuild, results: Sequence[dict[str, Any]], known: Project) -> dict[str, Any]:
     assert build.report is not None, build.diagnostics[0].message
+    assert build.details is not None
     whole = build.report
-    suite = ElementTree.fromstring(junit(whole))[0]
-    log = json.loads(sarif(whole, build.results, known.rules, []))["runs"][0]["results"]
+    log = json.loads(sarif(whole, build.details, known.rules, []))["runs"][0]["results"]
     return {
         "marks": {v.id: (v.mark.word, v.mark.suspect) for v in whole.requirements},
         "status": _status(whole),
-        "junit": {case.attrib["name"][:2]: [c.tag for c in case] for case in suite},
-        "messages": {c.attrib["name"][:2]: [m.attrib["message"] for m in c] for c in suite},
+        "junit": outcomes_of(junit(whole), whole.project),
         "sarif": [(one["ruleId"], one["level"]) for one in log],
         "csv": list(csv.DictReader(io.StringIO(csv_text(whole)))),
-        "markdown": markdown(whole),
+        "markdown": markdown(whole, build.details),
         "gsn": yaml.safe_load(gsn(whole)),
     }
+
+
+def outcomes_of(xml: str, project: str) -> dict[tuple[str, str], str]:
+    """The element of each case by run and requirement; by an empty run what no run says."""
+    root = ElementTree.fromstring(xml)
+    assert list(junit_schema.complaints(root)) == []
+    cases = {}
+    for suite in root:
+        run = "" if suite.attrib["name"] == project else suite.attrib["name"]
+        for case in suite:
+            key = (run, case.attrib["name"].split("(")[-1][:-1])
+            assert key not in cases
+            cases[key] = next((outcome.tag for outcome in case), "")
+    return cases
+
+
+ELEMENTS = {"violated": "failure", "no data": "error", "satisfied": ""}
+"""Of verdicts; all others are skipped."""
+
+
+def outcome(verdict: str, *, suspect: bool) -> str:
+    kind = ELEMENTS.get(verdict, "skipped")
+    return "failure" if suspect and kind in ("", "skipped") else kind
+
+
+@pytest.mark.slow
+@given(drawn=audits())
+@_BRIEFLY
+def test_each_requirement_and_run_is_one_test_case_and_no_red_is_lost(
+    drawn: list[dict[str, Any]], known: Project, folder: Path
+) -> None:
+    results = [result(known, **each) for each in drawn]
+    content = forms(report_of(known, folder, *results), results, known)
+    cases = content["junit"]
+    of_runs = {
+        (one["run"], one["requirement"]): outcome(one["verdict"], suspect=is_suspect(one, known))
+        for one in results
+    }
+    assert {key: kind for key, kind in cases.items() if key[0]} == of_runs
+    for id in IDS:
+        word, suspect = expected(results, known, id)
+        assert outcome(word, suspect=suspect) in [
+            kind for (_, other), kind in cases.items() if other == id
+        ]
+    kinds = set(cases.values())
+    assert "failure" not in kinds or content["status"] == 1
+    assert content["status"] != 1 or kinds & {"failure", "error"}
 
 
 @pytest.mark.slow
@@ -241,15 +288,9 @@ def test_all_forms_follow_one_model_of_verdict_and_currency(
     assert content["status"] == (1 if fails else 0 if all(is_shown.values()) else 3)
     first = content["markdown"].splitlines()[0]
     for id, (word, suspect) in right.items():
-        (kind, *more) = content["junit"][id] or [""]
-        assert not more
-        assert (kind == "") == is_shown[id]
         if word == "violated":
-            assert kind == "failure"
             assert id in first
-            assert f"{id} is violated" not in first or not suspect
-        if word == "no data":
-            assert kind == "error"
+            assert f"({id}) is violated" not in first.replace("\\", "") or not suspect
         rows = [row for row in content["csv"] if row["requirement"] == id]
         currency = "suspect" if suspect else "current"
         assert {(row["verdict"], row["currency"]) for row in rows} == {(word, currency)}
@@ -260,7 +301,7 @@ def test_all_forms_follow_one_model_of_verdict_and_currency(
         (r["requirement"], "error" if r["verdict"] == "violated" else level(r, known))
         for r in results
     }
-    assert set(content["sarif"]) == levels
+    assert set(content["sarif"]) == {(id, level) for id, level in levels if level != "none"}
 
 
 def level(one: Mapping[str, Any], known: Project) -> str:
@@ -288,12 +329,11 @@ def test_reasons_come_by_severity_everywhere(
         if view.mark.word == "violated":
             assert "violated" in view.reasons[0]
             content = forms(build, results, known)
-            assert content["messages"][view.id][0].split(": ", 1)[1] == view.reasons[0]
-            assert "violated" in _row(content["markdown"], view.id)
+            assert _entry(content["markdown"], view.id).startswith("- ✘ violated")
     order = [ranks.index(each.mark.word) for each in report.not_shown if not each.mark.suspect]
     assert order == sorted(order)
 
 
-def _row(text: str, id: str) -> str:
-    (line,) = [line for line in text.splitlines() if line.startswith(f"| **{id}**")]
-    return line.split("|")[5]
+def _entry(text: str, id: str) -> str:
+    (line,) = [line for line in text.splitlines() if line.startswith("- ") and f"{id}\\)**" in line]
+    return line

@@ -32,41 +32,42 @@ TRACE = "traces/mission-seed15.mcap"
 
 # Each verdict ----------------------------------------------------------------------------------
 
+NAME = "Stop when something is near (R1)"
 VERDICTS: list[tuple[str, dict[str, Any], str, str, str]] = [
     (
         "satisfied",
         {"triggers": [moment(10)], "latencies_s": [0.0]},
         "all shown",
         "Everything that was claimed is shown.",
-        "The one requirement, R1, held in the audited run.",
+        f"The one requirement, {NAME}, held in the audited run.",
     ),
     (
         "violated",
         {"violations": [violation(14, 20, 11)], "latencies_s": []},
         "violated",
-        "R1 is violated.",
-        "The one requirement, R1, was not shown to hold in the audited run.",
+        f"{NAME} is violated.",
+        f"The one requirement, {NAME}, was not shown to hold in the audited run.",
     ),
     (
         "inconclusive",
         {"open": [moment(90)], "latencies_s": []},
         "nothing shown",
         "Nothing that was claimed is shown.",
-        "The one requirement, R1, was not shown to hold in the audited run.",
+        f"The one requirement, {NAME}, was not shown to hold in the audited run.",
     ),
     (
         "vacuous",
         {"triggers": [], "latencies_s": []},
         "nothing shown",
         "Nothing that was claimed is shown.",
-        "The one requirement, R1, was not shown to hold in the audited run.",
+        f"The one requirement, {NAME}, was not shown to hold in the audited run.",
     ),
     (
         "no data",
         {"unknown": [[0, 99]], "triggers": [], "latencies_s": []},
         "nothing shown",
         "Nothing that was claimed is shown.",
-        "The one requirement, R1, was not shown to hold in the audited run.",
+        f"The one requirement, {NAME}, was not shown to hold in the audited run.",
     ),
 ]
 
@@ -228,7 +229,7 @@ def test_evidence_of_something_else_is_suspect_and_never_satisfied(
     assert words([view]) == ["satisfied, suspect"]
     assert view["suspicions"] == content["requirements"][0]["suspicions"] == [why]
     assert content["overall"]["headline"] == (
-        f"Nothing that was claimed is shown: R1 was satisfied, and {why}."
+        f"Nothing that was claimed is shown: {NAME} was satisfied, and {why}."
     )
     assert [word(c["mark"]) for c in content["counts"] if c["results"]] == ["satisfied, suspect"]
     (warning,) = report.diagnostics
@@ -421,8 +422,9 @@ def test_a_response_without_a_bound_is_shown_with_a_reservation(tmp_path: Path) 
         "bound": "No bound was required: the sentence says `eventually`, so a response satisfies "
         "it however late it comes.",
         "waits": ["1 s to 3.5 s: 2 triggers, the first waited 2.5 s"],
+        "median_s": 2.4,
     }
-    line = "The longest answer of R1 took 2.5 s, after the trigger at 1 s, in Run 1."
+    line = f"The longest answer of {NAME} took 2.5 s, after the trigger at 1 s, in Run 1."
     assert content["reservations"] == [UNVIOLABLE, line]
     assert content["overall"]["sentences"][1:3] == [UNVIOLABLE, line]
 
@@ -434,7 +436,7 @@ def test_where_the_end_of_a_log_violates_the_reservation_is_the_missing_bound(
     known = project(tmp_path, bindings=ends)
     content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
     assert content["reservations"] == [
-        "R1 sets no bound on its response. The longest answer of R1 took 2.5 s, after the "
+        f"{NAME} sets no bound on its response. The longest answer of {NAME} took 2.5 s, after the "
         "trigger at 1 s, in Run 1."
     ]
 
@@ -492,7 +494,7 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
         "deadline": "1.4 s (tick 14)",
         "missing": "stopped",
         "values": [
-            ["clearance", "unknown: 0.0318 m is 0.4 s old, and counts for 0.3 s"],
+            ["clearance", "unknown: 0.0318 m is 400 ms old, and counts for 300 ms"],
             ["vx", "unknown"],
         ],
         "causes": [],
@@ -592,7 +594,7 @@ def test_a_run_is_shown_with_its_health(tmp_path: Path) -> None:
                 "type": "nav_msgs/msg/Odometry",
                 "count": "501",
                 "rate": "50.0 Hz",
-                "longest_gap": "0.04 s",
+                "longest_gap": "40 ms",
                 "out_of_order": "3",
                 "read_for": ["vx"],
             }

@@ -24,6 +24,7 @@ from compiler.logic.claims import (
     vacuous,
 )
 from compiler.project.folder import Project, whole
+from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.reader import read, required
 from fretc.audit.many_logs import IN_TURN, LogAudit, LogAudits, audit_logs
 from fretc.audit.plan import Plan, planned
@@ -218,7 +219,7 @@ def case(folder: Path) -> Case:
     assert not isinstance(audit, Diagnostic)
     audited = read(write("build/evidence.json", audit.evidence))
     assert not isinstance(audited, Diagnostic)
-    chain_of = chains(project, audited)
+    chain_of = chains(project, Briefs.of(audited))
     reviews = {c.requirement: accepted(c, "A", "b", "2026-01-02", "c") for c in chain_of}
     return Case(project, plan, Lock(reviews), manifest)
 

@@ -646,7 +646,7 @@ LOCKS: dict[str, Callable[[], None]] = {
     "reviewer": put(LOCK, 'reviewer = "A"', 'reviewer = "B"'),
     "verdict": put(LOCK, '"logs/a.mcap" = "satisfied"', '"logs/a.mcap" = "violated"'),
     "date": put(LOCK, 'date = "2026-01-02"', 'date = "2026-01-01"'),
-    "form": put(LOCK, '"fretc-lock-2"', '"fretc-lock-1"'),
+    "form": put(LOCK, '"fretc-lock-3"', '"fretc-lock-1"'),
     "a review under another name": put(LOCK, "[review.R3]", "[review.R4]"),
     "in the year 3000": lambda: _dated("3000-01-01"),
 }

@@ -11,8 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from compiler.files.edition import PACKAGE
 from compiler.formalization.formalized import Formalized
-from fretc.audit.outputs.sarif import OneRun, sarif
+from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 from tests.command import Fretc
@@ -97,20 +98,42 @@ def test_the_schema_refuses_what_is_wrong() -> None:
         content = json.loads(sarif(ALL, RULES))
 
 
-def test_each_verdict_has_its_kind_and_level() -> None:
-    kinds = [(one["kind"], one["level"]) for one in read(ALL)["results"]]
+def test_what_is_not_shown_is_a_result_with_its_level_and_what_is_shown_is_none() -> None:
+    kinds = [(one["ruleId"], one["kind"], one["level"]) for one in read(ALL)["results"]]
     assert kinds == [
-        ("pass", "none"),
-        ("fail", "error"),
-        ("fail", "warning"),
-        ("fail", "warning"),
-        ("fail", "warning"),
-        ("fail", "error"),
+        ("R2", "fail", "error"),
+        ("R3", "fail", "warning"),
+        ("R4", "fail", "warning"),
+        ("R5", "fail", "warning"),
+        ("R1", "fail", "error"),
     ]
 
 
+def test_only_rules_and_logs_of_findings_occur() -> None:
+    run = read([result("satisfied"), result("violated", "R2", "b.mcap")])
+    assert [one["id"] for one in run["tool"]["driver"]["rules"]] == ["R2"]
+    assert [one["location"]["uri"] for one in run["artifacts"]] == ["b.mcap", "r.fret"]
+    none = read([result("satisfied")])
+    assert (none["results"], none["artifacts"], none["tool"]["driver"]["rules"]) == ([], [], [])
+
+
+def test_a_run_that_only_counts_is_no_finding_and_the_answer_of_all_is_one() -> None:
+    trials = {"trials": {"answered": 1, "failed": 1, "open": 0}}
+    counted = result("inconclusive", **trials)
+    lost = result("no data", "R2", **trials)
+    content = json.loads(
+        sarif([counted, lost], RULES, estimates=[AllRuns("R1", "refuted", "1 of 2")])
+    )
+    results = content["runs"][0]["results"]
+    assert [(one["ruleId"], one["level"]) for one in results] == [
+        ("R2", "warning"),
+        ("R1", "error"),
+    ]
+    assert results[1]["message"]["text"] == "all runs: refuted: 1 of 2"
+
+
 def test_a_result_stands_at_its_sentence_and_names_its_run() -> None:
-    one = read(ALL)["results"][1]
+    one = read(ALL)["results"][0]
     assert one["message"]["text"] == "a.mcap: violated: why"
     (location,) = one["locations"]
     assert location["physicalLocation"] == {
@@ -139,7 +162,9 @@ def test_a_log_is_an_artifact_with_its_hash() -> None:
 
 
 def test_a_requirement_is_a_rule_with_its_sentence_and_its_fingerprint() -> None:
-    first, *_ = read(ALL)["tool"]["driver"]["rules"]
+    run = read(ALL)
+    first, *_ = run["tool"]["driver"]["rules"]
+    assert run["tool"]["driver"]["informationUri"] == PACKAGE
     assert first["id"] == "R1"
     assert first["fullDescription"]["text"] == "the sw shall always satisfy q1"
     assert first["help"]["text"] == (
@@ -153,7 +178,7 @@ def test_a_fingerprint_depends_on_the_requirement_and_the_run_and_on_nothing_els
     def prints(*results: OneRun) -> list[Any]:
         return [one["partialFingerprints"] for one in read(results)["results"]]
 
-    later = result("satisfied", reason="other", hashes={"log": "00" * 32})
+    later = result("vacuous", reason="other", hashes={"log": "00" * 32})
     assert prints(result("violated")) == prints(later)
     one, other, third = prints(
         result("violated"), result("violated", "R2"), result("no data", run="b")
@@ -203,6 +228,20 @@ def test_a_path_elsewhere_is_absolute(tmp_path: Path, monkeypatch: pytest.Monkey
     )
 
 
+def test_a_path_is_relative_to_the_root_of_its_repository(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "robot").mkdir()
+    monkeypatch.chdir(tmp_path / "robot")
+    run = read([result("violated", run="a.mcap"), result("violated", run="../logs/b.mcap")])
+    assert [one["location"] for one in run["artifacts"]] == [
+        {"uri": uri, "uriBaseId": "%SRCROOT%"}
+        for uri in ("robot/a.mcap", "logs/b.mcap", "robot/r.fret")
+    ]
+    assert [*run["originalUriBaseIds"]] == ["%SRCROOT%"]
+
+
 def test_an_address_on_the_web_stays_as_it_is() -> None:
     (one,) = read([result("violated", run="https://a.b/c%20d.mcap?x=1&y=z e")])["results"]
     assert one["analysisTarget"] == {"uri": "https://a.b/c%20d.mcap?x=1&y=z%20e", "index": 0}
@@ -211,11 +250,16 @@ def test_an_address_on_the_web_stays_as_it_is() -> None:
 def test_the_command_prints_it(fretc: Fretc) -> None:
     shutil.copytree(ROOT / "requirements", "requirements")
     shutil.copy(ROOT / "traces/mission-seed15.mcap", "run.mcap")
+    good = fretc("audit", "run.mcap", "--format", "sarif")
+    assert good.status == 0
+    assert json.loads(good.out)["runs"][0]["results"] == []
+    shutil.copy("run.mcap", "whole.mcap")
+    Path("run.mcap").write_bytes(Path("whole.mcap").read_bytes()[:1_000_000])
     printed = fretc("audit", "run.mcap", "--format", "sarif")
-    assert printed.status == 0
+    assert printed.status == 3
     run = json.loads(printed.out)["runs"][0]
     accepted_by_code_scanning(run)
-    assert run["results"][0]["kind"] == "pass"
+    assert run["results"][0]["level"] == "warning"
     place = run["results"][0]["locations"][0]["physicalLocation"]
     line = Path("requirements/r1.fret").read_text("utf-8").splitlines()
     region = place["region"]

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from fretc.audit.outputs.table import parquet
+from fretc.audit.outputs.table import parquet, rows
 from tests.command import Fretc, Run
 from tests.fretc.audit.results import result as record
 from tests.fretc.report.cases import evidence, project, requirement, result, violation
@@ -15,7 +15,7 @@ R2 = requirement("R2", "whenever near the robot shall within 3 ticks satisfy sto
 
 
 def table(results: list[dict[str, Any]], fretc: str) -> bytes:
-    return parquet([record(**one) for one in results], fretc)
+    return parquet(rows([record(**one) for one in results], fretc))
 
 
 @pytest.fixture

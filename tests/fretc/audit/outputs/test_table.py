@@ -8,10 +8,9 @@ import pyarrow
 import pytest
 from pyarrow import parquet as files
 
-from fretc.audit.outputs import table
 from fretc.audit.outputs.table import parquet, read
+from fretc.audit.outputs.table import rows as rows_of
 from fretish.diagnostics.diagnostic import Diagnostic
-from tests.command import Fretc
 from tests.fretc.audit.results import result as record
 from tests.fretc.report.cases import LOG, evidence, moment, project, result, violation
 
@@ -23,10 +22,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def rows(*results: dict[str, Any]) -> list[dict[str, Any]]:
     """What is read of a table with these results."""
-    Path("runs.parquet").write_bytes(parquet([record(**one) for one in results], "1.2.3"))
-    table = read(["runs.parquet"])
-    assert not isinstance(table, Diagnostic), table.message
-    return [dict(row) for row in table.to_pylist()]
+    Path("runs.parquet").write_bytes(parquet(rows_of([record(**one) for one in results], "1.2.3")))
+    known = read(["runs.parquet"])
+    assert not isinstance(known, Diagnostic), known.message
+    return [dict(row) for row in known.results.to_pylist()]
 
 
 def code(*paths: str) -> tuple[str, str]:
@@ -112,7 +111,7 @@ def test_a_table_without_the_last_column_is_read_as_well() -> None:
     files.write_table(older, "older.parquet")
     tables = read(["older.parquet", "runs.parquet"])
     assert not isinstance(tables, Diagnostic), tables.message
-    assert tables.to_pylist() == [{**row, "log_summary_sha256": None}, row]
+    assert tables.results.to_pylist() == [{**row, "log_summary_sha256": None}, row]
     files.write_table(older.replace_schema_metadata({"schema": "fretc-table-2"}), "odd.parquet")
     assert code("odd.parquet")[0] == "F503"
 
@@ -124,7 +123,7 @@ def test_no_run_is_a_table_too() -> None:
 def test_the_same_results_give_the_same_bytes() -> None:
     own_project = result(project(Path("known")), "satisfied")
     results = [record(**own_project | {"run": f"{i}.mcap"}) for i in range(50)]
-    assert parquet(results, "1") == parquet(results, "1")
+    assert parquet(rows_of(results, "1")) == parquet(rows_of(results, "1"))
 
 
 def test_evidence_is_read_as_the_table_of_it() -> None:
@@ -132,14 +131,16 @@ def test_evidence_is_read_as_the_table_of_it() -> None:
     results = [result(own_project, "satisfied"), result(own_project, "violated", run="b.mcap")]
     content = evidence(own_project, *results)
     Path("evidence.json").write_text(json.dumps(content), "utf-8")
-    Path("runs.parquet").write_bytes(parquet([record(**one) for one in results], content["fretc"]))
+    Path("runs.parquet").write_bytes(
+        parquet(rows_of([record(**one) for one in results], content["fretc"]))
+    )
     own, other = read(["evidence.json"]), read(["runs.parquet"])
     assert not isinstance(own, Diagnostic)
     assert not isinstance(other, Diagnostic)
-    assert own.equals(other)
+    assert own.results.equals(other.results)
     both = read(["evidence.json", "runs.parquet"])
     assert not isinstance(both, Diagnostic)
-    assert both.num_rows == 4
+    assert both.results.num_rows == 4
 
 
 def test_what_is_no_table_is_told() -> None:
@@ -151,25 +152,13 @@ def test_what_is_no_table_is_told() -> None:
     Path("other.json").write_text('{"schema": "x"}')
     assert code("other.json")[0] == "F503"
     Path("folder").mkdir()
-    assert code("folder")[0] == "F902"
+    assert code("folder")[0] == "F516"
 
 
 def test_a_damaged_or_foreign_parquet_file_is_told() -> None:
-    good = parquet([record(**result(project(Path("known")), "satisfied"))], "1")
+    good = parquet(rows_of([record(**result(project(Path("known")), "satisfied"))], "1"))
     for part in (4, 100, len(good) - 1):
         Path("cut.parquet").write_bytes(good[:part])
         assert code("cut.parquet")[0] == "F503"
     files.write_table(pyarrow.table({"run": ["a"]}), "other.parquet")
     assert code("other.parquet") == ("F503", "`other.parquet` is no table of `fretc-table-2`")
-
-
-@pytest.mark.parametrize("options", [["--summary"], ["--query", "SELECT 1"]])
-def test_without_the_extra_the_line_that_installs_it_is_told(
-    fretc: Fretc, monkeypatch: pytest.MonkeyPatch, options: list[str]
-) -> None:
-    monkeypatch.setattr(table, "find_spec", lambda name: None)
-    run = fretc("audit", "runs.parquet", *options)
-    assert run.status == 2
-    assert run.err.startswith("F908 a table of runs needs `pyarrow` and `duckdb`\n")
-    assert "pip install 'fretc[fleet]'" in run.err
-    assert fretc("audit", "run.mcap", "--parquet", "x.parquet").err == run.err

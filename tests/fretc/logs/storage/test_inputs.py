@@ -28,6 +28,7 @@ from fretc.logs.storage import inputs
 from fretc.logs.storage.inputs import is_url, opened, shown
 from fretc.logs.storage.storage_diagnostics import install
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.rendering import render
 from tests.fretc.logs.logs import NONE, TWELVE, S, Sent, X, damaged, number, values, write
 
 ROOT = Path(__file__).parents[4]
@@ -175,12 +176,12 @@ def test_what_is_not_there_has_its_code(memory: str, url: str, code: Code) -> No
 
 
 def test_without_the_package_of_a_protocol_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "s3fs", None)
-    diagnostic = refused("s3://bucket/log.mcap")
+    monkeypatch.setitem(sys.modules, "gcsfs", None)
+    diagnostic = refused("gs://bucket/log.mcap")
     assert diagnostic.code is Code.MISSING_EXTRA
-    assert diagnostic.help == "install its package: pip install s3fs"
+    assert diagnostic.help == "install its package: pip install gcsfs"
     monkeypatch.setitem(sys.modules, "fsspec", None)
-    diagnostic = refused("s3://bucket/log.mcap")
+    diagnostic = refused("gs://bucket/log.mcap")
     assert diagnostic.code is Code.MISSING_EXTRA
     assert diagnostic.help == install("remote")
 
@@ -361,17 +362,77 @@ def _later(digest: inputs._Digest) -> str:
     return _result(digest)
 
 
+SIZES = pytest.mark.parametrize("small", [0, inputs._SMALL], ids=["large", "small"])
+
+
+@SIZES
 @pytest.mark.parametrize("integrity", list(Integrity))
-@pytest.mark.parametrize("change", [b"", b"more", b"other"])
+@pytest.mark.parametrize("change", [b"", b"longer", b"other"])
 def test_a_log_that_is_written_to_while_it_is_read_shows_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, integrity: Integrity, change: bytes
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    integrity: Integrity,
+    change: bytes,
+    small: int,
 ) -> None:
+    monkeypatch.setattr(inputs, "_SMALL", small)
     path = write(tmp_path / "log.mcap", TWELVE)
     os.utime(path, ns=(0, 0))
     data = path.read_bytes()
-    new = {b"": data[:-20], b"more": data + b"more", b"other": data[:-1] + b"?"}[change]
+    new = {b"": data[:-20], b"longer": b"not " + data, b"other": data[:-1] + b"?"}[change]
     written_to(monkeypatch, lambda: path.write_bytes(new))
     found = read(str(path), X, ["x"], integrity)
+    assert isinstance(found, Diagnostic)
+    assert found.code is Code.UNREADABLE
+
+
+@SIZES
+@pytest.mark.parametrize("integrity", list(Integrity))
+@pytest.mark.parametrize("whole", [True, False])
+def test_a_log_that_grows_while_it_is_read_is_what_it_was(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    integrity: Integrity,
+    whole: bool,
+    small: int,
+) -> None:
+    monkeypatch.setattr(inputs, "_SMALL", small)
+    path = write(tmp_path / "log.mcap", TWELVE)
+    data = path.read_bytes()
+    begun = data if whole else data[: len(data) // 2]
+    path.write_bytes(begun)
+    still = read(str(path), X, ["x"], integrity)
+
+    def grow() -> None:
+        with path.open("ab") as file:
+            file.write(data[len(begun) :] or b"more")
+
+    written_to(monkeypatch, grow)
+    grown = read(str(path), X, ["x"], integrity)
+    assert isinstance(still, Recording)
+    assert isinstance(grown, Recording)
+    assert values(grown, "x") == values(still, "x")
+    assert (grown.sha256, grown.size) == (still.sha256, len(begun))
+    assert grown.intact is whole
+    *found, finding = grown.findings
+    assert found == list(still.findings)
+    assert render(finding) == (
+        f"F431 warning: it grew while it was read: what is judged are the first {len(begun):,} "
+        f"bytes\n  --> {path}\nhelp: audit it again when its recording, or its copy, is complete"
+    )
+
+
+@SIZES
+def test_a_log_that_is_no_longer_what_it_was_has_not_grown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, small: int
+) -> None:
+    monkeypatch.setattr(inputs, "_SMALL", small)
+    path = write(tmp_path / "log.mcap", TWELVE)
+    data = path.read_bytes()
+    hashed = hashlib.sha256(data).hexdigest()
+    written_to(monkeypatch, lambda: path.write_bytes(data[:-1] + b"??"))
+    monkeypatch.setattr(inputs._Digest, "result", lambda self: hashed)  # it came first
+    found = read(str(path), X, ["x"])
     assert isinstance(found, Diagnostic)
     assert found.code is Code.UNREADABLE
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fretc.audit.evidence.briefs import Stretches
-from fretc.report.across.lanes import RunStretches, lanes
+from fretc.report.across.lanes import RunStretches, plan
 from fretc.report.model.across import LaneMark, Lanes
 from fretc.report.model.marks import verdict_mark
 
@@ -25,20 +25,35 @@ def stretches(draw: st.DrawFn) -> Stretches:
     )
 
 
+Drawn = list[tuple[RunStretches, Stretches]]
+
+
+def lanes(drawn: Drawn, *limits: int) -> Lanes | None:
+    """The picture of results with these stretches."""
+    chosen = plan("all", [each for each, _ in drawn], *limits)
+    return chosen.lanes({each.place: (own, ()) for each, own in drawn})
+
+
+def result(
+    place: int, word: str, own: Stretches, of: tuple[str, str, str, str, str, str]
+) -> tuple[RunStretches, Stretches]:
+    count = len(own.violations), len(own.unknown), len(own.open)
+    return RunStretches(*of, verdict_mark(word), place, True, count), own
+
+
 @st.composite
-def results(draw: st.DrawFn) -> list[RunStretches]:
-    found = []
+def results(draw: st.DrawFn) -> Drawn:
+    found: Drawn = []
     for run in range(draw(st.integers(1, 6))):
         for id in draw(st.sampled_from([("R1",), ("R1", "R2")])):
             own = draw(stretches())
             word = "violated" if own.violations else draw(st.sampled_from(["satisfied", "no data"]))
             of = (f"run-{run}", f"Run {run}", f"{run}.mcap", id, f"req-{id}", f"{id}.{run}")
-            found.append(RunStretches(*of, verdict_mark(word), own))
+            found.append(result(len(found), word, own, of))
     return found
 
 
-def expected(each: RunStretches) -> list[tuple[str, float, float]]:
-    own = each.stretches
+def expected(own: Stretches) -> list[tuple[str, float, float]]:
     return [
         *(("violated", *span) for span in own.violations),
         *(("unknown", *span) for span in own.unknown),
@@ -54,15 +69,15 @@ def covers(mark: LaneMark, kind: str, start: float, end: float, id: str) -> bool
 @given(results(), st.integers(1, 40), st.sampled_from([1, 30, 1000]))
 @settings(deadline=None, max_examples=60)
 def test_each_stretch_is_in_exactly_one_mark_at_its_time(
-    drawn: list[RunStretches], most: int, marks: int
+    drawn: Drawn, most: int, marks: int
 ) -> None:
-    picture = lanes("all", drawn, most, marks)
+    picture = lanes(drawn, most, marks)
     if picture is None:
-        assert not any(end for each in drawn for _, _, end in expected(each))
+        assert not any(end for _, own in drawn for _, _, end in expected(own))
         return
     for lane in picture.lanes:
-        own = [each for each in drawn if each.run == lane.anchor]
-        of_run = [(*one, each.requirement) for each in own for one in expected(each)]
+        mine = [pair for pair in drawn if pair[0].run == lane.anchor]
+        of_run = [(*one, each.requirement) for each, own in mine for one in expected(own)]
         for one in of_run:
             assert any(covers(mark, *one) for mark in lane.marks), one
         counts = Counter(dict.fromkeys(("violated", "unknown", "open"), 0))
@@ -77,29 +92,32 @@ def test_each_stretch_is_in_exactly_one_mark_at_its_time(
 
 @given(results(), st.integers(1, 5))
 @settings(deadline=None, max_examples=60)
-def test_what_is_left_out_is_counted_and_never_worse(drawn: list[RunStretches], most: int) -> None:
-    picture = lanes("all", drawn, most)
-    runs = {each.run for each in drawn}
+def test_what_is_left_out_is_counted_and_never_worse(drawn: Drawn, most: int) -> None:
+    picture = lanes(drawn, most)
+    runs = {each.run for each, _ in drawn}
     if picture is None:
         return
     kept = {lane.anchor for lane in picture.lanes}
-    left = [each for each in drawn if each.run not in kept]
+    left = [each for each, _ in drawn if each.run not in kept]
     assert len(kept) == min(most, len(runs))
     assert picture.left_out.startswith(f"{len(runs) - len(kept)} run") == (len(runs) > len(kept))
     worst = max(lane.mark.severity for lane in picture.lanes)
     assert all(each.mark.severity >= worst for each in left)
-    total = sum(len(each.stretches.violations) for each in left)
+    total = sum(each.count[0] for each in left)
     assert (f"{total} violation" in picture.left_out) == bool(total)
 
 
-def one(run: int, length: float, *violations: tuple[float, float], id: str = "R1") -> RunStretches:
+def one(
+    run: int, length: float, *violations: tuple[float, float], id: str = "R1"
+) -> tuple[RunStretches, Stretches]:
     of = (f"run-{run}", f"Run {run}", f"{run}.mcap", id, f"req-{id}", f"{id}.{run}")
     word = "violated" if violations else "satisfied"
-    return RunStretches(*of, verdict_mark(word), Stretches(length, violations, (), ()))
+    own = Stretches(length, violations, (), ())
+    return result(hash((id, run)), word, own, of)
 
 
-def picture(*drawn: RunStretches) -> Lanes:
-    found = lanes("all", drawn)
+def picture(*drawn: tuple[RunStretches, Stretches]) -> Lanes:
+    found = lanes([*drawn])
     assert found is not None
     return found
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
 from fretc.audit.evidence.declared_units import in_declared_units
-from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Evidence, Result
+from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.writer import as_record
 from fretc.audit.one_log import audit
 from fretc.audit.plan import monitored_requirements, planned
@@ -117,8 +117,7 @@ def judged(known: Project, log: Recording) -> list[tuple[Formalized, Result, Tra
     results = [
         as_record(each) for each in audit(log, plan.declarations, monitored_requirements(plan))
     ]
-    document = Document(SCHEMA, "0", Bindings("b", SHA), (), tuple(results))
-    shown = in_declared_units(Evidence("e", SHA, document), known.declarations).results
+    shown = [in_declared_units(each, known.declarations) for each in results]
     rules = {rule.id: rule for rule in known.rules}
     return [
         (rule, result, trace(rule.declarations, log, rule.watched))

@@ -32,6 +32,8 @@ def overall(folder: Path, *cases: tuple[str, dict[str, str]]) -> dict[str, Any]:
     return outcome
 
 
+T1, T2, T3 = (f"Title of R{n} (R{n})" for n in (1, 2, 3))
+NAME = "Stop when something is near (R1)"
 BINDINGS = "the bindings have changed since the audit"
 SENTENCE = "the sentence has changed since the audit"
 
@@ -39,30 +41,32 @@ SENTENCE = "the sentence has changed since the audit"
 @pytest.mark.parametrize(
     ("cases", "headline", "suspect"),
     [
-        ([("violated", {})], "R1 is violated.", False),
-        ([("violated", OLD)], f"R1 was violated, and {BINDINGS}.", True),
-        ([("violated", {})] * 2, "R1 and R2 are violated.", False),
-        ([("violated", OLD)] * 2, f"R1 and R2 were violated, and {BINDINGS}.", True),
+        ([("violated", {})], f"{T1} is violated.", False),
+        ([("violated", OLD)], f"{T1} was violated, and {BINDINGS}.", True),
+        ([("violated", {})] * 2, f"{T1} and {T2} are violated.", False),
+        ([("violated", OLD)] * 2, f"{T1} and {T2} were violated, and {BINDINGS}.", True),
         (
             [("violated", OLD), ("violated", {}), ("violated", OTHER)],
-            f"R2 is violated; R1 was violated, and {BINDINGS}; R3 was violated, and {SENTENCE}.",
+            f"{T2} is violated; {T1} was violated, and {BINDINGS}; "
+            f"{T3} was violated, and {SENTENCE}.",
             False,
         ),
-        ([("violated", {}), ("satisfied", OLD)], "R1 is violated.", False),
+        ([("violated", {}), ("satisfied", OLD)], f"{T1} is violated.", False),
         (
             [("satisfied", OLD), ("vacuous", {})],
-            f"Nothing that was claimed is shown: R1 was satisfied, and {BINDINGS}.",
+            f"Nothing that was claimed is shown: {T1} was satisfied, and {BINDINGS}.",
             False,
         ),
         (
             [("satisfied", {}), ("satisfied", OLD), ("vacuous", OTHER)],
-            f"Not everything that was claimed is shown: R3 was vacuous, and {SENTENCE}; "
-            f"R2 was satisfied, and {BINDINGS}.",
+            f"Not everything that was claimed is shown: {T3} was vacuous, and {SENTENCE}; "
+            f"{T2} was satisfied, and {BINDINGS}.",
             False,
         ),
         (
             [("satisfied", {**OLD, **OTHER})],
-            f"Nothing that was claimed is shown: R1 was satisfied, and {SENTENCE} and {BINDINGS}.",
+            f"Nothing that was claimed is shown: {T1} was satisfied, "
+            f"and {SENTENCE} and {BINDINGS}.",
             False,
         ),
     ],
@@ -77,7 +81,7 @@ def test_it_says_what_is_violated_what_is_stale_and_why(
 
 def test_beside_a_violation_what_else_is_stale_comes_next(tmp_path: Path) -> None:
     outcome = overall(tmp_path, ("violated", {}), ("satisfied", OLD))
-    assert outcome["sentences"][0] == f"R2 was satisfied, and {BINDINGS}."
+    assert outcome["sentences"][0] == f"{T2} was satisfied, and {BINDINGS}."
 
 
 def test_red_stays_red_where_the_sentence_cannot_be_read_any_more(tmp_path: Path) -> None:
@@ -86,7 +90,7 @@ def test_red_stays_red_where_the_sentence_cannot_be_read_any_more(tmp_path: Path
     now = project(tmp_path, R1.replace("eventually", "evntually"))
     content = as_json(report_of(now, tmp_path, broken))
     assert content["overall"]["headline"] == (
-        "R1 was violated, and the sentence cannot be formalized now."
+        f"{NAME} was violated, and the sentence cannot be formalized now."
     )
     assert content["requirements"][0]["reasons"][0].startswith("Run 1: violated, ")
     assert content["requirements"][0]["reasons"][1].startswith("F107: ")
@@ -96,7 +100,7 @@ def test_one_current_violation_is_enough_for_a_current_verdict(tmp_path: Path) -
     known = project(tmp_path)
     old = red(known, "R1", run="old.mcap", hashes=OLD)
     content = as_json(report_of(known, tmp_path, old, red(known, "R1", run="new.mcap")))
-    assert content["overall"]["headline"] == "R1 is violated."
+    assert content["overall"]["headline"] == f"{NAME} is violated."
     assert [reason.split(",")[0] for reason in content["requirements"][0]["reasons"]] == [
         "Run 2: violated",
         "Run 1: violated",
@@ -107,7 +111,7 @@ def test_a_new_good_run_of_another_log_does_not_hide_an_old_violation(tmp_path: 
     known = project(tmp_path)
     old = red(known, "R1", run="old.mcap", hashes=OLD)
     content = as_json(report_of(known, tmp_path, old, result(known, "satisfied", run="new.mcap")))
-    assert content["overall"]["headline"] == f"R1 was violated, and {BINDINGS}."
+    assert content["overall"]["headline"] == f"{NAME} was violated, and {BINDINGS}."
 
 
 def test_runs_with_errors_come_first_and_are_named(tmp_path: Path) -> None:

@@ -5,38 +5,50 @@ from pathlib import Path
 import pytest
 
 from benchmarks.report import evidence, project
-from fretc.report.make import make
+from fretc.report.make import ReportBuild, make
 from fretc.report.model.views import Report
 from fretc.report.page import selection as choosing
-from fretc.report.page.selection import DETAILED, PICTURES, selection
+from fretc.report.page.selection import DETAILED, PICTURES, Selection
+from fretc.report.page.selection import selection as chosen_of
 from tests.fretc.report.cases import project as small_project
 from tests.fretc.report.cases import report_of, result
 
 
-def reported(folder: Path, requirements: int, runs: int, share: float) -> tuple[Report, str]:
+def reported(folder: Path, requirements: int, runs: int, share: float) -> tuple[ReportBuild, str]:
     known = project(folder, requirements)
     path = folder / "evidence.json"
     path.write_text(json.dumps(evidence(known, runs, share)), encoding="utf-8")
     build = make(known, str(path))
-    assert build.report is not None
     assert build.html is not None
-    return build.report, build.html
+    return build, build.html
+
+
+def whole(build: ReportBuild) -> Report:
+    assert build.report is not None
+    return build.report
+
+
+def selection(build: ReportBuild) -> Selection:
+    assert build.report is not None
+    assert build.details is not None
+    return chosen_of(build.report, build.details)
 
 
 @pytest.mark.slow
 def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(tmp_path: Path) -> None:
-    report, html = reported(tmp_path, 50, 20, 0.05)
+    build, html = reported(tmp_path, 50, 20, 0.05)
     assert len(html.encode()) <= 2_000_000
-    chosen = selection(report)
+    chosen = selection(build)
     assert all(len(section.rows) == 20 for section in chosen.by_anchor.values())
-    violated = {r.anchor for view in report.requirements for r in view.results if r.violations}
+    rows = [row for view in whole(build).requirements for row in view.results]
+    violated = {row.anchor for row in rows if row.violations_total}
     assert {r.anchor for section in chosen.by_anchor.values() for r in section.details} == violated
 
 
 @pytest.mark.slow
 def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(tmp_path: Path) -> None:
-    report, html = reported(tmp_path, 12, 10, 1.0)
-    chosen = selection(report)
+    build, html = reported(tmp_path, 12, 10, 1.0)
+    chosen = selection(build)
     counts = [len(section.details) for section in chosen.by_anchor.values()]
     assert sum(counts) == DETAILED
     assert max(counts) - min(counts) <= 1
@@ -46,10 +58,10 @@ def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(tmp_p
 
 
 def test_a_few_satisfied_runs_can_be_opened_in_the_page(tmp_path: Path) -> None:
-    report, html = reported(tmp_path, 2, 3, 0.0)
-    chosen = selection(report)
+    build, html = reported(tmp_path, 2, 3, 0.0)
+    chosen = selection(build)
     assert [len(section.folded) for section in chosen.by_anchor.values()] == [3, 3]
-    assert html.count("<summary>Details of runs that satisfy") == 2
+    assert html.count('<details class="run">') == 6
 
 
 @pytest.mark.slow
@@ -58,12 +70,12 @@ def test_a_compact_page_lists_what_is_not_satisfied_and_says_so(
 ) -> None:
     monkeypatch.setattr(choosing, "COMPACT", 50)
     monkeypatch.setattr(choosing, "_RUN_ROWS", 9)
-    report, html = reported(tmp_path, 3, 20, 0.5)
-    chosen = selection(report)
+    build, html = reported(tmp_path, 3, 20, 0.5)
+    chosen = selection(build)
     assert chosen.is_compact
     rows = [row for section in chosen.by_anchor.values() for row in section.rows]
     assert {row.mark.word for row in rows} == {"violated"}
-    assert len(rows) < sum(len(view.results) for view in report.requirements)
+    assert len(rows) < sum(len(view.results) for view in whole(build).requirements)
     assert "This page is compact, because 60 results are more than 50" in html
     assert "Left out here: 11 runs without a row. The evidence file has them all." in html
     links = set(re.findall(r'href="#([^"]+)"', html))
@@ -87,8 +99,7 @@ def test_the_worst_run_of_a_requirement_gets_its_details_first(
     known = small_project(tmp_path)
     verdicts = ("satisfied", "inconclusive", "violated")
     results = [result(known, word, run=f"{word}.mcap") for word in verdicts]
-    report = report_of(known, tmp_path, *results).report
-    assert report is not None
-    (section,) = selection(report).by_anchor.values()
+    build = report_of(known, tmp_path, *results)
+    (section,) = selection(build).by_anchor.values()
     assert [each.run_file for each in section.details] == ["violated.mcap"]
     assert [row.has_details for row in section.rows] == [True, False, True]

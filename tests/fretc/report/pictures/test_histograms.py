@@ -46,7 +46,7 @@ def test_all_latencies_are_counted_and_the_bound_is_marked(tmp_path: Path) -> No
     }
     assert (late["bound"], late["bound_label"]) == (3.0, "bound 3 s")
     assert late["text"] == (
-        "4 answers in 2 runs: median 0.3 s, longest 3.2 s; bound 3 s, 1 later. "
+        "4 answers in 2 runs: median 300 ms, longest 3.2 s; bound 3 s, 1 later. "
         "1 from 0 up to 0.2 s, 2 above 0.2 up to 0.4 s and 1 above 3 up to 3.2 s. "
         "Without an answer: 2 triggers whose time or scope ran out."
     )

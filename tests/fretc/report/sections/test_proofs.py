@@ -83,7 +83,7 @@ def test_the_worst_claim_decides(tmp_path: Path) -> None:
     assert overall["mark"]["word"] == "not all shown"
     assert overall["headline"] == "What was audited held; verification found counterexamples."
     assert overall["sentences"][1] == (
-        "Verification found a counterexample to R1; part 4 has the claim."
+        "Verification found a counterexample to Title of R1 (R1); part 4 has the claim."
     )
 
 

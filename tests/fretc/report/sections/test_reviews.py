@@ -8,6 +8,7 @@ import pytest
 
 from compiler.project.folder import Project
 from fretc.audit.evidence import reader as reading
+from fretc.audit.evidence.briefs import Briefs
 from fretc.report.make import make
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, accepted, text
@@ -44,7 +45,8 @@ def lock(known: Project, folder: Path) -> None:
     audited = reading.read(str(folder / "evidence.json"))
     assert not isinstance(audited, Diagnostic)
     reviews = {
-        c.requirement: accepted(c, "A", "B", "2026-09-01", "c") for c in chains(known, audited)
+        c.requirement: accepted(c, "A", "B", "2026-09-01", "c")
+        for c in chains(known, Briefs.of(audited))
     }
     (folder / "fretc.lock").write_text(text(Lock(reviews)), encoding="utf-8")
 
@@ -100,16 +102,25 @@ def test_what_changed_since_the_review_makes_the_requirement_suspect(tmp_path: P
     view = only(report)
     assert (view["mark"]["word"], view["mark"]["suspect"]) == ("satisfied", True)
     assert view["coverage"] == "suspect"
-    why = "bindings R1 changed since the review of 2026-09-01"
+    text = "near: clearance < 5 cm → 90 cm"
+    why = f"something has changed since the review of 2026-09-01: {text}"
     assert view["suspicions"] == view["results"][0]["suspicions"] == view["reasons"] == [why]
-    assert report["matrix"][0]["cells"][0]["mark"]["suspect"]
+    assert report["requirements"][0]["results"][0]["mark"]["suspect"]
+    assert report["matrix"][0]["review"]["word"] == "changed since the review"
     assert [c["results"] for c in report["counts"] if c["mark"]["word"] == "satisfied"] == [1, 0]
-    assert view["review"]["changes"] == ["bindings R1"]
+    assert view["review"]["changes"] == [text]
     (change,) = report["changes"]
-    assert change["lines"] == ["changed: bindings R1"]
-    assert change["links"]["lines"][0] == (
-        "bindings R1 → verdict R1 logs/a.mcap, because of bindings R1"
-    )
+    assert change["lines"] == [text]
+    assert change["suspicion"] == "2 links are suspect: near changed"
+    (group,) = report["change_groups"]
+    assert group["change"] == change["texts"][0]
+    assert group["change"]["segments"] == [
+        ["same", "clearance < "],
+        ["before", "5 cm"],
+        ["after", "90 cm"],
+    ]
+    assert (group["requirements"], group["links"]) == ([["R1", "req-R1"]], 2)
+    assert f"Changed since the review: R1: {text}." in report["overall"]["sentences"]
     assert report["overall"]["mark"]["word"] == "nothing shown"
 
 
@@ -144,7 +155,10 @@ def test_a_waiver_covers_a_verdict_and_does_not_hide_it(tmp_path: Path) -> None:
     assert view["waiver"]["covers"]["word"] == "violated"
     assert view["waiver"]["by"] == "A. Meier, safety engineer, 2026-01-01"
     assert report["waivers"] == [view["waiver"]]
-    assert "R1 (violated) is waived, and not shown." in report["overall"]["sentences"]
+    assert (
+        "1 requirement is waived, and not shown: Stop when something is near (R1): violated."
+        in report["overall"]["sentences"]
+    )
     assert report["overall"]["mark"]["word"] == "nothing shown"
 
 

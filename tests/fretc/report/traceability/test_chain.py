@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from compiler.project.folder import Project
 from fretc.audit.evidence import reader as reading
+from fretc.audit.evidence.briefs import Briefs
 from fretc.report.traceability.chain import Chain, Link, Node, chains, suspects
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.fretc.report import cases
@@ -30,7 +31,7 @@ def chain(project: Project, *results: Mapping[str, Any]) -> Chain:
     path.write_text(json.dumps(cases.evidence(project, *results)), encoding="utf-8")
     audited = reading.read(str(path))
     assert not isinstance(audited, Diagnostic), audited
-    (only,) = chains(project, audited)
+    (only,) = chains(project, Briefs.of(audited))
     return only
 
 
@@ -175,7 +176,7 @@ def test_a_link_is_suspect_exactly_if_a_change_reaches_its_source(
     reached = set(wrong)
     for _ in NODES:
         reached |= {b for a, b in edges if a in reached}
-    suspect_links = suspects(Chain("R1", prints, links, {}), locked)
+    suspect_links = suspects(Chain("R1", prints, links), locked)
     assert {s.link for s in suspect_links} == {ln for ln in links if int(ln.source.name) in reached}
     assert len({s.link for s in suspect_links}) == len(suspect_links)
     for suspect in suspect_links:

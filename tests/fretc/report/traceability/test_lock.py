@@ -46,7 +46,7 @@ GOOD = text(Lock({"R1": Review("R1", "r", "s", "2026-01-02", "c", {Node("text", 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"fretc-lock-2"', '"fretc-lock-9"', "the lock is not of the form `fretc-lock-2`"),
+        ('"fretc-lock-3"', '"fretc-lock-9"', "the lock is not of the form `fretc-lock-3`"),
         ('reviewer = "r"', "", "the review of R1 has no `reviewer`"),
         ('reviewer = "r"', "reviewer = 1", "the review of R1 has no `reviewer`"),
         ('"2026-01-02"', '"2026-13-02"', "`2026-13-02` is no date"),

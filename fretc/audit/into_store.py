@@ -1,0 +1,512 @@
+"""An audit whose results go into a store as they are found; a log that is known is not read again.
+
+In memory are only the logs of the parts that are being filled. Whatever ends the audit early, what
+is finished is in the store (`unfinished.json`), and the next audit takes it over.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import time
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import closing, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TypeVar
+
+from compiler.files.edition import __version__
+from compiler.files.records import UNSET, replace
+from compiler.files.text_files import destination, write
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.schema import Result
+from fretc.audit.many_logs import (
+    Engine,
+    LogAudit,
+    diagnostics_of_all,
+    document,
+    estimates_of,
+    labelled,
+)
+from fretc.audit.plan import Plan, keys
+from fretc.audit.store.anywhere import StoreError
+from fretc.audit.store.manifest import FILE, REUSE, SCHEMA, UNFINISHED, Manifest, Part
+from fretc.audit.store.parts import parts
+from fretc.audit.store.reader import Store, manifest, opened
+from fretc.audit.store.recordings import KnownBy
+from fretc.audit.store.register import (
+    Entry,
+    diagnostic,
+    diagnostic_text,
+    marks,
+    vouched,
+    vouches,
+)
+from fretc.audit.store.tables import Tables, joined, tabled
+from fretc.audit.store.writer import (
+    files,
+    is_store,
+    remove,
+    remove_others,
+    write_manifest,
+    write_part,
+    write_register,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+
+_HEAVY = 2_000
+"""Events of a log that become columns at once, and do not wait for the other logs of its part."""
+_PATIENCE = 2.0
+"""Seconds after which what is finished is kept."""
+_SHARE = 20
+"""Keeping takes one of so many seconds at most."""
+
+
+@dataclass(frozen=True, slots=True)
+class StoredAudit:
+    """The outcome of an audit, whose results are in a store."""
+
+    source: Store
+    diagnostics: tuple[Diagnostic, ...]
+    read: int
+    """How many of the logs could be read."""
+    estimates: tuple[Estimated, ...]
+
+
+# What is known -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Known:
+    """A log of an earlier audit by the same plan."""
+
+    store: Store
+    entry: Entry
+    by: KnownBy
+    part: int
+    place: int
+    """Of its first result."""
+    results: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Some:
+    """A log of an audit by a plan that has some of the claims."""
+
+    store: Store
+    claims: Collection[str]
+    part: range
+    """The places of all results of its part."""
+    first: int
+    """Where in these its own begin."""
+    count: int
+
+
+class Earlier:
+    """What earlier audits of this plan have shown, and this user's key vouches for."""
+
+    def __init__(self, folder: Path, plan: Plan, key: bytes | None, *, rehash: bool) -> None:
+        """Read the manifests and registers that are there.
+
+        Args:
+            folder: of the store.
+            plan: what logs are judged by.
+            key: of the user; None: nothing is known.
+            rehash: know a log by its SHA-256 alone.
+        """
+        self.stale = False
+        """Whether a store of another plan is there."""
+        self.foreign = False
+        """Whether a store is there for which this user's key does not vouch."""
+        self._plan, self._rehash = plan, rehash
+        self._logs: dict[str, tuple[Store, Entry, int, int, int]] = {}
+        self._parts: dict[tuple[str, ...], tuple[Store, Part]] = {}
+        self.claims: set[str] = set()
+        """Those of another plan that are claims of this one, to the letter."""
+        self._some: dict[str, _Some] = {}
+        self._last: tuple[Store, range, list[Result]] | None = None
+        """The results of one part: its logs are asked for one after the other."""
+        for name in (FILE, UNFINISHED) if key is not None else ():
+            assert key is not None
+            self._read(folder, name, key)
+
+    def _read(self, folder: Path, name: str, key: bytes) -> None:
+        store = opened(str(folder), name) if (folder / name).is_file() else None
+        if not isinstance(store, Store):
+            return
+        about = vouches(folder, REUSE[name], store.sha256, key)
+        if about is None:
+            self.foreign = True
+            return
+        if about["plan"] != self._plan.key:
+            self.stale = True
+            claims = keys(self._plan)
+            same = {id for id, key in about["claims"].items() if claims.get(id) == key}
+            with suppress(StoreError):
+                self._add_some(store, same)
+            return
+        with suppress(StoreError):
+            self._add(store, alike=about["labels"] == dict(self._plan.labels))
+
+    def _add_some(self, store: Store, same: Collection[str]) -> None:
+        """Results by claims that are what they were, though others are not."""
+        entries, counts = store.register(), [*store.counts()]
+        if not same or len(entries) != len(counts):
+            return
+        self.claims |= {*same}
+        row = place = 0
+        for part in store.manifest.parts:
+            stop, at = place + part.results, place
+            for entry, count in zip(
+                entries[row : row + part.runs], counts[row : row + part.runs], strict=True
+            ):
+                self._some[entry.log] = _Some(store, same, range(place, stop), at - place, count)
+                at += count
+            row, place = row + part.runs, stop
+
+    def _add(self, store: Store, *, alike: bool) -> None:
+        entries, counts = store.register(), [*store.counts()]
+        if len(entries) != len(counts):
+            return
+        row = place = 0
+        for number, part in enumerate(store.manifest.parts):
+            of_part = entries[row : row + part.runs]
+            for entry, count in zip(of_part, counts[row : row + part.runs], strict=True):
+                self._logs[entry.log] = (store, entry, number, place, count)
+                place += count
+            row += part.runs
+            if alike:
+                self._parts[tuple(entry.log for entry in of_part)] = (store, part)
+
+    def find(self, log: str) -> _Known | None:
+        """What is known of a log that is as it was."""
+        if log not in self._logs:
+            return None
+        store, entry, part, place, count = self._logs[log]
+        by = entry.known_by_now(rehash=self._rehash)
+        return None if by is None else _Known(store, entry, by, part, place, count)
+
+    def results(self, log: str) -> tuple[Result, ...]:
+        """Those of a log by claims that are what they were, though the plan is not."""
+        some = self._some.get(log)
+        if some is None:
+            return ()
+        if self._last is None or self._last[0] is not some.store or self._last[1] != some.part:
+            try:
+                found = [each for _, each in some.store.details(some.part)]
+            except StoreError:
+                found = []
+            self._last = some.store, some.part, found
+        of_log = self._last[2][some.first : some.first + some.count]
+        return tuple(each for each in of_log if each.requirement in some.claims)
+
+    def part(self, logs: Sequence[str], known: Mapping[str, _Known]) -> Part | None:
+        """A part that has just these logs, with all that all runs have."""
+        store, part = self._parts.get(tuple(logs), (None, None))
+        is_same = all(log in known and known[log].store is store for log in logs)
+        return part if is_same else None
+
+
+def _results(plan: Plan, known: _Known) -> tuple[Result, ...]:
+    """The results of a known log, with the labels that this audit gives."""
+    places = range(known.place, known.place + known.results)
+    own = known.entry.labels or UNSET
+    results = (replace(one, labels=own) for _, one in known.store.details(places))
+    return labelled(plan, LogAudit(tuple(results), (), read=True)).results
+
+
+# What is written ---------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class _Log:
+    """A log that is finished, until its part is written."""
+
+    entry: Entry
+    results: tuple[Result, ...] = ()
+    tables: Tables | None = None
+    known: _Known | None = None
+
+
+@dataclass(slots=True)
+class _Draft:
+    """A part that is being filled, or is written."""
+
+    logs: Sequence[str]
+    found: dict[str, _Log] = field(default_factory=dict)
+    entries: tuple[Entry, ...] = ()
+    part: Part | None = None
+
+
+class _WriteError(Exception):
+    """A file of the store cannot be written."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+class Session:
+    """An audit into a store, from its beginning to its end."""
+
+    def __init__(
+        self, folder: Path, plan: Plan, logs: Sequence[str], key: bytes | None, *, rehash: bool
+    ) -> None:
+        """Lock the folder, and find out what is known of the logs.
+
+        Args:
+            folder: of the store.
+            plan: what the logs are judged by.
+            logs: each once.
+            key: of the user; None: nothing is taken over, now or later.
+            rehash: know a log by its SHA-256 alone.
+
+        Raises:
+            OSError: the folder cannot be used.
+        """
+        self.folder, self._plan, self._key = folder, plan, key
+        destination(folder / FILE)
+        self._new_folder = None if folder.parent.exists() else folder.parent
+        folder.mkdir(parents=True, exist_ok=True)
+        self._lock = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            self.earlier = Earlier(folder, plan, key, rehash=rehash)
+        except BaseException:
+            os.close(self._lock)
+            raise
+        self._before = files(folder)
+        """What was there: an earlier manifest that is damaged may need it."""
+        self._is_finished = False
+        self._drafts = [_Draft([logs[n] for n in places]) for places in parts(logs)]
+        self._draft_of = {log: draft for draft in self._drafts for log in draft.logs}
+        self.known = {log: one for log in logs if (one := self.earlier.find(log)) is not None}
+        self.new = [log for log in logs if log not in self.known]
+        self.kept = 0
+        """Logs that were audited by this session and are in the store."""
+        self._diagnostics: dict[Diagnostic, Diagnostic] = {}
+        self._of_log: dict[str, tuple[Diagnostic, ...]] = {}
+        self._read = 0
+        self._next = time.monotonic() + _PATIENCE
+
+    def __enter__(self) -> Session:
+        """For as long as its results are read."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Remove what no manifest names, and let another audit have the folder."""
+        try:
+            names = [name for name in (FILE, UNFINISHED) if (self.folder / name).exists()]
+            found = [manifest(self.folder, name) for name in names]
+            if not any(each is None or each.parts for each in found):
+                remove(self.folder)
+                if self._new_folder is not None:
+                    with suppress(OSError):  # something else is in it by now
+                        self._new_folder.rmdir()
+            else:
+                others = set() if self._is_finished else self._before
+                remove_others(self.folder, *filter(None, found), kept=others)
+        finally:
+            os.close(self._lock)
+
+    def run(self, engine: Engine, tell: Callable[[str], None]) -> StoredAudit | Diagnostic:
+        """Audit what is not known, and write all.
+
+        Args:
+            engine: where; the results do not depend on it.
+            tell: is called with each log that was audited.
+        """
+        try:
+            if not is_store(self.folder):  # marked, so that what is in it is known to be ours
+                self._write(self._manifest([], UNFINISHED), UNFINISHED)
+            self._take_over()
+            with closing(engine(self._plan, self.new)) as items:
+                for item in items:
+                    if isinstance(item, Diagnostic):
+                        self._keep()
+                        return item
+                    log, audited = item
+                    self._take(log, audited)
+                    tell(log)
+                    self._keep_in_time()
+            return self._finish()
+        except KeyboardInterrupt:
+            self._keep()
+            raise
+        except _WriteError as error:
+            return error.diagnostic
+        except StoreError as error:
+            return error.diagnostic
+
+    def _take_over(self) -> None:
+        """Everything that is known."""
+        for log, known in self.known.items():
+            entry = replace(known.entry, known_by=known.by)
+            source = self._plan.declarations.source
+            notes = tuple(self._one(diagnostic(each, source)) for each in entry.diagnostics)
+            self._note(log, notes)
+            self._draft_of[log].found[log] = _Log(entry, known=known)
+            self._read += 1
+        for draft in self._drafts:
+            part = self.earlier.part(draft.logs, self.known)
+            if part is not None:
+                draft.part = part
+                draft.entries = tuple(draft.found[log].entry for log in draft.logs)
+                draft.found = {}
+            else:
+                self._complete(draft)
+
+    def _take(self, log: str, own: LogAudit) -> None:
+        """A log that was audited."""
+        audited = labelled(self._plan, own)
+        source = self._plan.declarations.source
+        first = own.results[0]
+        entry = Entry(
+            run=first.run,
+            log=log,
+            place=os.path.realpath(log),
+            known_by=own.known_by,
+            sha256=first.fingerprints.log or "",
+            **marks(own.stamp if own.read else None),
+            labels=first.labels or {},
+            diagnostics=tuple(diagnostic_text(each, source) for each in own.diagnostics),
+        )
+        self._note(log, tuple(map(self._one, own.diagnostics)))
+        self._read += own.read
+        one = _Log(entry, audited.results)
+        if sum(map(_events, audited.results)) > _HEAVY:
+            one = _Log(entry, tables=tabled(audited.results, __version__))
+        draft = self._draft_of[log]
+        draft.found[log] = one
+        self.kept += entry.size is not None
+        self._complete(draft)
+
+    def _one(self, found: Diagnostic) -> Diagnostic:
+        """The same diagnostic once in memory: logs share them."""
+        return self._diagnostics.setdefault(found, found)
+
+    def _note(self, log: str, notes: tuple[Diagnostic, ...]) -> None:
+        if notes:
+            self._of_log[log] = notes
+
+    def _complete(self, draft: _Draft) -> None:
+        """Write a part, if all its logs are finished."""
+        if len(draft.found) == len(draft.logs):
+            draft.part = self._written(draft, draft.logs)
+            draft.entries = tuple(draft.found[log].entry for log in draft.logs)
+            draft.found = {}
+
+    def _written(self, draft: _Draft, logs: Sequence[str]) -> Part:
+        groups = list(self._grouped(draft.found[log] for log in logs))
+        return _right(write_part(self.folder, joined(groups)))
+
+    def _grouped(self, found: Iterator[_Log]) -> Iterator[Tables]:
+        """Tables of all of them, in their order."""
+        waiting: list[Result] = []
+        for one in found:
+            if one.tables is None:
+                waiting += one.results if one.known is None else _results(self._plan, one.known)
+                continue
+            if waiting:
+                yield tabled(waiting, __version__)
+                waiting = []
+            yield one.tables
+        if waiting:
+            yield tabled(waiting, __version__)
+
+    # Manifests
+
+    def _manifest(self, drafts: Sequence[tuple[Part, Sequence[Entry]]], name: str) -> Manifest:
+        entries = [entry for _, some in drafts for entry in some]
+        about = document(self._plan, (), ())
+        made = Manifest(
+            schema=SCHEMA,
+            fretc=about.fretc,
+            bindings=about.bindings,
+            requirements=about.requirements,
+            confidence=self._plan.confidence,
+            parts=tuple(part for part, _ in drafts),
+            register=_right(write_register(self.folder, entries)),
+        )
+        if name == UNFINISHED:
+            return made
+        provisional = Store(str(self.folder), "", made)
+        estimates = estimates_of(self._plan, (each for _, each in provisional.briefs()))
+        return replace(made, probabilities=estimates or UNSET)
+
+    def _write(self, made: Manifest, name: str) -> str:
+        """Write a manifest, and what vouches for it."""
+        digest = _right(write_manifest(self.folder, made, name))
+        if self._key is not None:
+            plan = self._plan
+            names = self.folder, plan.key, keys(plan)
+            content = vouched(*names, plan.labels, digest, self._key)
+            wrong = write({self.folder / REUSE[name]: content})
+            if wrong is not None:
+                raise _WriteError(wrong)
+        return digest
+
+    def _keep_in_time(self) -> None:
+        now = time.monotonic()
+        if now >= self._next:
+            self._keep()
+            took = time.monotonic() - now
+            self._next = time.monotonic() + max(_PATIENCE, _SHARE * took)
+
+    def _keep(self) -> None:
+        """Keep what is finished, for an audit that takes it over."""
+        if self._key is None:
+            return
+        found: list[tuple[Part, Sequence[Entry]]] = []
+        for draft in self._drafts:
+            if draft.part is not None:
+                found.append((draft.part, draft.entries))
+                continue
+            logs = [log for log in draft.logs if log in draft.found]
+            if logs:
+                part = self._written(draft, logs)
+                found.append((part, [draft.found[log].entry for log in logs]))
+        self._write(self._manifest(found, UNFINISHED), UNFINISHED)
+
+    def _finish(self) -> StoredAudit:
+        found: list[tuple[Part, Sequence[Entry]]] = []
+        for draft in self._drafts:
+            assert draft.part is not None, "every log is finished"
+            found.append((draft.part, draft.entries))
+        made = self._manifest(found, FILE)
+        entries = [entry for _, some in found for entry in some]
+        store = Store(str(self.folder), "", made)
+        if self._read:  # a mistyped name must not cost the evidence of the last audit
+            store = Store(str(self.folder), self._write(made, FILE), made)
+            self._is_finished = True
+            for name in (UNFINISHED, REUSE[UNFINISHED]):
+                (self.folder / name).unlink(missing_ok=True)
+        estimates = tuple(store.probabilities)
+        of_logs = [(entry.run, self._of_log.get(entry.log, ())) for entry in entries]
+        said = diagnostics_of_all(self._plan, of_logs, store.tallies(), estimates)
+        return StoredAudit(store, said, self._read, estimates)
+
+
+T = TypeVar("T")
+
+
+def _right(made: T | Diagnostic) -> T:
+    if isinstance(made, Diagnostic):
+        raise _WriteError(made)
+    return made
+
+
+def _events(result: Result) -> int:
+    parts = (result.states, result.answers, result.triggers, result.latencies, result.open)
+    return sum(map(len, parts)) + 50 * len(result.violations)
+
+
+def busy(folder: Path) -> Diagnostic:
+    """F912."""
+    return Diagnostic(
+        Code.BUSY,
+        f"another audit is at work on `{folder}`",
+        Source(str(folder), "").span(),
+        help="wait for it, or name another place with `-o`",
+    )

@@ -1,0 +1,1 @@
+"""Evidence of many runs: a folder of Parquet tables and a manifest."""

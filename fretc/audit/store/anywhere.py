@@ -1,0 +1,72 @@
+"""Evidence wherever it is: in a JSON file or in a store."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+
+from fretc.audit.evidence import reader as files
+from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.reader import Evidence
+from fretc.audit.measurements.confidence_intervals import REFUTED
+from fretish.diagnostics.diagnostic import Diagnostic, Severity
+
+
+class StoreError(Exception):
+    """A table of a store is not what it must be."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+def read(path: str) -> Evidence | Diagnostic:
+    """Read and check evidence; a note, not an error, where there is none yet.
+
+    Args:
+        path: a file, or the folder of a store: that is read into memory as a whole.
+    """
+    if not os.path.isdir(path):
+        return files.read(path)
+    from fretc.audit.store.reader import evidence, opened
+
+    store = opened(path)
+    if isinstance(store, Diagnostic):
+        return store
+    try:
+        return evidence(store)
+    except StoreError as error:
+        return error.diagnostic
+
+
+def source(path: str) -> EvidenceSource | Diagnostic:
+    """Evidence to read from, of a store little at a time; a note where there is none yet.
+
+    Its methods raise `StoreError` where a store turns out not to be what it must be.
+    """
+    if not os.path.isdir(path):
+        return files.read(path)
+    from fretc.audit.store.reader import opened
+
+    return opened(path)
+
+
+def required_source(path: str) -> EvidenceSource | Diagnostic:
+    """The same; an error where there is none."""
+    found = source(path)
+    return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
+
+
+def required(path: str) -> Evidence | Diagnostic:
+    """The same; an error where there is none."""
+    evidence = read(path)
+    if isinstance(evidence, Diagnostic):
+        return replace(evidence, severity=Severity.ERROR)
+    return evidence
+
+
+def refuted(path: str) -> frozenset[str]:
+    """The requirements that all runs together refute; none where there is no evidence."""
+    evidence = read(path)
+    estimates = () if isinstance(evidence, Diagnostic) else evidence.probabilities
+    return frozenset(one.requirement for one in estimates if one.answer == REFUTED)

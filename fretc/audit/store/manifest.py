@@ -1,0 +1,93 @@
+"""The manifest of a store: what its tables are about, and the SHA-256 of each.
+
+A table is called by the beginning of its SHA-256, so no name in a manifest leads anywhere, and a
+new manifest takes the place of an old one without touching what that one needs.
+"""
+
+from __future__ import annotations
+
+from pathlib import PurePosixPath
+from typing import Annotated, Any, Final, Literal
+
+from compiler.files.records import (
+    UNSET,
+    Count,
+    Meta,
+    Record,
+    Sha256,
+    UnsetType,
+    about,
+    json_schema,
+    plain,
+)
+from compiler.files.templating import to_json
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.schema import Bindings, Requirement
+from fretc.audit.store.tables import TableName
+
+SCHEMA: Final = "fretc-store-1"
+FILE = "manifest.json"
+UNFINISHED = "unfinished.json"
+"""The manifest of an audit that goes on, or was stopped."""
+REUSE = {FILE: "reuse.json", UNFINISHED: "unfinished-reuse.json"}
+"""Manifest → the file that vouches for it (`fretc.audit.store.register`)."""
+REGISTER = "register"
+SUFFIX = ".parquet"
+_NAME = 32
+"""Digits of a SHA-256 that make the name of a file."""
+
+
+class Table(Record, frozen=True):
+    """A file of a store."""
+
+    sha256: Sha256
+    size: Annotated[Count, about("bytes")]
+    rows: Count
+
+
+class Part(Record, frozen=True):
+    """Some logs that follow each other."""
+
+    runs: Count
+    results: Count
+    tables: dict[TableName, Table]
+
+
+class Manifest(Record, frozen=True):
+    """What a store is about."""
+
+    schema: Literal["fretc-store-1"]
+    fretc: Annotated[str, about("version of the tool")]
+    bindings: Bindings
+    requirements: tuple[Requirement, ...]
+    confidence: Annotated[
+        Annotated[float, Meta(gt=0.5, lt=1)] | None,
+        about("of what all runs say of a probability; null: it is not known"),
+    ]
+    parts: Annotated[tuple[Part, ...], about("in the order of the logs")]
+    register: Annotated[Table | UnsetType, about("which log is known by what")] = UNSET
+    probabilities: Annotated[
+        Annotated[tuple[Estimated, ...], Meta(min_length=1)] | UnsetType,
+        about("what all runs together say of each requirement with a probability"),
+    ] = UNSET
+
+
+def place(table: str, file: Table) -> PurePosixPath:
+    """Where a table is, in the folder of its store."""
+    return PurePosixPath(table, f"{file.sha256[:_NAME]}{SUFFIX}")
+
+
+def text(manifest: Manifest) -> str:
+    """The file: the same values give the same bytes."""
+    return f"{to_json(plain(manifest))}\n"
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of manifests."""
+    return json_schema(
+        Manifest,
+        SCHEMA,
+        "The manifest of a store of evidence, as `fretc audit` writes it",
+        "A table lies in a folder of its name, and is called by the first 32 digits of its "
+        "SHA-256.",
+    )

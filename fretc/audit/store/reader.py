@@ -1,0 +1,262 @@
+"""A store as it is read: part by part, each table held against the manifest.
+
+Nothing in it is trusted: a table that does not fit the manifest, or that holds what no evidence
+does, is F516, never half a report.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import accumulate
+from pathlib import Path
+from typing import Any, TypeVar
+
+import pyarrow as pa
+
+from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import plain as parsed
+from compiler.files.records import decoded
+from compiler.files.text_files import read as read_text
+from compiler.files.text_files import sha256
+from fretc.audit.evidence.briefs import Brief, RunFacts, brief
+from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
+from fretc.audit.evidence.schema import Bindings, Document, Requirement, Result, Threshold
+from fretc.audit.measurements.tallies import Tally
+from fretc.audit.store import files, tables
+from fretc.audit.store.anywhere import StoreError
+from fretc.audit.store.manifest import FILE, REGISTER, Manifest, Part, Table, place
+from fretc.audit.store.register import Entry, entries, types
+from fretc.audit.store.tables import EVENTS, EXACT, RESULTS, RUNS, TABLES, TableName
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+
+T = TypeVar("T")
+_BATCH = 512
+"""Results that are read at once."""
+
+
+def opened(path: str, name: str = FILE) -> Store | Diagnostic:
+    """A store whose tables are those of its manifest.
+
+    Args:
+        path: its folder.
+        name: of the manifest.
+    """
+    source = read_text(f"{path}/{name}")
+    if isinstance(source, Diagnostic):
+        return _wrong(path, "has no manifest") if source.code is Code.NO_SUCH_FILE else source
+    try:
+        found = decoded(parsed(source.text), Manifest)
+    except MisshapenError as error:
+        return _wrong(path, f"has a manifest that is none of fretc: {error}")
+    store = Store(path, sha256(source.text), found)
+    try:
+        store.check()
+    except StoreError as error:
+        return error.diagnostic
+    return store
+
+
+def manifest(folder: Path, name: str) -> Manifest | None:
+    """A manifest; None where there is none."""
+    source = read_text(str(folder / name))
+    try:
+        return None if isinstance(source, Diagnostic) else decoded(parsed(source.text), Manifest)
+    except MisshapenError:
+        return None
+
+
+@dataclass(frozen=True)
+class Store:
+    """An `EvidenceSource`. The methods that read tables raise `StoreError`."""
+
+    file: str
+    sha256: str
+    manifest: Manifest
+
+    @property
+    def fretc(self) -> str:
+        """Version of the tool that audited."""
+        return self.manifest.fretc
+
+    @property
+    def bindings(self) -> Bindings:
+        """Those that the logs were read by."""
+        return self.manifest.bindings
+
+    @property
+    def requirements(self) -> Sequence[Requirement]:
+        """Of the audit."""
+        return self.manifest.requirements
+
+    @property
+    def probabilities(self) -> Sequence[Estimated]:
+        """What all runs say of each requirement with a probability."""
+        return self.manifest.probabilities or ()
+
+    def check(self) -> None:
+        """Hold every table against the manifest: its bytes, and how many rows there are."""
+        for part in self.manifest.parts:
+            if part.tables.keys() != TABLES.keys():
+                raise self._error("names other tables than fretc writes")
+            rows = {name: file.rows for name, file in part.tables.items()}
+            if (rows[RESULTS], rows[EVENTS], rows[RUNS]) != (part.results, part.results, part.runs):
+                raise self._error("has a manifest that contradicts itself")
+            for name in TABLES:
+                self._content(name, part.tables[name])
+        if self.manifest.register:
+            self._content(REGISTER, self.manifest.register)
+
+    def briefs(self) -> Iterator[tuple[int, Brief]]:
+        """Each result with its place, in order: the requirements of a run stand together."""
+        for start, part in self._parts():
+            yield from enumerate(self._read(part, RESULTS, tables.briefs), start)
+
+    def runs(self) -> Iterator[RunFacts]:
+        """The facts of each run, in the order of their first results."""
+        for _, part in self._parts():
+            yield from self._read(part, RUNS, tables.facts)
+
+    def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
+        """The whole results at some places, in order."""
+        wanted = sorted({*places})
+        for start, part in self._parts():
+            rows = [at - start for at in wanted if start <= at < start + part.results]
+            if rows:
+                yield from self._details(part, start, rows)
+
+    def _details(self, part: Part, start: int, rows: Sequence[int]) -> Iterator[tuple[int, Result]]:
+        of_part = {name: self._table(part, name) for name in TABLES}
+        for at in range(0, len(rows), _BATCH):
+            some = rows[at : at + _BATCH]
+            counted = of_part[RESULTS].take(pa.array(some, pa.int64()))
+            try:
+                found = tables.results(of_part, some)
+                if tables.briefs(counted) != [*map(brief, found)]:
+                    raise MisshapenError("`results` does not count what is in the other tables")
+            except MisshapenError as error:
+                raise self._error(f"cannot be read: {error}") from None
+            yield from zip((start + row for row in some), found, strict=True)
+
+    def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:
+        """Latencies in seconds of each result of some requirements, with its place, in order."""
+        yield from self._nested(requirements, "latencies_s")
+
+    def thresholds(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Sequence[Threshold]]]:
+        """The thresholds of each result of some requirements, with its place, in order."""
+        for at, value in self._nested(requirements, "thresholds"):
+            try:
+                yield at, decoded(value, list[Threshold])
+            except MisshapenError as error:
+                raise self._error(f"cannot be read: {error}") from None
+
+    def _nested(self, requirements: Collection[str], column: str) -> Iterator[tuple[int, Any]]:
+        for start, part in self._parts():
+            some: dict[TableName, pa.Table] = {
+                RESULTS: self._table(part, RESULTS, ("requirement", EXACT)),
+                EVENTS: self._table(part, EVENTS, (column,)),
+            }
+            try:
+                found = tables.nested(some, column, requirements)
+            except MisshapenError as error:
+                raise self._error(f"cannot be read: {error}") from None
+            yield from ((start + row, value) for row, value in found)
+
+    def tallies(self) -> Iterator[dict[str, Tally]]:
+        """The tally of each proposition in each run."""
+        for _, part in self._parts():
+            some: dict[TableName, pa.Table] = {
+                RESULTS: self._table(part, RESULTS, ("run_row",)),
+                EVENTS: self._table(part, EVENTS, ("propositions",)),
+                RUNS: self._table(part, RUNS, ("run",)),
+            }
+            try:
+                yield from tables.tallies(some)
+            except (MisshapenError, IndexError) as error:
+                raise self._error(f"cannot be read: {error}") from None
+
+    def whole(self, name: TableName) -> pa.Table:
+        """All rows of a table."""
+        found = [self._table(part, name) for _, part in self._parts()]
+        return pa.concat_tables([tables.schema(name).empty_table(), *found])
+
+    def counts(self) -> Iterator[int]:
+        """How many results each run has."""
+        for _, part in self._parts():
+            yield from self._table(part, RUNS, ("results",))["results"].to_pylist()
+
+    def register(self) -> list[Entry]:
+        """What each log was, in the order of the runs; empty where it is not known."""
+        file = self.manifest.register
+        if not file:
+            return []
+        try:
+            data = self._content(REGISTER, file)
+            return entries(files.decoded(data, file, types()))
+        except MisshapenError as error:
+            raise self._error(f"cannot be read: {error}") from None
+
+    def _parts(self) -> Iterator[tuple[int, Part]]:
+        """Each part with the place of its first result."""
+        parts = self.manifest.parts
+        starts = accumulate((part.results for part in parts), initial=0)
+        return zip(starts, parts, strict=False)
+
+    def _read(self, part: Part, name: TableName, read: Callable[[pa.Table], list[T]]) -> list[T]:
+        try:
+            return read(self._table(part, name))
+        except MisshapenError as error:
+            raise self._error(f"cannot be read: {error}") from None
+
+    def _table(self, part: Part, name: TableName, columns: Sequence[str] | None = None) -> pa.Table:
+        data = self._content(name, part.tables[name])
+        try:
+            return files.decoded(data, part.tables[name], tables.schema(name), columns)
+        except MisshapenError as error:
+            raise self._error(f"cannot be read: {error}") from None
+
+    def _content(self, name: str, file: Table) -> bytes:
+        path = Path(self.file, place(name, file))
+        try:
+            return files.content(path, file)
+        except MisshapenError as error:
+            raise self._error(f"does not fit its manifest: {error}") from None
+        except OSError as error:
+            why = error.strerror or error
+            raise self._error(f"does not fit its manifest: `{path}`: {why}") from None
+
+    def _error(self, what: str) -> StoreError:
+        return StoreError(_wrong(self.file, what))
+
+
+def evidence(store: Store) -> Evidence:
+    """All of a store in memory.
+
+    Raises:
+        StoreError: it cannot be read.
+    """
+    manifest = store.manifest
+    places = range(sum(part.results for part in manifest.parts))
+    document = Document(
+        schema=EVIDENCE,
+        fretc=manifest.fretc,
+        bindings=manifest.bindings,
+        requirements=manifest.requirements,
+        results=tuple(result for _, result in store.details(places)),
+        probabilities=manifest.probabilities,
+    )
+    return Evidence(store.file, store.sha256, document)
+
+
+def _wrong(path: str, what: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_STORE,
+        f"the store `{path}` {what}",
+        Source(path, "").span(),
+        help=f"audit again: `fretc audit LOG... -o {path}`",
+    )

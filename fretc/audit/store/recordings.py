@@ -1,0 +1,288 @@
+"""The samples of logs, kept beside the evidence: what they are judged by may change without them.
+
+A file for each log holds its `Recording`. It stands for the log as long as that is unchanged and
+the signals are declared as they were. Verdicts are taken from it, so it has a check that only the
+user's key can make (`compiler.files.user_key`), for its own place: a file that came with somebody's
+evidence is not believed, and nothing of it is parsed.
+"""
+
+from __future__ import annotations
+
+import hmac
+import json
+import os
+import stat
+from collections.abc import Mapping, Sequence
+from dataclasses import astuple, dataclass, replace
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from compiler.files.edition import edition
+from compiler.files.text_files import Stamp, file_sha256, sha256, stamp, write
+from fretc.logs.signals.integrity import Checked, Integrity
+from fretc.logs.signals.samples import Recording, Samples, Topic
+from fretc.logs.storage.folders import is_folder
+from fretish.bindings.declarations import Declarations
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source, Span
+
+SCHEMA = "fretc-columns-1"
+SUFFIX = ".columns"
+"""Of the folder that stands beside the evidence."""
+_MOST = 2**28
+"""Bytes of a file; larger recordings are read from their logs."""
+_CHECK = 32
+"""Bytes of the check, with which a file begins."""
+_LENGTH = 8
+"""Bytes that follow it: how long the description is."""
+_CODES = {code.number: code for code in Code}
+Array = NDArray[Any]
+KnownBy = Literal["read", "stamp", "sha256"]
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """The folder in which an audit keeps the samples of its logs."""
+
+    folder: Path
+    key: bytes
+    """Of the user."""
+    rehash: bool = False
+    """Know a log by its SHA-256 alone."""
+
+    def recording(
+        self, log: str, declarations: Declarations, wanted: Sequence[str], integrity: Integrity
+    ) -> tuple[Recording, KnownBy] | None:
+        """What reading the log would give, and how that is known; None where it must be read.
+
+        Args:
+            log: its path. It is not opened where its stamp is what it was.
+            declarations: clock and signals.
+            wanted: names of declared signals, in the order in which they would be read.
+            integrity: how closely it would be read.
+        """
+        try:
+            content = self._content(self._path(log))
+        except OSError:
+            return None
+        if content is None:
+            return None
+        about, arrays = content
+        of_now = _reading(declarations, wanted, integrity)
+        if about["reading"] != of_now or about["edition"] != edition():
+            return None
+        by = _unchanged(log, about, rehash=self.rehash)
+        return by and (_recording(about, arrays, declarations), by)
+
+    def keep(
+        self,
+        log: str,
+        before: Stamp | None,
+        recording: Recording,
+        declarations: Declarations,
+        wanted: Sequence[str],
+        integrity: Integrity,
+    ) -> None:
+        """Keep what was read of a log, where it can be told again.
+
+        That is of MCAP files that stand alone: of others more than their bytes counts.
+        """
+        if before is None or not _stands_alone(log) or recording.samples.keys() != {*wanted}:
+            return
+        findings = [_plain(each, declarations) for each in recording.findings]
+        if None in findings:
+            return
+        about = {
+            "schema": SCHEMA,
+            "edition": edition(),
+            "reading": _reading(declarations, wanted, integrity),
+            "log": os.path.realpath(log),
+            "stamp": astuple(before),
+            "findings": findings,
+        }
+        described, arrays = _described(recording)
+        data = _packed({**about, **described}, arrays)
+        again = _recording(*_unpacked(data), declarations)
+        if len(data) <= _MOST and again.findings == recording.findings:
+            path = self._path(log)
+            write({path: _checked(path, data, self.key) + data})
+
+    def _path(self, log: str) -> Path:
+        return self.folder / sha256(f"{log}\0{os.path.realpath(log)}")[:32]
+
+    def _content(self, path: Path) -> tuple[dict[str, Any], list[Array]] | None:
+        """What a file holds; None where it is not what this user's fretc wrote there."""
+        flags = os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK
+        with open(os.open(path, flags), "rb") as stream:
+            about = os.fstat(stream.fileno())
+            if not stat.S_ISREG(about.st_mode) or about.st_size > _MOST + _CHECK:
+                return None
+            check, data = stream.read(_CHECK), stream.read(_MOST)
+        right = hmac.compare_digest(check, _checked(path, data, self.key))
+        return _unpacked(data) if right else None
+
+
+def _checked(path: Path, data: bytes, key: bytes) -> bytes:
+    place = os.path.realpath(path).encode("utf-8", "surrogateescape")
+    return hmac.digest(key, SCHEMA.encode() + b"\0" + place + b"\0" + data, "sha256")
+
+
+def _reading(declarations: Declarations, wanted: Sequence[str], integrity: Integrity) -> str:
+    """SHA-256 of all that a recording depends on beside its log, to the letter, but for places."""
+    signals = declarations.signals
+    labels = {name: [repr(each) for each in some] for name, some in declarations.labels.items()}
+    read = [repr(signals[name]) for name in wanted]
+    beside = repr(declarations.map)
+    bound = sorted(map(repr, signals.values()))
+    return sha256(json.dumps([repr(declarations.clock), read, bound, beside, labels, integrity]))
+
+
+def _unchanged(log: str, about: Mapping[str, Any], *, rehash: bool) -> KnownBy | None:
+    """By what it is known that the log is what it was; None: it is not known."""
+    before, now = Stamp(*about["stamp"]), stamp(log)
+    if now is None or now.size != before.size or os.path.realpath(log) != about["log"]:
+        return None
+    if before.settled and now == before and not rehash:
+        return "stamp"
+    same = about["checked"]["hashed"] and file_sha256(log) == about["sha256"]
+    return "sha256" if same else None
+
+
+def _stands_alone(log: str) -> bool:
+    """Whether nothing beside the file says anything of its run."""
+    return log.endswith(".mcap") and not is_folder(os.path.dirname(log) or ".")
+
+
+# A file ------------------------------------------------------------------------------------------
+
+
+def _packed(about: Mapping[str, Any], arrays: Sequence[Array]) -> bytes:
+    """The length of a description, the description, and the arrays one behind the other."""
+    kinds = [[each.dtype.str, len(each)] for each in arrays]
+    head = json.dumps({**about, "arrays": kinds}).encode()
+    return b"".join(
+        (len(head).to_bytes(_LENGTH, "little"), head, *(each.tobytes() for each in arrays))
+    )
+
+
+def _unpacked(data: bytes) -> tuple[dict[str, Any], list[Array]]:
+    at = _LENGTH + int.from_bytes(data[:_LENGTH], "little")
+    about = json.loads(data[_LENGTH:at])
+    arrays = []
+    for kind, count in about["arrays"]:
+        arrays.append(np.frombuffer(data, kind, count, at))
+        at += arrays[-1].nbytes
+    return about, arrays
+
+
+def _described(recording: Recording) -> tuple[dict[str, Any], list[Array]]:
+    """A recording as plain values and arrays, but for its findings; equal times are kept once."""
+    arrays: list[Array] = [recording.ticks]
+    places: dict[bytes, int] = {}
+
+    def kept(samples: Mapping[str, Samples]) -> dict[str, Any]:
+        found = {}
+        for name, each in samples.items():
+            times = each.times.tobytes()
+            if times not in places:
+                places[times] = len(arrays)
+                arrays.append(each.times)
+            found[name] = [places[times], len(arrays), str(each.scale), each.words]
+            arrays.append(each.values)
+        return found
+
+    return {
+        "name": recording.name,
+        "sha256": recording.sha256,
+        "size": recording.size,
+        "span": [recording.start_ns, recording.end_ns],
+        "samples": kept(recording.samples),
+        "beside": kept(recording.beside),
+        "gaps": recording.gaps,
+        "topics": {name: astuple(topic) for name, topic in recording.topics.items()},
+        "nearest": dict(recording.nearest),
+        "intact": recording.intact,
+        "checked": {name: getattr(recording.checked, name) for name in Checked.__slots__},
+        "described": dict(recording.described),
+    }, arrays
+
+
+def _recording(
+    about: Mapping[str, Any], arrays: Sequence[Array], declarations: Declarations
+) -> Recording:
+    samples, beside = (
+        {
+            name: Samples(arrays[times], arrays[values], Fraction(scale), tuple(words))
+            for name, (times, values, scale, words) in about[key].items()
+        }
+        for key in ("samples", "beside")
+    )
+    return Recording(
+        name=about["name"],
+        sha256=about["sha256"],
+        size=about["size"],
+        start_ns=about["span"][0],
+        end_ns=about["span"][1],
+        samples=samples,
+        ticks=arrays[0],
+        gaps=tuple((start, end) for start, end in about["gaps"]),
+        topics={name: Topic(*topic) for name, topic in about["topics"].items()},
+        nearest=about["nearest"],
+        findings=tuple(_finding(each, declarations) for each in about["findings"]),
+        intact=about["intact"],
+        checked=Checked(**about["checked"]),
+        described={name: tuple(values) for name, values in about["described"].items()},
+        beside=beside,
+    )
+
+
+# Findings ----------------------------------------------------------------------------------------
+
+
+def _plain(finding: Diagnostic, declarations: Declarations) -> dict[str, Any] | None:
+    """A finding; one at the binding of a signal is wherever that is when it is read again.
+
+    None where it is at another place of the bindings: nothing would say where that is by then.
+    """
+    span, place = finding.span, None
+    if span is not None and span.source == declarations.source:
+        signals = declarations.signals.values()
+        place = next((signal.name for signal in signals if signal.span == span), None)
+        if place is None:
+            return None
+    if replace(finding, mend=None, accepted="") != finding:
+        return None
+    return {
+        "code": finding.code.number,
+        "message": finding.message,
+        "help": finding.help,
+        "severity": str(finding.severity),
+        "paste": finding.paste,
+        "subject": finding.subject,
+        "signal": place,
+        "span": span and [span.source.name, span.source.text, span.start, span.end]
+        if place is None
+        else None,
+    }
+
+
+def _finding(plain: Mapping[str, Any], declarations: Declarations) -> Diagnostic:
+    span: Span | None = None
+    if plain["signal"] is not None:
+        span = declarations.signals[plain["signal"]].span
+    elif plain["span"] is not None:
+        name, text, start, end = plain["span"]
+        span = Source(name, text).span(start, end)
+    return Diagnostic(
+        _CODES[plain["code"]],
+        plain["message"],
+        span,
+        plain["help"],
+        Severity(plain["severity"]),
+        paste=plain["paste"],
+        subject=plain["subject"],
+    )

@@ -1,0 +1,507 @@
+"""Results as tables: a row a result, a row a violation, a row a run; and results of them again.
+
+What has no column of its own is nested, by the types of evidence. A result that a column cannot
+hold as it is (`fretc.audit.store.columns`) stands in `exact`, too, as JSON.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import Any, Final, Literal
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import plain as parsed
+from compiler.files.records import UNSET, decoded, plain, replace
+from compiler.files.templating import to_json
+from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
+from fretc.audit.evidence.reader import VERDICTS
+from fretc.audit.evidence.samples import Surroundings
+from fretc.audit.evidence.schema import Hashes, Health, Result, Violation
+from fretc.audit.evidence.writer import unjudged
+from fretc.audit.measurements.tallies import Tally
+from fretc.audit.store.columns import (
+    Column,
+    Field,
+    InexactError,
+    Text,
+    Whole,
+    fields_of,
+    objects,
+)
+
+RESULTS: Final = "results"
+EVENTS: Final = "events"
+VIOLATIONS: Final = "violations"
+SAMPLES: Final = "samples"
+RUNS: Final = "runs"
+TableName = Literal["results", "events", "violations", "samples", "runs"]
+EXACT = "exact"
+Tables = Mapping[TableName, pa.Table]
+
+
+# Rows --------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """A result, at its place."""
+
+    result: Result
+    brief: Brief
+    run_row: int
+    fretc: str
+    exact: str | None = None
+
+    @property
+    def gaps(self) -> int:
+        """How many."""
+        return len(self.result.health.gaps)
+
+    @property
+    def findings(self) -> int:
+        """How many."""
+        return len(self.result.health.findings)
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A violation of a result, or the samples around a violation."""
+
+    row: int
+    """Of the result, or of the violation."""
+    result: Result
+    part: Violation | Surroundings
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """The results of one log."""
+
+    first: Result
+    results: int
+    facts: RunFacts
+    exact: str | None = None
+
+
+# Columns -----------------------------------------------------------------------------------------
+
+
+def _of(names: str, column: Column) -> Iterator[Field]:
+    for name in names.split():
+        yield Field(name, name, column)
+
+
+def _below(path: str, fields: Iterable[Field]) -> Iterator[Field]:
+    return (each.below(path) for each in fields)
+
+
+_SHARED = ("health", "labels")
+"""What all results of a run share."""
+_COURSE = "course"
+"""What the first of them has."""
+_FLAT = "run requirement verdict finite reason clock ticks start_ns end_ns trials".split()
+_ELSEWHERE = ("violations", "hashes", *_SHARED, _COURSE, *_FLAT)
+_MAIN = tuple(each for each in fields_of(Result) if each.name in _FLAT)
+_NESTED = tuple(each for each in fields_of(Result) if each.name not in _ELSEWHERE)
+_OF_RUN = tuple(each for each in fields_of(Result) if each.name in (*_SHARED[1:], _COURSE))
+_COUNTS = tuple(e for e in fields_of(Brief) if e.name not in (*_FLAT, "fingerprints"))
+_FACTS = tuple(e for e in fields_of(RunFacts) if e.name not in _SHARED)
+_HASHES = fields_of(Hashes)
+_HASH = "_sha256"
+_HEALTH = fields_of(Health)
+_VIOLATION = tuple(each for each in fields_of(Violation) if each.name != "window")
+_WINDOW = fields_of(Surroundings)
+_NAMES = (*_of("run requirement", Text()),)
+
+TABLES: Mapping[TableName, tuple[Field, ...]] = {
+    RESULTS: (
+        *_below("result", _MAIN),
+        *_below("brief", _COUNTS),
+        *_below("result.health", _of("size", Whole())),
+        *_of("gaps findings", Whole()),
+        *(Field(f"{e.name}{_HASH}", f"result.fingerprints.{e.attribute}", Text()) for e in _HASHES),
+        *_of("fretc", Text()),
+        *_of("run_row", Whole()),
+        *_of(EXACT, Text()),
+    ),
+    EVENTS: (*_below("result", _NAMES), *_below("result", _NESTED)),
+    VIOLATIONS: (
+        Field("result_row", "row", Whole()),
+        *_below("result", _NAMES),
+        *_below("part", _VIOLATION),
+    ),
+    SAMPLES: (
+        Field("violation_row", "row", Whole()),
+        *_below("result", _NAMES),
+        *_below("part", _WINDOW),
+    ),
+    RUNS: (
+        *_below("facts", _FACTS),
+        *_of("results", Whole()),
+        *_below("facts.health", _HEALTH),
+        *_below("first", _OF_RUN),
+        *_of(EXACT, Text()),
+    ),
+}
+"""Table → its columns."""
+
+
+def schema(table: TableName) -> pa.Schema:
+    """The types of a table."""
+    return pa.schema([pa.field(each.name, each.column.type) for each in TABLES[table]])
+
+
+# Written -----------------------------------------------------------------------------------------
+
+
+def tabled(results: Sequence[Result], fretc: str) -> Tables:
+    """The tables of some results, in their order.
+
+    Args:
+        results: of whole runs.
+        fretc: the version that made them.
+    """
+    try:
+        return _tabled(results, fretc, {})
+    except InexactError:
+        texts = {n: to_json(plain(each)) for n, each in enumerate(results) if not _is_held(each)}
+        return _tabled(results, fretc, texts)
+
+
+def _is_held(result: Result) -> bool:
+    """Whether columns hold the result as it is."""
+    try:
+        _tabled([result], "", {})
+    except InexactError:
+        return False
+    return True
+
+
+def _tabled(results: Sequence[Result], fretc: str, texts: Mapping[int, str]) -> Tables:
+    groups = runs_of(results)
+    run_rows = [row for row, run in enumerate(groups) for _ in run]
+    rows = [
+        _Row(result, brief(result), run_row, fretc, texts.get(n))
+        for n, (result, run_row) in enumerate(zip(results, run_rows, strict=True))
+    ]
+    inexact = {run_rows[n] for n in texts}
+    runs = [_run(of_run, exact=row not in inexact) for row, of_run in enumerate(groups)]
+    broken = [_Part(n, r, violation) for n, r in enumerate(results) for violation in r.violations]
+    windows = [
+        _Part(n, each.result, each.part.surroundings)
+        for n, each in enumerate(broken)
+        if isinstance(each.part, Violation) and each.part.surroundings is not None
+    ]
+    found: dict[TableName, Sequence[Any]] = {
+        RESULTS: rows,
+        EVENTS: rows,
+        VIOLATIONS: broken,
+        SAMPLES: windows,
+        RUNS: runs,
+    }
+    return {name: _table(TABLES[name], some, exact=not texts) for name, some in found.items()}
+
+
+def _run(results: Sequence[Result], *, exact: bool) -> _Run:
+    facts = run_facts(results)
+    return _Run(results[0], len(results), facts, None if exact else to_json(plain(facts)))
+
+
+def _table(fields: Sequence[Field], rows: Sequence[Any], *, exact: bool) -> pa.Table:
+    arrays = [each.array(rows, exact=exact) for each in fields]
+    return pa.Table.from_arrays(arrays, names=[each.name for each in fields])
+
+
+def runs_of(results: Iterable[Result]) -> list[list[Result]]:
+    """The results of each run: those that stand together and share what a run has once.
+
+    One with a course is the first of its run.
+    """
+    runs: list[list[Result]] = []
+    ids: set[str] = set()
+    for result in results:
+        is_first = not runs or result.requirement in ids or result.course is not UNSET
+        if is_first or _shared(result) != _shared(runs[-1][0]):
+            runs.append([])
+            ids = set()
+        runs[-1].append(result)
+        ids.add(result.requirement)
+    return runs
+
+
+def _shared(result: Result) -> tuple[object, ...]:
+    return (result.run, *(getattr(result, name) for name in _SHARED))
+
+
+# Read --------------------------------------------------------------------------------------------
+
+
+def results(tables: Tables, rows: Sequence[int] | None = None) -> list[Result]:
+    """The results in some rows, or in all.
+
+    Args:
+        tables: as `tabled` gives them.
+        rows: in rising order.
+
+    Raises:
+        MisshapenError: tables do not fit together, or hold what no evidence does.
+    """
+    try:
+        return _results(tables, rows)
+    except InexactError as error:
+        raise MisshapenError(f"{error}") from None
+
+
+def _results(tables: Tables, rows: Sequence[int] | None) -> list[Result]:
+    main = tables[RESULTS]
+    if main.num_rows != tables[EVENTS].num_rows:
+        raise MisshapenError("`events` does not have the rows of `results`")
+    rows = range(main.num_rows) if rows is None else rows
+    texts = _taken(main[EXACT], rows).to_pylist()
+    exact = {n: text for n, text in zip(rows, texts, strict=True) if text is not None}
+    held = [n for n in rows if n not in exact]
+    found = dict(zip(held, _held(tables, held), strict=True))
+    found |= {n: decoded(parsed(text), Result) for n, text in exact.items()}
+    return [found[n] for n in rows]
+
+
+def _held(tables: Tables, rows: Sequence[int]) -> list[Result]:
+    """The results in some rows that columns hold as they are."""
+    main, events = (_taken(tables[name], rows) for name in (RESULTS, EVENTS))
+    main_rows = tables[RESULTS]["run_row"]
+    run_rows = main["run_row"].to_pylist()
+    shared = _of_runs(tables[RUNS], run_rows)
+    parts = zip(
+        _objects(main, _MAIN),
+        _objects(events, _NESTED),
+        _objects(main, _HASHES, _HASH),
+        _violations(tables, rows),
+        strict=True,
+    )
+    records = [
+        {**flat, **nested, "hashes": hashes, "violations": violations, "health": _NO_HEALTH}
+        for flat, nested, hashes, violations in parts
+    ]
+    found = decoded(records, list[Result])
+    bare = {row: {**of_run, _COURSE: UNSET} for row, of_run in shared.items()}
+    firsts = _firsts(main_rows, rows)
+    return [
+        replace(each, **(shared if is_first else bare)[n])
+        for each, n, is_first in zip(found, run_rows, firsts, strict=True)
+    ]
+
+
+def _firsts(runs: pa.ChunkedArray, rows: Sequence[int]) -> list[bool]:
+    """Whether each of these rows is the first one of its run.
+
+    Args:
+        runs: the run of each row of the table.
+        rows: some of them.
+    """
+    taken = _taken(runs, rows).to_pylist()
+    before = _taken(runs, [max(0, row - 1) for row in rows]).to_pylist()
+    return [
+        row == 0 or run != last for row, run, last in zip(rows, taken, before, strict=True)
+    ]
+
+
+_NO_HEALTH = plain(Health(False, None, None, (), (), {}))
+"""In place of that of the run, which is made once and not with each result."""
+_NO_HASHES = dict.fromkeys(("sentence", "bindings", "monitor"), "0" * 64)
+_BLANK = plain(unjudged("", "none", "", _NO_HASHES, decoded(_NO_HEALTH, Health)))
+"""A result of which only what the run has counts."""
+
+
+def _objects(table: pa.Table, fields: Sequence[Field], suffix: str = "") -> list[Any]:
+    if not fields:
+        return [{} for _ in range(table.num_rows)]
+    return objects(fields, [_whole(table, f"{each.name}{suffix}") for each in fields])
+
+
+def _taken(table: Any, rows: Sequence[int]) -> Any:
+    """Some rows of a table or a column."""
+    return table.take(pa.array(rows, pa.int64()))
+
+
+def _whole(table: pa.Table, name: str) -> pa.Array:
+    column = table[name].combine_chunks()
+    return column if isinstance(column, pa.Array) else pa.concat_arrays(column.chunks)
+
+
+def _of_runs(table: pa.Table, run_rows: Sequence[int]) -> dict[int, dict[str, Any]]:
+    """Run → what its results share."""
+    known = sorted({row for row in run_rows if row is not None and 0 <= row < table.num_rows})
+    if len(known) != len({*run_rows}):
+        raise MisshapenError("`results` names a row that `runs` does not have")
+    some = _taken(table, known)
+    parts = zip(_objects(some, _HEALTH), _objects(some, _OF_RUN), strict=True)
+    found = decoded([{**_BLANK, "health": health, **more} for health, more in parts], list[Result])
+    names = ("health", *(each.attribute for each in _OF_RUN))
+    return {
+        row: {name: getattr(one, name) for name in names}
+        for row, one in zip(known, found, strict=True)
+    }
+
+
+def _violations(tables: Tables, rows: Sequence[int]) -> list[list[Any]]:
+    """The violations of each of these rows of results."""
+    table = tables[VIOLATIONS]
+    places = _chosen(table, "result_row", rows, tables[RESULTS].num_rows)
+    windows = dict(_windows(tables, places))
+    some = _taken(table, places)
+    of_row: dict[int, list[Any]] = {row: [] for row in rows}
+    parts = zip(places, some["result_row"].to_pylist(), _objects(some, _VIOLATION), strict=True)
+    for place, row, violation in parts:
+        of_row[row].append({**violation, "window": windows.get(place)})
+    return [of_row[row] for row in rows]
+
+
+def _windows(tables: Tables, rows: Sequence[int]) -> Iterator[tuple[int, Any]]:
+    """The samples around each of these rows of violations."""
+    table = tables[SAMPLES]
+    places = _chosen(table, "violation_row", rows, tables[VIOLATIONS].num_rows)
+    some = _taken(table, places)
+    return zip(some["violation_row"].to_pylist(), _objects(some, _WINDOW), strict=True)
+
+
+def _chosen(table: pa.Table, key: str, rows: Sequence[int], count: int) -> list[int]:
+    """The rows that belong to these of another table, which has so many."""
+    column = table[key]
+    if column.null_count:
+        raise MisshapenError(f"a `{key}` is missing")
+    keys = column.to_numpy()
+    if len(keys) and (keys[0] < 0 or keys[-1] >= count or (np.diff(keys) < 0).any()):
+        raise MisshapenError(f"`{key}` does not rise within its table")
+    found: list[int] = np.flatnonzero(np.isin(keys, np.asarray(rows, np.int64))).tolist()
+    return found
+
+
+# Briefs ------------------------------------------------------------------------------------------
+
+
+def briefs(table: pa.Table) -> list[Brief]:
+    """The brief of each row of `results`.
+
+    Raises:
+        MisshapenError: a row is none.
+    """
+    texts = table[EXACT].to_pylist()
+    held = [n for n, text in enumerate(texts) if text is None]
+    some = table if len(held) == len(texts) else _taken(table, held)
+    flat = [each for each in (*_MAIN, *_COUNTS) if each.name != "clock"]
+    prints = _objects(some, _HASHES, _HASH)
+    rows = zip(_objects(some, flat), prints, strict=True)
+    found = decoded(
+        [{**row, "trials": row.get("trials"), "fingerprints": p} for row, p in rows], list[Brief]
+    )
+    if not {each.verdict for each in found} <= {*VERDICTS}:
+        raise MisshapenError("`results` has a verdict that is none")
+    whole = dict(zip(held, found, strict=True))
+    return [
+        whole[n] if text is None else brief(decoded(parsed(text), Result))
+        for n, text in enumerate(texts)
+    ]
+
+
+def facts(table: pa.Table) -> list[RunFacts]:
+    """The facts of each row of `runs`.
+
+    Raises:
+        MisshapenError: a row is none.
+    """
+    texts = table[EXACT].to_pylist()
+    held = [n for n, text in enumerate(texts) if text is None]
+    some = _taken(table, held)
+    labels = tuple(each for each in _OF_RUN if each.name == "labels")
+    rows = zip(*(_objects(some, fields) for fields in (_FACTS, _HEALTH, labels)), strict=True)
+    records = [{**facts, "health": health, **labels} for facts, health, labels in rows]
+    found = decoded(records, list[RunFacts])
+    whole = dict(zip(held, found, strict=True))
+    return [
+        whole[n] if text is None else decoded(parsed(text), RunFacts)
+        for n, text in enumerate(texts)
+    ]
+
+
+def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tuple[int, Any]]:
+    """One column of `events` for each row of some requirements, with its row, as plain values.
+
+    Args:
+        tables: `results` with `requirement` and `exact`, `events` with the column.
+        name: of the column.
+        requirements: whose rows.
+
+    Raises:
+        MisshapenError: a row cannot be read.
+    """
+    main, events = tables[RESULTS], tables[EVENTS]
+    if main.num_rows != events.num_rows:
+        raise MisshapenError("`events` does not have the rows of `results`")
+    wanted = pa.array([*requirements], pa.string())
+    is_wanted = pc.is_in(main["requirement"], wanted).to_numpy(zero_copy_only=False)
+    rows: list[int] = np.flatnonzero(is_wanted).tolist()
+    (column,) = (each.column for each in _NESTED if each.name == name)
+    values = column.values(_whole(_taken(events, rows), name))
+    texts = _taken(main[EXACT], rows).to_pylist()
+    whole = [
+        value if text is None else plain(decoded(parsed(text), Result))[name]
+        for value, text in zip(values, texts, strict=True)
+    ]
+    return [*zip(rows, whole, strict=True)]
+
+
+def joined(groups: Sequence[Tables]) -> Tables:
+    """The tables of several groups of runs as those of all of them, in their order."""
+    if len(groups) == 1:
+        return groups[0]
+    return {name: _joined(groups, name) for name in TABLES}
+
+
+_KEYS: Mapping[TableName, tuple[str, TableName]] = {
+    RESULTS: ("run_row", RUNS),
+    VIOLATIONS: ("result_row", RESULTS),
+    SAMPLES: ("violation_row", VIOLATIONS),
+}
+"""Table → its column with rows of another table."""
+
+
+def _joined(groups: Sequence[Tables], name: TableName) -> pa.Table:
+    key, other = _KEYS.get(name, ("", name))
+    starts = accumulate((len(group[other]) for group in groups), initial=0)
+    parts = []
+    for group, start in zip(groups, starts, strict=False):
+        part = group[name]
+        if key:
+            place = part.schema.get_field_index(key)
+            part = part.set_column(place, key, pc.add(part[key], pa.scalar(start, pa.int64())))
+        parts.append(part)
+    return pa.concat_tables(parts)
+
+
+def tallies(tables: Tables) -> list[dict[str, Tally]]:
+    """The tally of each proposition in each run.
+
+    Args:
+        tables: `results` with `run_row`, `events` with `propositions`, `runs`.
+
+    Raises:
+        MisshapenError: they cannot be read.
+    """
+    (column,) = (each.column for each in _NESTED if each.name == "propositions")
+    found: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]
+    rows = tables[RESULTS]["run_row"].to_pylist()
+    values = column.values(_whole(tables[EVENTS], "propositions"))
+    known: dict[tuple[int, ...], Tally] = {}
+    for row, propositions in zip(rows, values, strict=True):
+        for name, counts in propositions.items():
+            numbers = tuple(counts.values())
+            if numbers not in known:
+                known[numbers] = decoded(counts, Tally)
+            found[row][name] = known[numbers]
+    return found

@@ -1,0 +1,156 @@
+"""A store as it is written: part by part, each file complete or absent, the manifest last."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from compiler.files.checked_json import MisshapenError
+from compiler.files.text_files import regular, sha256, write
+from fretc.audit.evidence.schema import Document
+from fretc.audit.store import register
+from fretc.audit.store.files import content, encoded
+from fretc.audit.store.manifest import (
+    FILE,
+    REGISTER,
+    REUSE,
+    SCHEMA,
+    UNFINISHED,
+    Manifest,
+    Part,
+    Table,
+    place,
+    text,
+)
+from fretc.audit.store.parts import parts
+from fretc.audit.store.register import Entry
+from fretc.audit.store.tables import RESULTS, RUNS, TABLES, Tables, runs_of, tabled
+from fretish.diagnostics.diagnostic import Diagnostic
+
+
+def write_part(folder: Path, tables: Tables) -> Part | Diagnostic:
+    """Write the tables of some runs.
+
+    Args:
+        folder: of the store.
+        tables: of whole runs.
+
+    Returns:
+        What the manifest says of them; or why they cannot be written.
+    """
+    made = {name: encoded(table) for name, table in tables.items()}
+    wrong = write(
+        {
+            folder / place(name, file): data
+            for name, (data, file) in made.items()
+            if not _is_there(folder / place(name, file), file)
+        }
+    )
+    if wrong is not None:
+        return wrong
+    known = {name: file for name, (_, file) in made.items()}
+    return Part(known[RUNS].rows, known[RESULTS].rows, known)
+
+
+def _is_there(path: Path, file: Table) -> bool:
+    try:
+        content(path, file)
+    except (OSError, MisshapenError):
+        return False
+    return True
+
+
+def write_register(folder: Path, entries: Sequence[Entry]) -> Table | Diagnostic:
+    """Write what each log was."""
+    data, file = encoded(register.table(entries))
+    return write({folder / place(REGISTER, file): data}) or file
+
+
+def write_manifest(folder: Path, manifest: Manifest, name: str = FILE) -> str | Diagnostic:
+    """Write a manifest; gives its SHA-256."""
+    made = text(manifest)
+    return write({folder / name: made}) or sha256(made)
+
+
+def files(folder: Path) -> set[Path]:
+    """All tables in a folder, also those that no manifest names."""
+    found = (path for table in (*TABLES, REGISTER) for path in (folder / table).glob("*"))
+    return {path for path in found if _OURS.fullmatch(path.name)}
+
+
+def remove_others(folder: Path, *manifests: Manifest, kept: Collection[Path] = frozenset()) -> None:
+    """Remove the tables that none of the manifests names.
+
+    Args:
+        folder: of the store.
+        manifests: whose tables stay.
+        kept: other files that stay.
+    """
+    named = {folder / path for manifest in manifests for path in _files(manifest)}
+    for path in files(folder) - named - {*kept}:
+        path.unlink(missing_ok=True)
+    for table in (*TABLES, REGISTER):
+        with suppress(OSError):  # it is in use, or something else is in it
+            (folder / table).rmdir()
+
+
+_OURS = re.compile(r"[0-9a-f]{32}\.parquet|\.[0-9a-f]{32}\.parquet\.[0-9a-f]{8}\.tmp")
+
+
+def _files(manifest: Manifest) -> Iterator[Path]:
+    for part in manifest.parts:
+        for name, file in part.tables.items():
+            yield Path(place(name, file))
+    if manifest.register:
+        yield Path(place(REGISTER, manifest.register))
+
+
+def is_store(folder: Path) -> bool:
+    """Whether fretc has written into a folder: nothing else of a user's is ever removed."""
+    return any(_is_manifest(folder / name) for name in (FILE, UNFINISHED))
+
+
+def _is_manifest(path: Path) -> bool:
+    try:
+        with regular(path) as file:
+            return SCHEMA.encode() in file.read(200)
+    except OSError:
+        return False
+
+
+def remove(folder: Path) -> None:
+    """Remove a store, and its folder where nothing else is in it."""
+    for name in (FILE, UNFINISHED, *REUSE.values()):
+        (folder / name).unlink(missing_ok=True)
+    remove_others(folder)
+    with suppress(OSError):
+        folder.rmdir()
+
+
+def write_document(
+    folder: Path, document: Document, confidence: float | None = None
+) -> str | Diagnostic:
+    """Write evidence that is in memory as a store; gives the SHA-256 of its manifest."""
+    runs = runs_of(document.results)
+    written: list[Part] = []
+    for places in parts([run[0].run for run in runs]):
+        results = [result for place in places for result in runs[place]]
+        part = write_part(folder, tabled(results, document.fretc))
+        if isinstance(part, Diagnostic):
+            return part
+        written.append(part)
+    manifest = Manifest(
+        schema=SCHEMA,
+        fretc=document.fretc,
+        bindings=document.bindings,
+        requirements=document.requirements,
+        confidence=confidence,
+        parts=tuple(written),
+        probabilities=document.probabilities,
+    )
+    digest = write_manifest(folder, manifest)
+    if isinstance(digest, str):
+        remove_others(folder, manifest)
+    return digest

@@ -1,0 +1,195 @@
+"""Where evidence of an audit goes, and the other forms of its results."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from fretc.terminal.output import EVIDENCE, STORE, not_written, say_line, stop
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+
+if TYPE_CHECKING:
+    from compiler.project.folder import Project
+    from fretc.audit.evidence.briefs import EvidenceSource
+    from fretc.audit.evidence.probabilities import Estimated
+    from fretc.audit.evidence.schema import Result
+
+_BATCH = 256
+"""Results that are read at once."""
+
+
+class Outcome(Protocol):
+    """An audit, in memory or in a store."""
+
+    @property
+    def source(self) -> EvidenceSource:
+        """Its results."""
+
+    @property
+    def estimates(self) -> Sequence[Estimated]:
+        """What all runs say of each requirement with a probability."""
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What there is to say of the logs."""
+
+    @property
+    def read(self) -> int:
+        """How many of the logs could be read."""
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """Where evidence goes."""
+
+    path: Path
+    is_store: bool
+    other: Path | None = None
+    """Where evidence of an earlier audit may be, of which this one takes the place."""
+
+    @property
+    def is_printed(self) -> bool:
+        """Whether it goes to standard output."""
+        return str(self.path) == "-"
+
+
+def target(output: str | None, logs: int) -> Target:
+    """A file for one log, a store for several, if nobody says otherwise."""
+    if output is None:
+        places = (EVIDENCE, STORE) if logs == 1 else (STORE, EVIDENCE)
+        path, other = map(Path, places)
+        return Target(path, is_store=logs > 1, other=other)
+    return Target(Path(output), is_store=output != "-" and not output.endswith(".json"))
+
+
+def check(target: Target, parquet: str | None) -> None:
+    """Stop where they cannot be written, before hours of audit have gone by."""
+    path = target.path
+    if parquet is not None:
+        _check_table(parquet, path)
+    if target.is_printed or not os.path.lexists(path):
+        return
+    if not target.is_store:
+        if path.exists() and not path.is_file():
+            stop(not_written(str(path), "it is no regular file"))
+        return
+    if not path.is_dir():
+        stop(_no_folder(path))
+    from fretc.audit.store.writer import is_store
+
+    if any(path.iterdir()) and not is_store(path):
+        stop(_no_store(path))
+
+
+def _check_table(parquet: str, evidence: Path) -> None:
+    if parquet == "-":
+        stop(not_written(parquet, "a table is a file"))
+    if os.path.exists(parquet) and not os.path.isfile(parquet):
+        stop(not_written(parquet, "it is no regular file"))
+    if os.path.realpath(parquet) == os.path.realpath(evidence):
+        stop(not_written(parquet, "two outputs would go there"))
+
+
+def table(outcome: Outcome) -> bytes:
+    """The content of a Parquet file with a row for each result."""
+    from fretc.audit.outputs import table as tables
+
+    return tables.parquet(tables.table(outcome.source))
+
+
+def remove_other(target: Target) -> None:
+    """Remove what an earlier audit wrote in the other default place: it is not read by mistake."""
+    other = target.other
+    if other is None:
+        return
+    if other.is_dir() and not other.is_symlink():
+        from fretc.audit.store.writer import is_store, remove
+
+        if is_store(other):
+            remove(other)
+            say_line(f"removed {other}, the evidence of an earlier audit")
+    elif other.is_file() and not other.is_symlink() and _is_evidence(other):
+        other.unlink()
+        say_line(f"removed {other}, the evidence of an earlier audit")
+
+
+def _is_evidence(path: Path) -> bool:
+    from fretc.audit.evidence.schema import SCHEMA
+
+    with path.open("rb") as file:
+        return f'"schema": "{SCHEMA}"'.encode() in file.read(200)
+
+
+# Other forms -------------------------------------------------------------------------------------
+
+
+def results(source: EvidenceSource) -> Iterator[Result]:
+    """All results, of a store little at a time."""
+    places = [place for place, _ in source.briefs()]
+    for start in range(0, len(places), _BATCH):
+        yield from (result for _, result in source.details(places[start : start + _BATCH]))
+
+
+def bare(source: EvidenceSource, project: Project) -> Iterator[Result]:
+    """All results in declared units, without samples."""
+    from fretc.audit.evidence.declared_units import without_samples
+
+    for result in results(source):
+        yield from without_samples([result], project.declarations)
+
+
+def annotation_files(outcome: Outcome, project: Project, folder: str | None) -> dict[Path, bytes]:
+    """A log of annotations for each run."""
+    from fretc.audit.outputs.annotations import sidecars
+
+    found = [*bare(outcome.source, project)]
+    return sidecars(found, project.rules, Path(folder or "build/annotations"))
+
+
+def text(outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], form: str) -> str:
+    """The results for a program."""
+    from fretc.audit.outputs.junit import github, junit
+    from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
+
+    if form == "json":
+        return _json(outcome)
+    found = bare(outcome.source, project)
+    if form == "junit":
+        return junit(found, outcome.estimates, project.requirements)
+    if form == "github":
+        return github(found, project.requirements, outcome.estimates)
+    assert form == "sarif", "a choice of --format"
+    diagnostics = (*project.diagnostics, *refusals, *outcome.diagnostics)
+    together = [AllRuns.of(one) for one in outcome.estimates]
+    each = [OneRun.of(one) for one in found]
+    return sarif(each, project.rules, diagnostics, together, project.without_rule)
+
+
+def _json(outcome: Outcome) -> str:
+    """One JSON array, an object per run and requirement; with probabilities, both by name."""
+    from compiler.files.records import plain
+    from compiler.files.templating import to_json
+
+    found = [plain(each) for each in results(outcome.source)]
+    if not outcome.estimates:
+        return f"{to_json(found)}\n"
+    return f"{to_json({'results': found, 'probabilities': plain(tuple(outcome.estimates))})}\n"
+
+
+def _no_folder(path: Path) -> Diagnostic:
+    return Diagnostic(
+        Code.NOT_WRITTEN,
+        f"`{path}` cannot be written: a store of evidence is a folder",
+        help=f"evidence in one file ends with `.json`: `-o {path}.json`",
+    )
+
+
+def _no_store(path: Path) -> Diagnostic:
+    return Diagnostic(
+        Code.NOT_WRITTEN,
+        f"`{path}` cannot be written: it is a folder with something else in it",
+        help="name a new folder, an empty one, or a store that `fretc audit` has written",
+    )

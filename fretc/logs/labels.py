@@ -1,0 +1,126 @@
+"""Labels of a run: what is known of it beside its messages, as `[run.label]` of the bindings says.
+
+The first source that says something counts; others that say something else are F552, and a label
+without a value is F553. `--label` of a command comes before all sources. Values are texts of
+strangers: they are bounded here, and escaped wherever they are shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
+
+from fretish.bindings.declarations import LabelSource
+from fretish.bindings.reader import MOST_LABELS, is_label
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.reading import name_patterns
+
+LONGEST = 200
+"""Characters of a value; a longer one is none, for half of it could be that of another run."""
+_SHOWN = 60
+"""Characters of a value that a message shows."""
+NO_METADATA: Mapping[str, tuple[str, ...]] = MappingProxyType({})
+
+Labels = Mapping[str, str]
+
+
+def labels(
+    declared: Mapping[str, Sequence[LabelSource]],
+    run: str,
+    described: Mapping[str, tuple[str, ...]] = NO_METADATA,
+) -> tuple[Labels, tuple[Diagnostic, ...]]:
+    """The labels of a run, and what there is to say of them.
+
+    Args:
+        declared: each label with its sources.
+        run: the path of its log, as the user named it.
+        described: what the metadata of the log says: `build.version` → values.
+    """
+    found: dict[str, str] = {}
+    diagnostics: list[Diagnostic] = []
+    for name, sources in declared.items():
+        values = list(dict.fromkeys(_values(name, sources, run, described)))
+        sound = [value for value in values if 0 < len(value) <= LONGEST]
+        if sound:
+            found[name] = sound[0]
+        else:
+            diagnostics.append(_none(name, sources, is_given=bool(values)))
+        if len(sound) > 1:
+            diagnostics.append(_conflict(name))
+    return found, tuple(diagnostics)
+
+
+def of_path(name: str, sources: Sequence[LabelSource], run: str) -> tuple[str, ...]:
+    """What the path of a log says of one label."""
+    patterns = [source.text for source in sources if source.is_path]
+    found = [name_patterns.match(pattern, run) for pattern in patterns]
+    return tuple(each[name] for each in found if each is not None)
+
+
+def _values(
+    name: str,
+    sources: Sequence[LabelSource],
+    run: str,
+    described: Mapping[str, tuple[str, ...]],
+) -> Iterator[str]:
+    for source in sources:
+        if source.is_path:
+            yield from of_path(name, [source], run)
+        else:
+            yield from described.get(source.text, ())
+
+
+def over(before: Labels, given: Labels) -> tuple[Labels, tuple[Diagnostic, ...]]:
+    """Labels of a run with those of the command, which count, and where the two disagree."""
+    clashes = (_conflict(name) for name, value in given.items() if before.get(name, value) != value)
+    return {**before, **given}, tuple(clashes)
+
+
+def given(texts: Sequence[str]) -> Labels | Diagnostic:
+    """The labels of a command: `version=2.1`."""
+    found: dict[str, str] = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not is_label(name) or not 0 < len(value) <= LONGEST:
+            return Diagnostic(
+                Code.BAD_LABEL,
+                f"`--label {_short(text)}` is no label",
+                help=f"write `--label version=2.1`: a name, `=`, up to {LONGEST} characters",
+            )
+        if name in found:
+            return Diagnostic(
+                Code.BAD_LABEL, f"`--label {name}=...` is given twice", help="take one of them out"
+            )
+        found[name] = value
+    if len(found) > MOST_LABELS:
+        return Diagnostic(
+            Code.BAD_LABEL, f"there are {len(found)} labels, and {MOST_LABELS} is the most"
+        )
+    return found
+
+
+def _conflict(name: str) -> Diagnostic:
+    """F552; the same for all logs, so that many of them are one warning."""
+    return Diagnostic(
+        Code.LABEL_CONFLICT,
+        f"sources of the label `{name}` say different things of one run",
+        help="the command counts first, then the sources in the order of `[run.label]`",
+        severity=Severity.WARNING,
+    )
+
+
+def _none(name: str, sources: Sequence[LabelSource], *, is_given: bool) -> Diagnostic:
+    """F553."""
+    texts = (f"{'path' if one.is_path else 'metadata'}:{one.text}" for one in sources)
+    where = " or ".join(f"`{text}`" for text in texts)
+    what = f"is empty, or longer than {LONGEST} characters" if is_given else "says nothing"
+    return Diagnostic(
+        Code.NO_LABEL,
+        f"a run has no label `{name}`: {where} {what}",
+        help=f"say it with `--label {name}=...`, or mend its sources in `[run.label]`",
+        severity=Severity.WARNING,
+    )
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."

@@ -1,0 +1,114 @@
+"""What lies below a place in a store: the addresses of its files, and when they changed.
+
+Only a store that the command line names is listed: no file names one. Web servers are not: a page
+with links is no list of files. Credentials are found by the package of the protocol, where it looks
+for them by itself.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from datetime import UTC, datetime
+from typing import Any
+
+from fretc.logs.storage import storage_diagnostics, web
+from fretc.logs.storage.inputs import as_os_error, is_url, shown
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.reading.limits import within
+
+_PATTERN = re.compile(r"[*\[]|\?(?!\w+=)")
+"""What is no part of a name; `?versionId=...` is none of a pattern either."""
+_BYTES = 10_000_000
+"""A list may cost as much as reading so many bytes: some hundred thousands of names."""
+
+
+def is_store(path: str) -> bool:
+    """Whether it is an address in a store, which has folders and patterns."""
+    return is_url(path) and not web.is_web(path) and "::" not in path
+
+
+def below(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | Diagnostic | None:
+    """The addresses of the logs below a folder, or of the files that a pattern matches, in order.
+
+    Args:
+        url: in a store; a folder ends with `/`.
+        is_log: whether a file below a folder is one, by its name.
+
+    Returns:
+        None where it is the address of a file; or why nothing can be listed.
+    """
+    if not url.endswith("/") and not _PATTERN.search(url):
+        return None
+    place = Source(shown(url), "").span()
+    try:
+        return within(_BYTES, place, lambda: _listed(url, is_log))
+    except ImportError as error:
+        return storage_diagnostics.no_package(url, error, place)
+    except OSError as error:
+        return storage_diagnostics.unlisted(error, place)
+
+
+def changed(url: str) -> int | None:
+    """When a file in a store changed last, in nanoseconds since 1970; None where it is not told."""
+    try:
+        system, path = _opened(url)
+        moment = system.modified(path)
+    except Exception:  # each protocol has its own; whoever reads the file tells what is wrong
+        return None
+    if not isinstance(moment, datetime):
+        return None
+    aware = moment if moment.tzinfo else moment.replace(tzinfo=UTC)
+    return int(aware.timestamp() * 1000) * 10**6
+
+
+def _opened(url: str) -> tuple[Any, str]:
+    """The store, and the path of the address in it."""
+    import fsspec
+
+    system, path = fsspec.core.url_to_fs(url, **web.options(url))
+    return system, str(path)
+
+
+def _listed(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | None:
+    """The addresses; None where a file has this very name.
+
+    Raises:
+        ImportError: the package of the protocol is not installed.
+        OSError: the store does not answer, or its names are none of addresses.
+    """
+    try:
+        system, path = _opened(url)
+        start = _start(url, path)
+        if not _PATTERN.search(url):
+            names = list(_found(system, path, is_log))
+        elif system.isfile(path):
+            return None
+        else:
+            names = list(_matched(system, path, is_log))
+    except ImportError:
+        raise
+    except Exception as error:  # each protocol has its own
+        raise as_os_error(error) from error
+    return [f"{start}{name}" for name in sorted({*names})]
+
+
+def _start(url: str, path: str) -> str:
+    """What stands before the names of a store in its addresses."""
+    bare, path = url.rstrip("/"), path.rstrip("/")
+    if not path or not bare.endswith(path):
+        raise OSError(None, "its names are no addresses: name each log")
+    return bare[: len(bare) - len(path)]
+
+
+def _found(system: Any, path: str, is_log: Callable[[str], bool]) -> Iterator[str]:
+    yield from (name for name in system.find(path) if is_log(name))
+
+
+def _matched(system: Any, path: str, is_log: Callable[[str], bool]) -> Iterator[str]:
+    for name, about in system.glob(path, detail=True).items():
+        if about.get("type") == "directory":
+            yield from _found(system, name, is_log)
+        else:
+            yield name

@@ -1,0 +1,1 @@
+"""The front page: how runs are grouped, the decisive sentence, and the five figures."""

@@ -1,0 +1,102 @@
+"""Why requirements are not shown, in groups; each of them is in at least one."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+
+from fretc.audit.evidence.verdicts import (
+    BROKEN,
+    NOT_EXERCISED,
+    SUSPECT,
+    UNFORMALIZED,
+    WAIVED,
+)
+from fretc.report.model import phrases
+from fretc.report.model.front import FigureLine, Link
+from fretc.report.model.views import Mark, RequirementView, RunSummary
+from monitors import kernel
+
+_NAMED = 8
+"""The most names of a line."""
+_DAMAGED = "damaged log"
+_CAUSES = {
+    UNFORMALIZED: "not formalized",
+    kernel.NO_DATA: "no data",
+    kernel.INCONCLUSIVE: "open at the end",
+    NOT_EXERCISED: "not audited",
+    WAIVED: "waived",
+    SUSPECT: "suspect: changed since",
+}
+_NEVER, _SOMETIMES, _OTHER = "never triggered", "not triggered in some runs", "other reasons"
+_ORDER = (
+    _CAUSES[UNFORMALIZED], _CAUSES[kernel.NO_DATA], _NEVER, _SOMETIMES,
+    _CAUSES[kernel.INCONCLUSIVE], _CAUSES[NOT_EXERCISED], _CAUSES[SUSPECT], _CAUSES[WAIVED], _OTHER,
+)  # fmt: skip
+
+
+def link(view: RequirementView) -> Link:
+    """Its id, which leads to its section."""
+    return Link(view.id, view.title, view.anchor)
+
+
+def line(text: str, names: Sequence[Link]) -> FigureLine:
+    """A line with the first names."""
+    most = _NAMED if len(names) > _NAMED + 1 else len(names)
+    return FigureLine(text, tuple(names[:most]), len(names) - most)
+
+
+def causes(
+    active: Sequence[RequirementView],
+    unshown: Sequence[RequirementView],
+    runs: Sequence[RunSummary],
+) -> tuple[FigureLine, ...]:
+    """A line for each cause, with the requirements that are not shown for it.
+
+    Args:
+        active: all requirements in force.
+        unshown: those of them that are not shown, and not violated.
+        runs: all audited runs.
+    """
+    damaged = [run for run in runs if not run.intact]
+    bad = {run.anchor for run in damaged}
+    by_cause: dict[str, list[Link]] = {}
+    for view in unshown:
+        for cause in dict.fromkeys(_of(view, bad)):
+            by_cause.setdefault(cause, []).append(link(view))
+    hurt = [view for view in active if any(_is_hurt(r.run, r.mark, bad) for r in view.results)]
+    lines = [line(cause, by_cause[cause]) for cause in _ORDER if cause in by_cause]
+    return (*([_damage(damaged, len(hurt))] if hurt else []), *lines)
+
+
+def _damage(runs: Sequence[RunSummary], requirements: int) -> FigureLine:
+    counts = f"{phrases.times(len(runs), 'run')}, {phrases.times(requirements, 'requirement')}"
+    return FigureLine(f"{_DAMAGED}: {counts}", (), 0)
+
+
+def _is_hurt(run: str, mark: Mark, damaged: Collection[str]) -> bool:
+    """Whether a damaged run leaves a requirement open: it neither shows nor violates it."""
+    return run in damaged and not mark.shows and mark.word not in BROKEN
+
+
+def _of(view: RequirementView, damaged: Collection[str]) -> Iterator[str]:
+    """The causes of one requirement; none where damaged logs alone are to blame."""
+    word = view.mark.word
+    if word in (WAIVED, UNFORMALIZED, NOT_EXERCISED):
+        yield _CAUSES[word]
+        return
+    single = () if view.probability else view.results
+    marks = {result.mark for result in single if not result.mark.shows}
+    for mark in sorted(marks, key=lambda mark: mark.severity):
+        hurt = all(r.run in damaged for r in single if r.mark == mark)
+        if mark.word not in BROKEN and not hurt:
+            yield _cause(mark, view)
+    if not any(mark.word not in BROKEN for mark in marks):
+        yield _cause(view.mark, view)
+
+
+def _cause(mark: Mark, view: RequirementView) -> str:
+    if mark.suspect:
+        return _CAUSES[SUSPECT]
+    if mark.word == kernel.VACUOUS:
+        return _SOMETIMES if any(result.triggers for result in view.results) else _NEVER
+    return _CAUSES.get(mark.word, _OTHER)

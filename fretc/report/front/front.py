@@ -1,0 +1,222 @@
+"""The front page: facts, the decisive sentence, five figures, and whether to trust the logs.
+
+Each requirement in force is counted once: it is shown, violated, or not shown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from datetime import date
+
+from compiler.files.dates import is_date
+from compiler.files.edition import __version__
+from compiler.logic.claims import Layer
+from fretc.audit.evidence.verdicts import BROKEN, RETIRED
+from fretc.report.front import violations
+from fretc.report.front.causes import causes, line, link
+from fretc.report.front.groups import run_groups
+from fretc.report.front.speech import capital, day, days, duration
+from fretc.report.model import phrases
+from fretc.report.model.assessments import Assessment
+from fretc.report.model.changes import Change
+from fretc.report.model.front import Figure, FigureLine, Front
+from fretc.report.model.views import Overall, RequirementView, Row, RunSummary
+from fretc.report.sections.proofs import is_proved_layer, is_refuted
+from fretc.report.sections.runs import Run
+from fretish.diagnostics import signs
+from fretish.diagnostics.diagnostic import Severity
+
+_CHANGES = 3
+"""The most changes that a figure names."""
+
+
+def front(
+    title: str,
+    overall: Overall,
+    sections: Sequence[RequirementView],
+    rows: Sequence[Row],
+    assessed: Sequence[Assessment],
+    runs: Sequence[Run],
+    views: Sequence[RunSummary],
+    changes: Sequence[Change],
+    notes: Sequence[str],
+) -> Front:
+    """All of it.
+
+    Args:
+        title: what the requirements are of.
+        overall: the overall result; its headline stands where no violation is current.
+        sections: all requirements.
+        rows: of the matrix.
+        assessed: of each section, in the same order.
+        runs: in the order of the evidence.
+        views: of the runs, in any order.
+        changes: since the review.
+        notes: sentences that qualify the figures.
+    """
+    active = [view for view in sections if view.status != RETIRED]
+    red = [view for view in active if violations.is_red(view)]
+    groups = run_groups(runs)
+    names = {run.anchor: run.name for group in groups for run in group.runs}
+    is_current = bool(red) and not any(view.mark.suspect for view in red)
+    return Front(
+        title=title,
+        facts=tuple(_facts(active, runs, assessed)),
+        headline=violations.headline(red, len(runs)) if is_current else overall.headline,
+        sentences=tuple(violations.sentences(red, groups)),
+        figures=(
+            _claimed(sections, active, rows),
+            _shown(active),
+            _violated(active, red),
+            _not_shown(active, views),
+            _changed(active, changes),
+        ),
+        trust=tuple(_trust(views, names)),
+        notes=tuple(notes),
+        groups=groups,
+    )
+
+
+def _facts(
+    active: Sequence[RequirementView], runs: Sequence[Run], assessed: Sequence[Assessment]
+) -> Iterator[str]:
+    yield phrases.times(len(active), "requirement")
+    yield _runs(runs) if runs else "no run"
+    reviews = [one.standing.review for one in assessed]
+    dates = sorted(on for review in reviews if review and (on := _date(review.date)))
+    yield f"reviewed on {days(dates[0], dates[-1])}" if dates else "not reviewed"
+    yield f"fretc {__version__}"
+
+
+def _date(text: str) -> date | None:
+    return date.fromisoformat(text) if is_date(text) else None
+
+
+def _runs(runs: Sequence[Run]) -> str:
+    """`16 runs of 21 November 2026, 58 min`."""
+    results = [run.facts for run in runs]
+    dates = [each for result in results if (each := day(result.start_ns))]
+    when = f" of {days(min(dates), max(dates))}" if dates else ""
+    seconds = sum(
+        (result.end_ns - result.start_ns) / 1e9
+        for result in results
+        if result.start_ns is not None and result.end_ns is not None
+    )
+    return f"{phrases.times(len(runs), 'run')}{when}, {duration(seconds)}"
+
+
+# The figures -----------------------------------------------------------------------------------
+
+
+def _claimed(
+    sections: Sequence[RequirementView], active: Sequence[RequirementView], rows: Sequence[Row]
+) -> Figure:
+    in_force = {view.anchor for view in active}
+    hazards = {row.hazard for row in rows if row.hazard and row.anchor in in_force}
+    rootless = {row.anchor for row in rows if not row.hazard}
+    loose = [link(view) for view in active if view.anchor in rootless]
+    drafts = [link(view) for view in active if view.status == "draft"]
+    retired = [link(view) for view in sections if view.status == RETIRED]
+    lines = [FigureLine(f"under {phrases.times(len(hazards), 'hazard')}", (), 0)] if hazards else []
+    for text, names in (("under no hazard", loose), ("draft", drafts), ("retired", retired)):
+        lines += [line(text, names)] if names else []
+    return Figure("claimed", len(active), "claimed", "", "requirements", tuple(lines))
+
+
+def _shown(active: Sequence[RequirementView]) -> Figure:
+    good = [view for view in active if view.mark.shows]
+    proved = [
+        _proved(active, layer, what)
+        for layer, what in ((Layer.MONITOR, "monitor proved"), (Layer.LOOP, "loop proved"))
+    ]
+    lines = (*([line("", [*map(link, good)])] if good else []), *filter(None, proved))
+    kind = signs.GOOD.kind if active and len(good) == len(active) else ""
+    return Figure("shown", len(good), "shown in every run", kind, "matrix", lines)
+
+
+def _proved(active: Sequence[RequirementView], layer: Layer, what: str) -> FigureLine | None:
+    """Of how many requirements all claims of a layer are proved, as they are now."""
+    count = sum(is_proved_layer(view, layer) for view in active)
+    if not count:
+        return None
+    return FigureLine(f"{what}: {'all' if count == len(active) else count}", (), 0)
+
+
+def _violated(active: Sequence[RequirementView], red: Sequence[RequirementView]) -> Figure:
+    refuted = [link(view) for view in active if is_refuted(view)]
+    lines = [line("", [*map(link, red)])] if red else []
+    lines += [line("counterexample of a proof", refuted)] if refuted else []
+    waived = [
+        link(view)
+        for view in active
+        if view not in red and any(result.mark.word in BROKEN for result in view.results)
+    ]
+    lines += [line("a run violates, but waived or over all runs open", waived)] if waived else []
+    kind = signs.BAD.kind if red or refuted else ""
+    return Figure("violated", len(red), "violated", kind, "not-shown", tuple(lines))
+
+
+def _not_shown(active: Sequence[RequirementView], runs: Sequence[RunSummary]) -> Figure:
+    unshown = [view for view in active if not view.mark.shows and not violations.is_red(view)]
+    kind = signs.OPEN.kind if unshown else ""
+    lines = causes(active, unshown, runs)
+    return Figure("not shown", len(unshown), "not shown", kind, "not-shown", lines)
+
+
+def _changed(active: Sequence[RequirementView], changes: Sequence[Change]) -> Figure:
+    words = "changed since the review"
+    unreviewed = [link(view) for view in active if view.review.signature is None]
+    if active and len(unreviewed) == len(active) and not changes:
+        nothing = FigureLine("nothing has been reviewed", (), 0)
+        return Figure("changed", None, words, "", "changes", (nothing,))
+    lines = [
+        FigureLine(f"{change.requirement}: {'; '.join(change.lines[:2]) or 'verdicts'}", (), 0)
+        for change in changes[:_CHANGES]
+    ]
+    more = len(changes) - _CHANGES
+    lines += [FigureLine(f"and {phrases.times(more, 'more requirement')}", (), 0)] * (more > 0)
+    verdicts = [(then, now) for change in changes for _, then, now in change.verdicts]
+    worse = sum(now in BROKEN and then not in BROKEN for then, now in verdicts)
+    became = f"{phrases.times(worse, 'verdict')} became violated"
+    lines += [FigureLine(became, (), 0)] * (worse > 0)
+    lines += [line("not reviewed", unreviewed)] if unreviewed else []
+    kind = signs.OPEN.kind if changes else ""
+    return Figure("changed", len(changes), words, kind, "changes", tuple(lines))
+
+
+# Trust -----------------------------------------------------------------------------------------
+
+
+def _trust(runs: Sequence[RunSummary], names: Mapping[str, str]) -> Iterator[str]:
+    """Two lines: damage and errors; hashes and findings."""
+    if not runs:
+        return
+    total = phrases.times(len(runs), "log")
+    damaged = [names[run.anchor] for run in runs if not run.intact]
+    wrong = [_wrong(run, names) for run in runs if run.intact and _errors(run)]
+    parts = [
+        f"{len(damaged)} of {total} damaged or not readable: {phrases.some(damaged)}"
+        if damaged
+        else f"no damage found in {'the log' if len(runs) == 1 else f'any of {total}'}",
+        f"errors in {phrases.some(wrong)}, to be read before the verdicts" if wrong else "",
+    ]
+    yield f"{capital('; '.join(filter(None, parts)))}."
+    unknown = sum(not run.sha256 for run in runs)
+    hashes = f"{unknown} of {total} without a SHA-256" if unknown else "Each log has its SHA-256"
+    found = [
+        names[run.anchor]
+        for run in runs
+        if run.intact and not _errors(run) and not all(each.accepted for each in run.findings)
+    ]
+    more = f"other findings in {phrases.some(found, 4)}" if found else "no other findings"
+    yield f"{hashes}; {more}."
+
+
+def _wrong(run: RunSummary, names: Mapping[str, str]) -> str:
+    return f"{names[run.anchor]} ({', '.join(_errors(run))})"
+
+
+def _errors(run: RunSummary) -> list[str]:
+    """The codes of its errors, each once."""
+    errors = (each.code for each in run.findings if each.severity == Severity.ERROR.value)
+    return list(dict.fromkeys(errors))

@@ -1,0 +1,101 @@
+"""The decisive sentence: what is violated, in which runs, and where it fails only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from fretc.audit.evidence.verdicts import BROKEN
+from fretc.report.front.speech import capital, named, number
+from fretc.report.model import phrases
+from fretc.report.model.front import RunGroup
+from fretc.report.model.views import RequirementView
+from monitors import kernel
+
+_NAMED = 2
+"""Up to this number the headline names the requirements; else it counts them."""
+_SENTENCES, _GROUPS = 4, 3
+"""The most sentences about violations, and the most groups that one of them names."""
+
+
+def is_red(view: RequirementView) -> bool:
+    """Whether its verdict tells of a violation that no waiver covers."""
+    return view.mark.word in BROKEN
+
+
+def broken_runs(view: RequirementView) -> frozenset[str]:
+    """The anchors of the runs that violate it."""
+    return frozenset(result.run for result in view.results if result.mark.word in BROKEN)
+
+
+def headline(views: Sequence[RequirementView], runs: int) -> str:
+    """How many are violated: `Five requirements are violated, in six of 16 runs`.
+
+    Args:
+        views: those that are violated, at least one.
+        runs: the number of all runs.
+    """
+    count = len(views)
+    who = (
+        phrases.joined([named(view) for view in views])
+        if count <= _NAMED
+        else f"{number(count)} requirements"
+    )
+    words = " or ".join(dict.fromkeys(view.mark.word for view in views))
+    broken = len(frozenset[str]().union(*map(broken_runs, views)))
+    where = f", in {_of(broken, runs)}" if broken else ""
+    return capital(f"{who} {'is' if count == 1 else 'are'} {words}{where}.")
+
+
+def _of(count: int, total: int) -> str:
+    if count == total:
+        return "the one run" if total == 1 else f"every one of {number(total)} runs"
+    return f"{number(count)} of {number(total)} runs"
+
+
+def sentences(views: Sequence[RequirementView], groups: Sequence[RunGroup]) -> Iterator[str]:
+    """Where violated requirements fail, those that fail in the same runs together."""
+    same: dict[frozenset[str], list[RequirementView]] = {}
+    for view in views:
+        if broken := broken_runs(view):
+            same.setdefault(broken, []).append(view)
+    ordered = sorted(same.items(), key=lambda item: -len(item[1]))
+    for broken, those in ordered[:_SENTENCES]:
+        verb = "fails" if len(those) == 1 else "fail"
+        unknown = _unknown(those, broken, groups)
+        yield f"{phrases.some([*map(named, those)], 4)} {verb} {where(broken, groups)}{unknown}."
+    rest = sum(len(those) for _, those in ordered[_SENTENCES:])
+    if rest:
+        verb = "fails" if rest == 1 else "fail"
+        yield f"{capital(phrases.times(rest, 'more requirement'))} {verb} in other runs."
+
+
+def where(broken: frozenset[str], groups: Sequence[RunGroup]) -> str:
+    """`only in safety-off (2 of 2 runs)`, where few of the groups have it; else the runs."""
+    runs = [run for group in groups for run in group.runs]
+    if len(broken) == len(runs):
+        return "in every run" if len(runs) > 1 else "in the one run"
+    counts = [(group, sum(run.anchor in broken for run in group.runs)) for group in groups]
+    hit = [(group, count) for group, count in counts if count]
+    if all(group.name for group in groups) and len(hit) < len(groups) and len(hit) <= _GROUPS:
+        parts = [
+            f"{group.name} ({count} of {phrases.times(len(group.runs), 'run')})"
+            for group, count in hit
+        ]
+        return f"only in {phrases.joined(parts)}"
+    count = f"in {len(broken)} of {phrases.times(len(runs), 'run')}"
+    others = [run.name for run in runs if run.anchor not in broken]
+    if len(others) <= _GROUPS and len(others) < len(broken):
+        return f"{count}, all but {phrases.joined(others)}"
+    return f"{count}: {phrases.some([run.name for run in runs if run.anchor in broken], 4)}"
+
+
+def _unknown(
+    views: Sequence[RequirementView], broken: frozenset[str], groups: Sequence[RunGroup]
+) -> str:
+    """In how many other runs it is not known whether one of them fails, too."""
+    runs = {run.anchor for group in groups for run in group.runs} - broken
+    unknown = set[str]()
+    for view in views:
+        decided = {r.run for r in view.results if r.mark.word != kernel.NO_DATA}
+        unknown |= runs - decided
+    return f"; in {phrases.times(len(unknown), 'other run')} it is not known" if unknown else ""

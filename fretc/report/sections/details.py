@@ -1,0 +1,115 @@
+"""What the report has in rows only, read in full: results with their events, runs with topics.
+
+A report of many runs never holds all of it: a page reads the few that it shows, and a form that has
+them all reads and writes them one after the other.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+from compiler.project.folder import Project
+from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.declared_units import in_declared_units, thresholds_in_declared_units
+from fretc.audit.evidence.schema import Result, Threshold
+from fretc.report.model.assessments import Assessment
+from fretc.report.model.pictures import Histogram
+from fretc.report.model.views import ResultRow, ResultView, RunSummary, RunView
+from fretc.report.pictures.histograms import histograms
+from fretc.report.sections.results import result_view
+from fretc.report.sections.runs import Run, RunKey, run_key, topic_views
+
+Latencies = Mapping[int, Sequence[float]]
+Thresholds = Mapping[int, Sequence[Threshold]]
+"""Those of each result, by its place."""
+_AT_ONCE = 10_000
+"""The most results whose numbers are read at once, but for those of one requirement."""
+
+
+@dataclass(frozen=True, slots=True)
+class Details:
+    """The evidence behind the rows of a report."""
+
+    evidence: EvidenceSource | None
+    """None where no run has been audited."""
+    project: Project
+    assessments: Mapping[str, Assessment]
+    """Each with the anchor of its requirement."""
+    runs: Mapping[RunKey, Run]
+
+    @property
+    def logs(self) -> tuple[str, ...]:
+        """The names of all runs, as the user gave them."""
+        return tuple(dict.fromkeys(run.facts.run for run in self.runs.values()))
+
+    def audited(self, rows: Iterable[ResultRow]) -> Iterator[tuple[ResultRow, Result]]:
+        """The result of each row in declared units, in the order of the evidence."""
+        rows_at: dict[int, list[ResultRow]] = {}
+        for row in rows:
+            rows_at.setdefault(row.place, []).append(row)
+        for place, result in self.evidence.details(rows_at) if self.evidence else ():
+            known = in_declared_units(result, self.project.declarations)
+            for row in rows_at[place]:
+                yield row, known
+
+    def results(self, rows: Iterable[ResultRow]) -> Iterator[tuple[ResultRow, ResultView]]:
+        """The view of each row, in the order of the evidence."""
+        for row, result in self.audited(rows):
+            assessment = self.assessments[row.requirement]
+            yield row, result_view(result, row, assessment, self.project.declarations)
+
+    def histograms(self, anchors: Iterable[str]) -> Iterator[tuple[str, tuple[Histogram, ...]]]:
+        """Those of some requirements, by their anchors, in their order."""
+        for assessment, latencies, thresholds in self._measures(anchors):
+            yield assessment.anchor, histograms(assessment, latencies, thresholds)
+
+    def thresholds(self, anchors: Iterable[str]) -> Iterator[tuple[Assessment, Thresholds]]:
+        """Those of the results of some requirements in declared units, by place."""
+        for group in self._groups(anchors):
+            thresholds = self._thresholds(group)
+            yield from ((assessment, thresholds) for assessment in group)
+
+    def _measures(
+        self, anchors: Iterable[str]
+    ) -> Iterator[tuple[Assessment, Latencies, Thresholds]]:
+        for group in self._groups(anchors):
+            ids = {assessment.id for assessment in group}
+            found = self.evidence.latencies(ids) if self.evidence else ()
+            latencies = {place: array("d", some) for place, some in found}
+            thresholds = self._thresholds(group)
+            yield from ((assessment, latencies, thresholds) for assessment in group)
+
+    def _thresholds(self, group: Sequence[Assessment]) -> Thresholds:
+        declared = self.project.declarations
+        ids = {assessment.id for assessment in group}
+        found = self.evidence.thresholds(ids) if self.evidence else ()
+        return {at: thresholds_in_declared_units(some, declared) for at, some in found}
+
+    def _groups(self, anchors: Iterable[str]) -> Iterator[list[Assessment]]:
+        """The requirements in their order, with so many results together as are read at once."""
+        group: list[Assessment] = []
+        for assessment in (self.assessments[anchor] for anchor in anchors):
+            if group and sum(len(each.audits) for each in (*group, assessment)) > _AT_ONCE:
+                yield group
+                group = []
+            group.append(assessment)
+        if group:
+            yield group
+
+    def run_views(self, summaries: Iterable[RunSummary]) -> tuple[RunView, ...]:
+        """The runs with their topics, in the order in which they are given."""
+        ordered = tuple(summaries)
+        wanted = {each.anchor for each in ordered}
+        topics = {}
+        for facts in self.evidence.runs() if self.evidence else ():
+            anchor = self.runs[run_key(facts)].anchor
+            if anchor in wanted and anchor not in topics:
+                topics[anchor] = topic_views(facts, self.project)
+        return tuple(RunView(**_fields(each), topics=topics[each.anchor]) for each in ordered)
+
+
+def _fields(summary: RunSummary) -> dict[str, Any]:
+    return {field.name: getattr(summary, field.name) for field in fields(summary)}

@@ -1,0 +1,347 @@
+"""What has changed since a review: each change by itself, with its texts before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from compiler.files.records import replace
+from fretc.audit.evidence import basis
+from fretc.report.traceability import word_diff
+from fretc.report.traceability.chain import (
+    ACCEPTANCE,
+    ADDED,
+    ARTEFACT,
+    DERIVED,
+    FORMULAS,
+    HAZARD,
+    LOG,
+    PARENT,
+    PLAN,
+    PROOF,
+    SHARED,
+    TEXT,
+    VERDICT,
+    WORDS,
+    Chain,
+    Node,
+    Suspect,
+    changed,
+    upstream_of,
+)
+from fretc.report.traceability.meanings import Key, Leaf, leaves
+from fretc.report.traceability.texts import Bindings, Texts
+from fretc.report.traceability.word_diff import Segment
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One thing that is not as it was reviewed."""
+
+    node: Node
+    """What it is part of."""
+    what: str
+    """`title`, `max_age of vx`."""
+    before: str | None
+    """As it was written; empty: it was not there; None: the lock does not say."""
+    after: str | None
+    """As it is written; empty: it is not there; None: it has no text."""
+    is_of_evidence: bool = False
+    """The evidence is about another one; since the review it has not changed."""
+    is_table: bool = False
+    """It came or went as a whole: what is not there has no default."""
+
+    @property
+    def text(self) -> str:
+        """`speed: vx <= 0.40 m/s → 0.35 m/s`: only what differs, where that is one word."""
+        if self.is_of_evidence:
+            known = self.node.kind in (*basis.KINDS, basis.FRETC)
+            about = f"what was audited or proved is about another {self.what}"
+            return basis.why(self.node.kind) if known else about
+        if self.before is None:
+            now = f" is {self.after} now" if self.after else " changed"
+            return f"{self.what}{now}; what it was is not in the lock"
+        if self.after is None:
+            return f"{self.what} changed"
+        return f"{self.what}: {word_diff.short(*self._texts)}"
+
+    @property
+    def _absent(self) -> str:
+        """What stands for a text that is not there: a field that is left out has a default."""
+        has_default = self.node.kind in _WITH_DEFAULTS and not self.is_table
+        return "not stated" if has_default else "none"
+
+    @property
+    def brief(self) -> str:
+        """The same in a sentence: of a long one the beginning."""
+        if not self.is_of_evidence and (self.before is None or self.after is None):
+            return f"{self.what} changed"
+        return self.text if len(self.text) <= _BRIEF else f"{self.text[: _BRIEF - 2]} …"
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """Both texts as one, word by word; none where one of them is not known."""
+        if self.before is None or self.after is None:
+            return ()
+        return word_diff.segments(*self._texts)
+
+    @property
+    def _texts(self) -> tuple[str, str]:
+        return self.before or self._absent, self.after or self._absent
+
+    def makes_suspect(self, link: Suspect) -> bool:
+        """Whether a link is suspect because of it."""
+        kind = self.node.kind
+        return any(c == self.node or (c.kind == kind and kind in _MANY) for c in link.causes)
+
+    @property
+    def as_record(self) -> dict[str, Any]:
+        """Plain values, in a fixed order of keys."""
+        return {
+            "thing": str(self.node),
+            "what": self.what,
+            "before": self.before,
+            "after": self.after,
+            "text": self.text,
+        }
+
+
+_BRIEF = 120
+"""Characters of a change within a sentence."""
+_WITH_DEFAULTS = (basis.BINDINGS, basis.CLOCK, WORDS, FORMULAS, ARTEFACT)
+
+
+def changes(
+    chain: Chain,
+    prints: Mapping[Node, str],
+    verdicts: Mapping[str, str],
+    texts: Texts | None,
+    causes: Collection[Node],
+) -> tuple[Change, ...]:
+    """Each change of a requirement since its review, and nothing that follows from another one.
+
+    Args:
+        chain: as it is now.
+        prints: the fingerprints of the review.
+        verdicts: those of the review, by run.
+        texts: those of the review; None: it has none that its fingerprints vouch for.
+        causes: what makes links of the requirement suspect: none of it is left out.
+    """
+    comparison = _Comparison(chain, prints, verdicts, texts)
+    found = [*comparison.of_texts(), *comparison.of_nodes()]
+    return (*found, *comparison.of_causes(causes, found))
+
+
+def in_words(changes: Sequence[Change]) -> str:
+    """The first changes in one sentence, those of requirements before those of evidence."""
+    own = [each.brief for each in changes if not each.is_of_evidence]
+    named = own or [each.brief for each in changes]
+    left = len(named) - _IN_A_SENTENCE
+    more = [f"and {left} more"] if left > 0 else []
+    return "; ".join([*named[:_IN_A_SENTENCE], *more])
+
+
+_IN_A_SENTENCE = 3
+
+
+class _Comparison:
+    """One requirement beside its review."""
+
+    def __init__(
+        self,
+        chain: Chain,
+        prints: Mapping[Node, str],
+        verdicts: Mapping[str, str],
+        texts: Texts | None,
+    ) -> None:
+        self._chain, self._prints, self._verdicts = chain, prints, verdicts
+        self._now = chain.prints
+        self._verdicts_now = chain.verdicts
+        self._nodes = frozenset(changed(self._now, prints))
+        self._texts = texts
+        self._explained: set[Node] = set()
+
+    # Texts
+
+    def of_texts(self) -> Iterator[Change]:
+        """Each text that is another one, and means something else."""
+        now = self._chain.texts
+        if self._texts is None or now is None or not self._nodes:
+            return
+        id = self._chain.requirement
+        then, now = _without_equal_tables(self._texts, now)
+        before, after = leaves(id, then), leaves(id, now)
+        keys = dict.fromkeys((*before, *after))
+        pairs = {key: (before.get(key), after.get(key)) for key in keys}
+        different = {key: pair for key, pair in pairs.items() if self._differs(*pair)}
+        texts = [leaf.node for pair in different.values() for leaf in pair if leaf is not None]
+        kinds = {node.kind for node in texts if node.kind in _MANY}
+        self._explained |= {*texts, *(node for node in self._nodes if node.kind in kinds)}
+        yield from _merged(different, before, after)
+
+    def _differs(self, before: Leaf | None, after: Leaf | None) -> bool:
+        leaf = before or after
+        assert leaf is not None
+        kinds = {node.kind for node in self._nodes}
+        is_touched = (
+            leaf.node.kind in kinds if leaf.node.kind in _MANY else leaf.node in self._nodes
+        )
+        if not is_touched or before is None or after is None:
+            return is_touched
+        return before.text != after.text and before.meaning != after.meaning
+
+    # Things without a text
+
+    def of_nodes(self) -> Iterator[Change]:
+        """Each thing that has changed, whose texts do not show it, and that follows from none."""
+        above = upstream_of(self._now, self._chain.links) if self._nodes - self._explained else {}
+        for node in sorted(self._nodes - self._explained):
+            is_new = node not in self._prints and node.kind in ADDED
+            is_gone = node not in self._now and node.kind in _ONLY_OF_EVIDENCE
+            derived = node.kind in DERIVED and above.get(node, frozenset()) & self._nodes
+            if not (is_new or is_gone or derived or self._follows(node)):
+                yield self._named(node)
+
+    def _follows(self, node: Node) -> bool:
+        """Whether it is made of something else that has changed, without a link."""
+        id = self._chain.requirement
+        kinds = {each.kind for each in self._nodes if each.kind != TEXT or each.name == id}
+        if node.kind == basis.FRETC:  # it has no version where it has no formulas
+            is_other = node in self._prints and node in self._now
+            return not is_other and basis.SENTENCE in kinds
+        sources = _SOURCES if self._texts is None else {**_SOURCES, **_SOURCES_OF_TEXTS}
+        return bool(kinds & sources.get(node.kind, frozenset()))
+
+    def _named(self, node: Node) -> Change:
+        """The change of a thing that is known by its fingerprint."""
+        run = node.name.removeprefix(f"{self._chain.requirement} ")
+        before, after = self._prints.get(node, ""), self._now.get(node, "")
+        if node.kind == LOG and node not in self._now:
+            return Change(node, f"verdict of {run}", self._verdicts.get(run, ""), "")
+        if node.kind == VERDICT:
+            then, now = self._verdicts.get(run, ""), self._verdicts_now.get(run, "")
+            if then != now:
+                return Change(node, f"verdict of {run}", then, now)
+            return Change(node, f"what was found in {run}", None, None)
+        if node.kind in (LOG, ARTEFACT, SHARED):
+            return Change(node, f"{node.kind} {run}", _digest(before), _digest(after))
+        return Change(node, thing(node), None, None)
+
+    def of_causes(self, causes: Collection[Node], found: Collection[Change]) -> Iterator[Change]:
+        """Of what makes links suspect that which no other change names."""
+        for cause in causes:
+            if cause not in self._nodes:
+                yield Change(cause, thing(cause), None, None, is_of_evidence=True)
+            elif not found:
+                yield self._named(cause)
+
+
+def thing(node: Node) -> str:
+    """A thing of the chain from hazard to review: `artefact r1_monitor.py`, `the clock`."""
+    if node.kind in (basis.CLOCK, basis.TOPICS):
+        return f"the {node.kind}"
+    return f"{node.kind} {node.name}"
+
+
+def _digest(sha256: str) -> str:
+    return f"SHA-256 {sha256[:12]}" if sha256 else ""
+
+
+_MANY = (ARTEFACT, FORMULAS, PLAN, SHARED)
+"""Kinds of which a requirement has several, and a text is about all of them."""
+_ONLY_OF_EVIDENCE = (VERDICT, basis.TOPICS)
+"""Kinds of things that are there where runs are: their log says that it is gone."""
+_SOURCES: Mapping[str, frozenset[str]] = {
+    ARTEFACT: frozenset({TEXT, basis.PARAMS, basis.BINDINGS, WORDS, FORMULAS, PLAN}),
+    FORMULAS: frozenset({basis.BINDINGS}),
+    SHARED: frozenset({PROOF}),
+}
+"""What else a thing may be made of, without a link to it."""
+_SOURCES_OF_TEXTS: Mapping[str, frozenset[str]] = {
+    basis.BINDINGS: frozenset({basis.SENTENCE}),
+    WORDS: frozenset({basis.SENTENCE, basis.BINDINGS}),
+    basis.TOPICS: frozenset({basis.SENTENCE, basis.BINDINGS}),
+    PROOF: frozenset({basis.SENTENCE, basis.BINDINGS}),
+}
+"""The same, where no text shows that the thing itself is another one."""
+
+
+# One change of many texts ----------------------------------------------------------------------
+
+_Pairs = Mapping[Key, tuple[Leaf | None, Leaf | None]]
+_ABOVE = (HAZARD, PARENT, TEXT)
+
+
+def _without_equal_tables(then: Texts, now: Texts) -> tuple[Texts, Texts]:
+    """Both without the tables of bindings that are the same: to read them takes time."""
+    before, after = then.bindings, now.bindings
+    if before is None or after is None:
+        return then, now
+    kept: list[Bindings | None] = [before, after]
+    if before == after:
+        kept = [None, None]
+    elif _tables(before) == _tables(after):
+        kept = [Bindings(before.clock), Bindings(after.clock)]
+    return replace(then, bindings=kept[0]), replace(now, bindings=kept[1])
+
+
+def _tables(bindings: Bindings) -> tuple[Any, ...]:
+    return bindings.signal, bindings.proposition, bindings.variable
+
+
+def _merged(
+    different: _Pairs, before: Mapping[Key, Leaf], after: Mapping[Key, Leaf]
+) -> Iterator[Change]:
+    """A change for each text; one for a table that came or went, if it follows from no other."""
+    owners = [{leaf.owner for leaf in side.values()} for side in (before, after)]
+    lone = {owner for owner in owners[0] ^ owners[1] if owner}
+    for key, (then, now) in different.items():
+        leaf = then or now
+        assert leaf is not None
+        if leaf.owner in lone:
+            if key[2] == _FACE.get(key[0]) and not _comes_with(key[0], different, lone):
+                yield _change(_name(key, leaf), then, now, is_table=True)
+        elif not _is_repetition(key, different):
+            yield _change(leaf.what, then, now)
+
+
+def _is_repetition(key: Key, different: _Pairs) -> bool:
+    """Whether another text that differs says as much."""
+    if key == _WORDING:
+        return _SENTENCE in different
+    own = _SENTENCE in different or any(field == "path" for _, _, field in different)
+    return key == ("", "", "topics") and own
+
+
+def _change(what: str, then: Leaf | None, now: Leaf | None, *, is_table: bool = False) -> Change:
+    leaf = now or then
+    assert leaf is not None
+    before, after = then.text if then else "", now.text if now else ""
+    return Change(leaf.node, what, before, after, is_table=is_table)
+
+
+_SENTENCE, _WORDING = ("", "", "sentence"), ("", "", "wording")
+_FACE = {
+    "proposition": "expr", "signal": "path", "variable": "value", HAZARD: "title", PARENT: "title",
+    TEXT: "title", PROOF: "result", "params": "", ACCEPTANCE: "",
+}  # fmt: skip
+"""The field that stands for a table that came or went."""
+
+
+def _name(key: Key, leaf: Leaf) -> str:
+    kind, name, _ = key
+    return f"{kind} {name}" if kind in ("signal", *_ABOVE) else leaf.what
+
+
+def _comes_with(kind: str, different: _Pairs, lone: Collection[str]) -> bool:
+    """Whether a table comes or goes because something else names it now, or does no more."""
+    if kind in _ABOVE:
+        return any(field == "parents" for _, _, field in different)
+    sentences = [key for key in different if key == _SENTENCE or key[0] == "variable"]
+    if kind == "variable":
+        return _SENTENCE in different
+    if kind == "proposition":
+        return bool(sentences)
+    expressions = [key for key in different if key[0] == "proposition" and key[2] == "expr"]
+    return kind == "signal" and bool(sentences or expressions)

@@ -1,0 +1,336 @@
+"""What the texts of a review mean: each by itself, and the fingerprints that they give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import chain
+from typing import Any
+
+import tomli_w
+
+from compiler.files.records import Record
+from compiler.files.text_files import sha256
+from compiler.formalization.formalize import formalize
+from compiler.project.hazards import Hazard
+from fretc.audit.evidence import basis
+from fretc.report.traceability.chain import (
+    ACCEPTANCE,
+    ARTEFACT,
+    FORMULAS,
+    HAZARD,
+    PARENT,
+    PLAN,
+    PROOF,
+    SHARED,
+    STATUS,
+    TEXT,
+    WORDS,
+    Node,
+    in_force,
+    print_of_hazard,
+    print_of_header,
+    print_of_proof,
+    print_of_status,
+    print_of_words,
+)
+from fretc.report.traceability.texts import Bindings, Table, Texts, canonical_text, header_of
+from fretish.bindings import canonical
+from fretish.bindings.declarations import Declarations
+from fretish.bindings.reader import read_bindings
+from fretish.diagnostics.source import Source
+from fretish.documents import Requirement
+from fretish.printer import expression
+from fretish.reading.recursion import deep
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """One text of a review."""
+
+    node: Node
+    """Whose fingerprint covers it."""
+    what: str
+    """`title`, `max_age of vx`: its name for a reader."""
+    text: str
+    meaning: Any
+    """Equal where two ways of writing mean the same."""
+    owner: str = ""
+    """The table that it is in, as `signal vx`; empty where it is in none that comes and goes."""
+
+
+Key = tuple[str, str, str]
+"""Kind, name of the table, and field."""
+
+
+# Each text -------------------------------------------------------------------------------------
+
+
+def leaves(id: str, texts: Texts) -> Mapping[Key, Leaf]:
+    """Every text of a requirement, in the order in which changes are listed."""
+    found = dict(_of_sentence(id, texts))
+    declarations = _declarations(texts.bindings) if texts.bindings else None
+    if texts.bindings is not None:
+        found |= _of_bindings(id, texts.bindings, declarations)
+    parts = (_of_header(id, texts), _of_parents(texts), _of_audit(id, texts))
+    return found | dict(chain.from_iterable(parts))
+
+
+def _of_sentence(id: str, texts: Texts) -> Iterator[tuple[Key, Leaf]]:
+    written = _line(texts.sentence)
+    sentence = texts.canonical or written
+    yield ("", "", "sentence"), Leaf(Node(basis.SENTENCE, id), "sentence", written, sentence)
+    # A monitor quotes its sentence; what is in it means the same.
+    wording = Leaf(Node(ARTEFACT, id), "wording", written, (sentence, written))
+    yield ("", "", "wording"), wording
+    for name, text in texts.params.items():
+        meaning = canonical.parameter(text)
+        node, what = Node(basis.PARAMS, id), f"number stated for {name}"
+        yield ("params", name, ""), Leaf(node, what, text, meaning, f"params {name}")
+
+
+def _of_header(id: str, texts: Texts) -> Iterator[tuple[Key, Leaf]]:
+    node = Node(TEXT, id)
+    for name in ("title", "text", "rationale"):
+        text = _line(getattr(texts, name))
+        yield ("", "", name), Leaf(node, name, text, text)
+    yield ("", "", "parents"), Leaf(node, "parents", ", ".join(texts.parents), {*texts.parents})
+    retired = texts.status == "retired"
+    yield ("", "", "status"), Leaf(in_force(id), "status", texts.status, retired)
+    plan = Node(PLAN, id)
+    yield ("", "", "verify"), Leaf(plan, "verify", ", ".join(texts.verify), {*texts.verify})
+    for name, reason in texts.accept.items():
+        what, why = f"reason to accept {name}", _line(reason)
+        leaf = Leaf(Node(ACCEPTANCE, name), what, why, why, f"accept {name}")
+        yield (ACCEPTANCE, name, ""), leaf
+
+
+def _of_parents(texts: Texts) -> Iterator[tuple[Key, Leaf]]:
+    """Of hazards, and of the requirements between."""
+    tables: list[tuple[str, str, Mapping[str, str]]] = []
+    for id, header in texts.above.items():
+        texts_of = {name: text for name, text in _fields(header).items() if name != "parents"}
+        tables.append((TEXT, id, texts_of))
+        node, parents = Node(TEXT, id), header.parents
+        leaf = Leaf(node, f"parents of {id}", ", ".join(parents), {*parents}, f"text {id}")
+        yield (TEXT, id, "parents"), leaf
+    tables += [(HAZARD, id, _fields(each)) for id, each in texts.hazards.items()]
+    tables += [(PARENT, id, _fields(each)) for id, each in texts.elsewhere.items()]
+    for kind, id, words in tables:
+        for name, text in words.items():
+            line = _line(text)
+            leaf = Leaf(Node(kind, id), f"{name} of {id}", line, line, f"{kind} {id}")
+            yield (kind, id, name), leaf
+
+
+def _of_audit(id: str, texts: Texts) -> Iterator[tuple[Key, Leaf]]:
+    if texts.topics is not None:
+        node, names = Node(basis.TOPICS, "audited"), ", ".join(texts.topics)
+        yield ("", "", "topics"), Leaf(node, "topics that are read", names, texts.topics)
+    for claim, (result, *assumptions) in texts.proofs.items():
+        node, owner = Node(PROOF, f"{id} {claim}"), f"proof {claim}"
+        under = {*assumptions}
+        yield (PROOF, claim, "result"), Leaf(node, f"proof of {claim}", result, result, owner)
+        text = "; ".join(assumptions)
+        leaf = Leaf(node, f"assumptions of the proof of {claim}", text, under, owner)
+        yield (PROOF, claim, "assumptions"), leaf
+    for table, fields in texts.loop.items():
+        for name, value in fields.items():
+            text = _in_toml(value)
+            leaf = Leaf(
+                Node(SHARED, table), f"{name} of [{table}]", text, canonical.parameter(text)
+            )
+            yield (SHARED, table, name), leaf
+    if texts.fretc:
+        node = Node(basis.FRETC, "version")
+        yield ("", "", "fretc"), Leaf(node, "version of fretc", texts.fretc, texts.fretc)
+
+
+def _fields(record: Record) -> dict[str, Any]:
+    return {name: getattr(record, name) for name in record.__struct_fields__}
+
+
+# Bindings --------------------------------------------------------------------------------------
+
+_WORDS = ("text", "role", "kind")
+_OUTLINE = ("footprint", "sensor")
+_FIRST = {"expr", "value"}
+"""What a reader looks at first."""
+_CLOCK = ("tick", "time", "end", "phase", "rounding")
+
+
+def _of_bindings(
+    id: str, bindings: Bindings, declarations: Declarations | None
+) -> Mapping[Key, Leaf]:
+    """Of the clock and of every table; where these cannot be read, each text means itself."""
+    found: dict[Key, Leaf] = {}
+    for name, table in bindings.proposition.items():
+        found |= _of_table(id, "proposition", name, table, _proposition(name, declarations))
+    for name, table in bindings.signal.items():
+        found |= _of_table(id, "signal", name, table, _signal(name, declarations))
+    for name, table in bindings.variable.items():
+        found |= _of_table(id, "variable", name, table, _variable(name, declarations))
+    clock = declarations.clock if declarations else None
+    for name in _CLOCK:
+        node = Node(FORMULAS, id) if name == "rounding" else Node(basis.CLOCK, "clock")
+        meaning = (clock.period or clock.topic) if clock and name == "tick" else None
+        meaning = getattr(clock, name) if clock and name != "tick" else meaning
+        text = str(bindings.clock.get(name, ""))
+        leaf = Leaf(node, f"{name} of the clock", text, text if clock is None else meaning)
+        found["clock", "", name] = leaf
+    return found
+
+
+def _of_table(
+    id: str, kind: str, name: str, table: Table, meanings: Mapping[str, Any]
+) -> Mapping[Key, Leaf]:
+    """Each field that is written or has a meaning of its own."""
+    return {
+        (kind, name, field): Leaf(
+            Node(_covered_by(kind, field), id),
+            name if field in ("expr", "value") else f"{field} of {name}",
+            _in_toml(table[field]) if field in table else "",
+            meanings.get(field, _in_toml(table.get(field, ""))),
+            f"{kind} {name}",
+        )
+        for field in dict.fromkeys((*(_FIRST & table.keys()), *table, *meanings))
+    }
+
+
+def _covered_by(kind: str, field: str) -> str:
+    """The kind of the node whose fingerprint the field changes."""
+    if kind == "proposition" and field in _WORDS:
+        return WORDS
+    if kind == "variable":
+        return basis.SENTENCE if field == "value" else ARTEFACT
+    if kind == "signal":
+        return ARTEFACT if field == "role" else basis.BINDINGS
+    return basis.BINDINGS if field in ("expr", "agg", "on_unknown") else ARTEFACT
+
+
+def _proposition(name: str, declarations: Declarations | None) -> Mapping[str, Any]:
+    known = declarations.propositions.get(name) if declarations else None
+    if known is None:
+        return {}
+    words = {"text": _line(known.text), "role": str(known.role), "kind": known.kind}
+    other = {"modality": str(known.modality), "action": known.action}
+    return {**canonical.proposition_fields(known), **words, **other}
+
+
+def _signal(name: str, declarations: Declarations | None) -> Mapping[str, Any]:
+    known = declarations.signals.get(name) if declarations else None
+    if known is None:
+        return {}
+    meanings = canonical.signal_fields(known)
+    outline = meanings.pop("outline") or (None, None)
+    own = {"agg": str(known.aggregate), "role": str(known.role)}
+    return {**meanings, **dict(zip(_OUTLINE, outline, strict=True)), **own}
+
+
+def _variable(name: str, declarations: Declarations | None) -> Mapping[str, Any]:
+    known = declarations.variables.get(name) if declarations else None
+    if known is None:
+        return {}
+    value = expression(known.value) if known.value is not None else None
+    words = {"text": _line(known.text), "role": known.role, "type": known.type}
+    return {"value": value, "modality": str(known.modality), "action": known.action, **words}
+
+
+@deep
+def _in_toml(value: Any) -> str:
+    """A text as it is; of anything else what the file says, on one line."""
+    if isinstance(value, str):
+        return _line(value)
+    if isinstance(value, dict):
+        parts = ", ".join(f"{name} = {_quoted(each)}" for name, each in value.items())
+        return f"{{ {parts} }}" if parts else "{}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_quoted, value))}]"
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _quoted(value: Any) -> str:
+    return f'"{value}"' if isinstance(value, str) else _in_toml(value)
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())
+
+
+@deep
+def _declarations(bindings: Bindings) -> Declarations | None:
+    """The tables, read as bindings are; None where they are none."""
+    tables = {"clock": bindings.clock, "signal": bindings.signal}
+    tables |= {"proposition": bindings.proposition, "variable": bindings.variable}
+    text = tomli_w.dumps({kind: table for kind, table in tables.items() if table})
+    return read_bindings(Source("fretc.lock", text))[0]
+
+
+# All of them -----------------------------------------------------------------------------------
+
+
+def agree(id: str, texts: Texts, prints: Mapping[Node, str]) -> bool:
+    """Whether the texts of a review are those that its fingerprints were taken of.
+
+    A lock may be a stranger's. What its fingerprints do not vouch for is never shown as what was
+    accepted; the seal of a review, and so its signature, covers both.
+    """
+    own = dict(_fingerprints(id, texts))
+    ours = {node for node in prints if node.kind in _COVERED}
+    return own.keys() == ours and all(own[node] == prints[node] for node in ours)
+
+
+_VERSION = Node(basis.FRETC, "version")
+_COVERED = (
+    basis.SENTENCE, basis.PARAMS, basis.CLOCK, basis.TOPICS, basis.BINDINGS, basis.FRETC,
+    TEXT, HAZARD, PARENT, STATUS, PLAN, ACCEPTANCE, WORDS,
+    PROOF,
+)  # fmt: skip
+"""The kinds of things that have texts; formulas and artefacts follow from them."""
+
+
+def _of(value: Any) -> str:
+    return canonical.digest(value)
+
+
+def _fingerprints(id: str, texts: Texts) -> Iterator[tuple[Node, str]]:
+    """What fretc would write of these texts."""
+    yield in_force(id), print_of_status(texts.status)
+    for method in texts.verify:
+        yield Node(PLAN, f"{id} {method}"), _of(method)
+    for name, reason in texts.accept.items():
+        yield Node(ACCEPTANCE, name), print_of_words(reason)
+    yield Node(TEXT, id), print_of_header(header_of(texts))
+    for above, header in texts.above.items():
+        yield Node(TEXT, above), print_of_header(header)
+    for hazard, words in texts.hazards.items():
+        yield Node(HAZARD, hazard), print_of_hazard(Hazard(hazard, **_fields(words)))
+    for parent, other in texts.elsewhere.items():
+        yield Node(PARENT, parent), print_of_words([other.title, other.text])
+    for claim, (result, *assumptions) in texts.proofs.items():
+        yield Node(PROOF, f"{id} {claim}"), print_of_proof(result, assumptions)
+    if texts.topics is not None:
+        yield Node(basis.TOPICS, "audited"), _of(sorted(set(texts.topics)))
+    if texts.fretc:
+        yield _VERSION, _of(texts.fretc)
+    yield from _of_meaning(id, texts)
+
+
+def _of_meaning(id: str, texts: Texts) -> Iterator[tuple[Node, str]]:
+    """Of the sentence, its numbers, the clock and the bindings, read again."""
+    declarations = _declarations(texts.bindings) if texts.bindings is not None else None
+    wording = Source("fretc.lock", texts.sentence).span()
+    rule = formalize(Requirement(id, wording), declarations)[0] if texts.canonical else None
+    sentence = rule.fingerprint if rule else sha256(_line(texts.sentence))
+    is_canonical = canonical_text(rule) == texts.canonical
+    yield Node(basis.SENTENCE, id), sentence if is_canonical else ""
+    params = {name: canonical.parameter(text) for name, text in texts.params.items()}
+    yield Node(basis.PARAMS, id), _of(params)
+    clock = _of(canonical.clock(declarations.clock)) if declarations else ""
+    yield Node(basis.CLOCK, "clock"), clock
+    known = rule.declarations or declarations if rule else None
+    bound = _of(canonical.bound(known, rule.watched)) if rule and known else ""
+    yield Node(basis.BINDINGS, id), bound
+    words = canonical.described(known, rule.watched) if rule else {}
+    if words:
+        yield Node(WORDS, id), _of(words)

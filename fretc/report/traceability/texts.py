@@ -1,0 +1,201 @@
+"""What a review covers, as it is written: its sentence, header, bindings, hazards, and so on.
+
+A lock keeps it beside the fingerprints, so that a later change has a before and an after.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from compiler.files.checked_json import MisshapenError
+from compiler.files.records import Record, decoded, field, plain
+from compiler.formalization.formalized import Formalized
+from compiler.project.hazards import Hazard
+from compiler.project.parents import Parent
+from fretish.bindings.declarations import Declarations
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.documents import Requirement
+from fretish.printer import canonical
+from fretish.reading.toml_text import read as read_tables
+
+Table = dict[str, Any]
+_LARGEST = 2**63
+_DEEPEST = 20
+"""Tables and lists within each other; bindings need less than half of it."""
+
+
+class Above(Record, frozen=True, omit_defaults=True):
+    """A requirement above the one of the review."""
+
+    title: str = ""
+    text: str = ""
+    rationale: str = ""
+    parents: tuple[str, ...] = ()
+
+
+class HazardTexts(Record, frozen=True, omit_defaults=True):
+    """A hazard that it traces to."""
+
+    title: str = ""
+    text: str = ""
+    severity: str = ""
+    source: str = ""
+
+
+class Elsewhere(Record, frozen=True, omit_defaults=True):
+    """A parent in another tool."""
+
+    title: str = ""
+    text: str = ""
+
+
+class Bindings(Record, frozen=True, omit_defaults=True):
+    """The tables of `bindings.toml` that the requirement reads, by kind and name."""
+
+    clock: Table = field(default_factory=dict)
+    signal: dict[str, Table] = field(default_factory=dict)
+    proposition: dict[str, Table] = field(default_factory=dict)
+    variable: dict[str, Table] = field(default_factory=dict)
+
+
+class Texts(Record, frozen=True, omit_defaults=True):
+    """One requirement and all that its review covers; a default is not written."""
+
+    sentence: str
+    canonical: str = ""
+    """Empty where it cannot be formalized."""
+    title: str = ""
+    text: str = ""
+    rationale: str = ""
+    status: str = ""
+    parents: tuple[str, ...] = ()
+    verify: tuple[str, ...] = ()
+    params: dict[str, str] = field(default_factory=dict)
+    accept: dict[str, str] = field(default_factory=dict)
+    """Each warning that is accepted with it → why."""
+    hazards: dict[str, HazardTexts] = field(default_factory=dict)
+    """All that it traces to, directly or through the requirements above it."""
+    elsewhere: dict[str, Elsewhere] = field(default_factory=dict)
+    above: dict[str, Above] = field(default_factory=dict)
+    bindings: Bindings | None = None
+    """None: there are none."""
+    topics: tuple[str, ...] | None = None
+    """Those that the audit of the whole project reads; None: there was none."""
+    proofs: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    """Each claim that was examined → its result, then its assumptions."""
+    loop: dict[str, Table] = field(default_factory=dict)
+    """`[interceptor]` and `[assume]`, where something was proved."""
+    fretc: str = ""
+    """The version that took the fingerprints."""
+
+
+# Writing ---------------------------------------------------------------------------------------
+
+
+def as_table(texts: Texts) -> Table:
+    """Plain values, for TOML and for a digest."""
+    table = plain(texts)
+    assert isinstance(table, dict)
+    return table
+
+
+def above(requirement: Requirement) -> Above:
+    """A requirement above another one."""
+    texts = (requirement.title, requirement.text, requirement.rationale)
+    return Above(*texts, requirement.parents)
+
+
+def header_of(texts: Texts) -> Above:
+    """The same of the requirement itself."""
+    return Above(texts.title, texts.text, texts.rationale, texts.parents)
+
+
+def hazard_texts(hazard: Hazard) -> HazardTexts:
+    """A hazard."""
+    return HazardTexts(hazard.title, hazard.text, hazard.severity, hazard.source)
+
+
+def elsewhere(parent: Parent) -> Elsewhere:
+    """A parent in another tool."""
+    return Elsewhere(parent.title, parent.text)
+
+
+def canonical_text(rule: Formalized | None) -> str:
+    """The canonical wording of a sentence."""
+    return canonical(rule.written) if rule else ""
+
+
+def written_tables(declarations: Declarations | None) -> Mapping[str, Any]:
+    """The bindings as they are written: kind → name → table."""
+    if declarations is None:
+        return {}
+    tables = read_tables(declarations.source.span(), Code.BAD_BINDINGS, "the bindings file")
+    return {} if isinstance(tables, Diagnostic) else tables.data
+
+
+def bindings(
+    rule: Formalized | None, project: Declarations, written: Mapping[str, Any]
+) -> Bindings:
+    """The tables that a requirement reads.
+
+    Args:
+        rule: None where it cannot be formalized: then it reads the clock alone.
+        project: the bindings of the project.
+        written: their text, from `written_tables`.
+    """
+    clock = dict(written.get("clock", {}))
+    if rule is None:
+        return Bindings(clock)
+    known = rule.declarations or project
+    named = tuple(dict.fromkeys((*rule.watched, *rule.propositions)))
+    own = [name for name in named if name in known.propositions]
+    read = {signal for name in own for signal in known.propositions[name].signals}
+    names = {*rule.variables, *rule.definitions}
+    return Bindings(
+        clock,
+        _chosen(written, "signal", read & known.signals.keys()),
+        _chosen(written, "proposition", own),
+        _chosen(written, "variable", names | {*named}),
+    )
+
+
+def loop(written: Mapping[str, Any]) -> dict[str, Table]:
+    """The tables on which proofs about the closed loop rest."""
+    return {name: dict(written[name]) for name in ("interceptor", "assume") if name in written}
+
+
+def _chosen(written: Mapping[str, Any], kind: str, names: Iterable[str]) -> dict[str, Table]:
+    tables = written.get(kind, {})
+    return {name: dict(tables[name]) for name in sorted(names) if name in tables}
+
+
+# Reading ---------------------------------------------------------------------------------------
+
+
+def read(value: object) -> Texts | str:
+    """The texts from a table of a lock; or what is wrong with it."""
+    if not _is_plain(value):
+        return "it has a value that no requirement and no binding has"
+    try:
+        return decoded(value, Texts)
+    except MisshapenError as error:
+        return str(error)
+
+
+def _is_plain(value: object) -> bool:
+    """Whether it is made of texts, truth values and numbers of 64 bits alone, and not deep."""
+    waiting = [(value, 0)]
+    while waiting:
+        each, depth = waiting.pop()
+        if depth > _DEEPEST:
+            return False
+        if isinstance(each, dict | list | tuple):
+            inside = each.values() if isinstance(each, dict) else each
+            waiting.extend((part, depth + 1) for part in inside)
+        elif isinstance(each, int):
+            if not -_LARGEST < each < _LARGEST:
+                return False
+        elif not isinstance(each, str | float):
+            return False
+    return True

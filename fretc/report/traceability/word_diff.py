@@ -1,0 +1,148 @@
+"""The difference of two texts, by words; a number and its unit are one word."""
+
+from __future__ import annotations
+
+import re
+from difflib import SequenceMatcher
+from functools import lru_cache
+
+from fretish import units
+from fretish.clock import NANOSECONDS
+
+SAME, BEFORE, AFTER = "same", "before", "after"
+Segment = tuple[str, str]
+"""`SAME`, `BEFORE` or `AFTER`, and a stretch of both texts or of one of them."""
+_TOKEN = re.compile(
+    r"(?P<number>[+-]?[0-9][0-9.]*)[ \u00a0\u202f]"
+    r"(?P<unit>%|[A-Za-z]\w{0,12}(?:/[A-Za-z]\w{0,3})?)(?!\w)"
+    r"|[()\[\]{},;]|[^\s()\[\]{},;]+|\s+"
+)
+_MOST_TOKENS = 300
+"""Longer texts are compared as wholes: the time grows with the square."""
+_CACHED = 2**12
+"""The same change is shown at each of its requirements, and at each of their runs."""
+_LEAD, _WHOLE, _LONGEST = 40, 240, 2000
+"""Characters: beside a difference, of a text on a line, and of a stretch of segments."""
+
+
+@lru_cache(maxsize=_CACHED)
+def segments(before: str, after: str) -> tuple[Segment, ...]:
+    """Both texts as one: what they share, what one has, what the other has."""
+    found: list[Segment] = []
+    for same, old, new, _ in _stretches(before, after):
+        if same:
+            found.append((SAME, _middle(old)))
+            continue
+        found.extend([(BEFORE, _start(old))] if old else [])
+        found.extend([(AFTER, _start(new))] if new else [])
+    return tuple(found)
+
+
+@lru_cache(maxsize=_CACHED)
+def short(before: str, after: str) -> str:
+    """`x < 0.40 m/s → 0.35 m/s` where one word differs, else `the one → the other`."""
+    different = [stretch for stretch in _stretches(before, after) if not stretch[0]]
+    if len(different) == 1:
+        _, old, new, (at, _) = different[0]
+        if _is_word(old) and _is_word(new):
+            rest = " …" if before[at + len(old) :].strip() else ""
+            return f"{_lead(before[:at])}{old} → {new}{rest}"
+    first = different[0][3] if different else (0, 0)
+    return f"{_window(before, first[0])} → {_window(after, first[1])}"
+
+
+_Stretch = tuple[bool, str, str, tuple[int, int]]
+"""Whether both texts have it, what each has, and where in each it begins."""
+
+
+def _stretches(before: str, after: str) -> list[_Stretch]:
+    """Both texts in stretches; white space alone between two differences is none of its own."""
+    left, right = _tokens(before), _tokens(after)
+    if max(len(left), len(right)) > _MOST_TOKENS:
+        return _around(before, after)
+    found: list[_Stretch] = []
+    matcher = SequenceMatcher(None, left, right, autojunk=False)
+    for op, i, j, k, m in matcher.get_opcodes():
+        old, new = "".join(left[i:j]), "".join(right[k:m])
+        same = op == "equal"
+        if found and not found[-1][0] and (not same or (old.isspace() and j < len(left))):
+            _, older, newer, place = found.pop()
+            found.append((False, older + old, newer + new, place))
+        else:
+            places = (sum(map(len, left[:i])), sum(map(len, right[:k])))
+            found.append((same, old, new, places))
+    return found
+
+
+def _around(before: str, after: str) -> list[_Stretch]:
+    """Long texts: what they begin with alike, what differs, what they end with alike."""
+    if before == after:
+        return [(True, before, after, (0, 0))]
+    start = before.rfind(" ", 0, _shared(before, after)) + 1
+    rest = min(len(before), len(after)) - start
+    end = min(rest, _shared(before[::-1], after[::-1]))
+    space = before.find(" ", len(before) - end)
+    end = len(before) - space if space >= 0 else 0
+    old, new = before[start : len(before) - end], after[start : len(after) - end]
+    tail = before[len(before) - end :]
+    found: list[_Stretch] = [(True, before[:start], before[:start], (0, 0))] if start else []
+    found += [(False, old, new, (start, start))] if old or new else []
+    return [*found, *([(True, tail, tail, (start + len(old), start + len(new)))] if end else [])]
+
+
+def _shared(before: str, after: str) -> int:
+    """The number of characters with which both begin."""
+    pairs = enumerate(zip(before, after, strict=False))
+    return next((i for i, (a, b) in pairs if a != b), min(len(before), len(after)))
+
+
+def _tokens(text: str) -> list[str]:
+    """Words, and the white space between them: together the whole text."""
+    found: list[str] = []
+    place = 0
+    while place < len(text) and len(found) <= _MOST_TOKENS:
+        match = _TOKEN.match(text, place)
+        assert match is not None, "a character is white space, a sign, or part of a word"
+        known = match["number"] is None or _is_unit(match["unit"])
+        end = match.end() if known else match.end("number")
+        found.append(text[place:end])
+        place = end
+    return found
+
+
+def _is_unit(word: str) -> bool:
+    return units.unit(word) is not None or word.removesuffix("s") in {*NANOSECONDS, "tick"}
+
+
+def _is_word(text: str) -> bool:
+    """Whether it is one word that can stand alone, and no sign."""
+    return len(_tokens(text)) == 1 and any(map(str.isalnum, text))
+
+
+def _lead(text: str) -> str:
+    """The last words before a difference."""
+    if len(text) <= _LEAD:
+        return text
+    end = text[-_LEAD:]
+    return f"… {end.partition(' ')[2] or end}"
+
+
+def _window(text: str, start: int) -> str:
+    """The text, or what stands around a place in it where it is long."""
+    if len(text) <= _WHOLE:
+        return text
+    begin = max(0, start - _LEAD)
+    before = "… " if begin else ""
+    after = " …" if begin + _WHOLE < len(text) else ""
+    return f"{before}{text[begin : begin + _WHOLE]}{after}"
+
+
+def _middle(text: str) -> str:
+    """What two texts share, without its middle where it is long."""
+    return text if len(text) <= _WHOLE else f"{text[: _WHOLE // 2]} … {text[-_WHOLE // 2 :]}"
+
+
+def _start(text: str) -> str:
+    """What one of two texts has; of what is very long the beginning, and how much more there is."""
+    left = len(text) - _LONGEST
+    return text if left <= 0 else f"{text[:_LONGEST]} … (and {left} more characters)"

@@ -1,0 +1,1 @@
+"""What is new, fixed, flaky or slower between the rounds of many audits."""

@@ -1,0 +1,95 @@
+"""From the verdicts of a requirement in one scenario, round by round, to what has become of it.
+
+A round is violated where one of its runs is. It is shown where a run shows the requirement and no
+other leaves it open. Else it is open: nothing is known of it, and nothing has become better. What
+was violated and is open now is never called fixed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from enum import StrEnum
+from itertools import pairwise
+
+from fretc.audit.evidence.verdicts import BROKEN, SHOWN
+from monitors import kernel
+
+
+class Tone(StrEnum):
+    """What a round says."""
+
+    VIOLATED = "violated"
+    SHOWN = "shown"
+    OPEN = "open"
+
+
+class Change(StrEnum):
+    """What has become of a requirement in a scenario; the worst first."""
+
+    NEW = "new"
+    """Violated now, and not when something was known of it last."""
+    FIRST_VIOLATED = "first seen, violated"
+    STILL = "still violated"
+    LOST = "lost"
+    """Violated or shown before, and open now."""
+    GONE = "gone"
+    """Judged before, and not in the newest round."""
+    FIRST = "first seen"
+    FIXED = "fixed"
+    NEVER_SHOWN = "never shown"
+    STEADY = "shown as before"
+
+
+RED = (Change.NEW, Change.FIRST_VIOLATED)
+"""What is violated, and was not."""
+_NEUTRAL = (kernel.VACUOUS, "not exercised", "retired")
+"""Verdicts that say nothing beside others."""
+
+
+def tone(verdicts: Iterable[str]) -> Tone:
+    """What the verdicts of a round say, at least one."""
+    words = {*verdicts}
+    if words & {*BROKEN}:
+        return Tone.VIOLATED
+    left_open = words - {*SHOWN, *_NEUTRAL}
+    return Tone.SHOWN if words & {*SHOWN} and not left_open else Tone.OPEN
+
+
+def change(rounds: Sequence[Sequence[str]]) -> Change:
+    """What has become of it.
+
+    Args:
+        rounds: the verdicts of each round, the newest last; a round without one did not judge it.
+            There is a verdict in one of them.
+    """
+    *before, now = [tone(verdicts) if verdicts else None for verdicts in rounds]
+    judged = [each for each in before if each is not None]
+    known = [each for each in judged if each is not Tone.OPEN]
+    if now is None:
+        assert judged, "it was never judged"
+        return Change.GONE
+    if not judged:
+        return Change.FIRST_VIOLATED if now is Tone.VIOLATED else Change.FIRST
+    was_violated = bool(known) and known[-1] is Tone.VIOLATED
+    match now:
+        case Tone.VIOLATED:
+            return Change.STILL if was_violated else Change.NEW
+        case Tone.SHOWN:
+            return Change.FIXED if was_violated else Change.STEADY
+        case Tone.OPEN:
+            return Change.LOST if known else Change.NEVER_SHOWN
+
+
+def is_flaky(rounds: Sequence[Sequence[str]], of_software: Mapping[str, Sequence[str]]) -> bool:
+    """Whether it is violated now and then: more than one turn, or both at one state of software.
+
+    Args:
+        rounds: the verdicts of each round, the newest last.
+        of_software: the verdicts of the runs of each commit.
+    """
+    tones = [tone(verdicts) for verdicts in rounds if verdicts]
+    known = [each for each in tones if each is not Tone.OPEN]
+    turns = sum(a is not b for a, b in pairwise(known))
+    return turns > 1 or any(
+        {*verdicts} & {*BROKEN} and {*verdicts} & {*SHOWN} for verdicts in of_software.values()
+    )

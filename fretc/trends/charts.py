@@ -1,0 +1,197 @@
+"""The layout of trends: a strip of rounds, and the numbers of runs over rounds; 720 wide at most.
+
+What a picture shows, its text says, too: colour is never all that tells it.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from statistics import median
+
+from fretc.report.model import phrases
+from fretc.report.pictures.histograms import step
+from fretc.report.pictures.plots import places
+from fretc.trends.changes import Tone
+from fretc.trends.comparisons import Comparison, Finding, Measure, Value, amount
+
+_CELL, _TALL = 9, 16
+MOST_CELLS = 60
+"""Rounds of a strip, the newest ones."""
+_WIDTH, _LEFT, _RIGHT, _TOP, _BASE = 720, 92, 30, 14, 134
+_MOST_DOTS = 40
+"""Of a round: the worst ones, and as many others as fit."""
+_LABELS = 14
+"""Rounds with a number on the axis, about."""
+_KINDS = {Tone.VIOLATED: "violated", Tone.SHOWN: "shown", Tone.OPEN: "open"}
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A round of a strip."""
+
+    kind: str
+    x: int
+    y: int
+    width: int
+    height: int
+
+
+@dataclass(frozen=True, slots=True)
+class Strip:
+    """All rounds of a requirement in a scenario."""
+
+    width: int
+    height: int
+    cells: tuple[Cell, ...]
+    text: str
+
+
+def strip(tones: Sequence[Tone | None]) -> Strip:
+    """The newest rounds: a violated one is a tall bar, a shown one low, an open one hollow."""
+    first = max(0, len(tones) - MOST_CELLS)
+    shown = tones[first:]
+    cells = tuple(_cell(i, each) for i, each in enumerate(shown))
+    return Strip(_CELL * len(shown), _TALL, cells, _in_words(shown, first + 1))
+
+
+def _cell(place: int, each: Tone | None) -> Cell:
+    x, width = place * _CELL + 1, _CELL - 2
+    match each:
+        case Tone.VIOLATED:
+            return Cell("violated", x, 0, width, _TALL)
+        case Tone.SHOWN:
+            return Cell("shown", x, _TALL - 7, width, 7)
+        case Tone.OPEN:
+            return Cell("open", x, _TALL - 12, width, 12)
+        case None:
+            return Cell("absent", x, _TALL - 1, width, 1)
+
+
+def _in_words(tones: Sequence[Tone | None], first: int) -> str:
+    """`rounds 1 to 4 shown, 5 violated`."""
+    parts, at = [], first
+    for each, some in groupby(tones):
+        last = at + len(list(some)) - 1
+        which = f"{at}" if at == last else f"{at} to {last}"
+        parts.append(f"{which} {'not judged' if each is None else _KINDS[each]}")
+        at = last + 1
+    return f"rounds {', '.join(parts)}"
+
+
+# Numbers over rounds ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Dot:
+    """A run."""
+
+    x: float
+    y: float
+    is_after: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """The numbers of all runs over the rounds, with the median of each round."""
+
+    id: str
+    title: str
+    text: str
+    width: int
+    height: int
+    left: int
+    right: int
+    top: int
+    base: int
+    dots: tuple[Dot, ...]
+    medians: tuple[tuple[float, float, float], ...]
+    """From, to, and at which height."""
+    ticks: tuple[tuple[float, str], ...]
+    marks: tuple[tuple[float, str], ...]
+
+
+def chart(one: Comparison, rounds: int, is_after: Sequence[bool], id: str) -> Chart:
+    """The layout.
+
+    Args:
+        one: with the values of its runs.
+        rounds: how many there are.
+        is_after: of each run, whether it is of what is held against the others.
+        id: of the drawing.
+    """
+    numbers = [value.number for value in one.values]
+    low, high = min([0.0, *numbers]), max([0.0, *numbers])
+    high = high if high > low else low + 1.0
+    high = -(-high // (width := step((high - low) / 4))) * width
+    column = (_WIDTH - _LEFT - _RIGHT) / rounds
+
+    def y(number: float) -> float:
+        return round(_BASE - (number - low) / (high - low) * (_BASE - _TOP), 1)
+
+    of_round: dict[int, list[Value]] = defaultdict(list)
+    for value in one.values:
+        of_round[value.round].append(value)
+    every = max(1, -(-rounds // _LABELS))
+    return Chart(
+        id=id,
+        title=f"{one.measure.ids}: {one.measure}",
+        text=_text(one, of_round),
+        width=_WIDTH,
+        height=_BASE + 38,
+        left=_LEFT,
+        right=_WIDTH - _RIGHT,
+        top=_TOP,
+        base=_BASE,
+        dots=tuple(
+            Dot(round(_LEFT + column * (number + share), 1), y(value.number), is_after[value.run])
+            for number, values in of_round.items()
+            for share, value in _spread(_chosen(values, one.measure))
+        ),
+        medians=tuple(
+            (
+                round(_LEFT + column * (number + 0.15), 1),
+                round(_LEFT + column * (number + 0.85), 1),
+                y(median(value.number for value in values)),
+            )
+            for number, values in sorted(of_round.items())
+        ),
+        ticks=tuple(
+            (round(_LEFT + column * (number + 0.5), 1), str(number + 1))
+            for number in range(0, rounds, every)
+        ),
+        marks=tuple(
+            (y(place), phrases.value(place, one.measure.unit)) for place in places(low, high, 4)
+        ),
+    )
+
+
+def _chosen(values: Sequence[Value], measure: Measure) -> Sequence[Value]:
+    """The worst ones, and others in their order: no run that is worse is left out for a better."""
+    if len(values) <= _MOST_DOTS:
+        return values
+    sign = 1 if measure.is_better_larger else -1
+    worst = sorted(values, key=lambda value: sign * value.number)[: _MOST_DOTS // 2]
+    rest = [value for value in values if value not in worst]
+    return [*worst, *rest[:: max(1, len(rest) // (_MOST_DOTS // 2))]]
+
+
+def _spread(values: Sequence[Value]) -> Iterator[tuple[float, Value]]:
+    """Each with its place in the column of its round, from 0 to 1."""
+    for i, value in enumerate(values):
+        yield 0.2 + 0.6 * (i + 0.5) / len(values), value
+
+
+def _text(one: Comparison, of_round: dict[int, list[Value]]) -> str:
+    unit = one.measure.unit
+    ends = [
+        f"round {number + 1} {amount(median(v.number for v in of_round[number]), unit)}"
+        for number in dict.fromkeys((min(of_round), max(of_round)))
+    ]
+    medians = f"Median of {' and of '.join(ends)}"
+    runs = phrases.times(len(one.values), "run")
+    if one.finding is Finding.REGRESSED:
+        return f"Worse by more than chance, by medians: {one.worse}. {medians}; {runs} in all."
+    return f"{medians}; {runs} in all: {one.finding}."

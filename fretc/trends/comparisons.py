@@ -1,0 +1,305 @@
+"""Latencies and margins of the newest version against those before: whether chance is enough.
+
+Of each run counts one number of a kind, because what happens within a run is not independent:
+the longest and the median latency of its answers, and its least margin to each threshold. Larger
+latencies and smaller margins are worse. Runs of one scenario are ranked with each other.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from statistics import median
+
+from fretc.audit.evidence.schema import Threshold
+from fretc.report.model.phrases import some, value
+from fretc.trends.histories import Histories, Judged, Run, Scenario
+from fretc.trends.rank_test import Tail, decidable, fewer, holm, larger
+
+LEVEL = 0.05
+"""The chance of even one regression that is none, of all that are found together."""
+
+
+class Kind(StrEnum):
+    """What is measured of a run."""
+
+    LONGEST = "longest latency"
+    MEDIAN = "median latency"
+    MARGIN = "margin"
+
+
+class Finding(StrEnum):
+    """What a comparison shows; the worst first."""
+
+    REGRESSED = "regressed"
+    TOO_FEW = "too few runs to tell"
+    CHANCE = "no worse than chance"
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """What is compared: a latency of a requirement, or the margin of some to one threshold."""
+
+    requirements: tuple[str, ...]
+    kind: Kind
+    unit: str
+    threshold: str = ""
+    """`clearance < 0.05 m (too_close)`; empty of a latency."""
+
+    @property
+    def is_better_larger(self) -> bool:
+        """Whether a larger number is better."""
+        return self.kind is Kind.MARGIN
+
+    @property
+    def ids(self) -> str:
+        """Its requirements, as they are shown."""
+        return some(self.requirements, 3)
+
+    def __str__(self) -> str:
+        """As it is shown."""
+        return f"{self.kind} to {self.threshold}" if self.threshold else str(self.kind)
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """The number of one run."""
+
+    run: int
+    scenario: Scenario
+    round: int
+    number: float
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """A measure of the newest version against that before it."""
+
+    measure: Measure
+    finding: Finding
+    before: float | None
+    """Medians of the runs that are compared; None: there are none."""
+    after: float | None
+    runs_before: int
+    runs_after: int
+    p: float | None
+    """Adjusted for all comparisons; None where none is made."""
+    values: tuple[Value, ...]
+    """Of all runs whose requirement is as it is now, for the picture."""
+
+    @property
+    def worse(self) -> str:
+        """From which median to which, of how many runs, and how likely that is chance."""
+        ends = (amount(number or 0.0, self.measure.unit) for number in (self.before, self.after))
+        p = 1.0 if self.p is None else self.p
+        chance = "p < 0.001" if p < 0.001 else f"p = {p:.2g}"
+        runs = f"{self.runs_before} and {self.runs_after} runs"
+        return f"{' to '.join(ends)} ({runs}), {chance}"
+
+
+@dataclass(frozen=True, slots=True)
+class Sides:
+    """Which runs are held against which."""
+
+    after: str
+    before: str
+    is_after: Callable[[Run], bool]
+    is_before: Callable[[Run], bool]
+
+
+def sides(histories: Histories) -> Sides:
+    """The newest version and the one before it; else the newest round and all before it.
+
+    A version is as new as its newest run.
+    """
+    place: dict[str, tuple[int, int]] = {}
+    for run in histories.runs:
+        if run.version:
+            age = run.round, run.time if run.time is not None else -1
+            place[run.version] = max(age, place.get(run.version, (-1, -1)))
+    versions = sorted(place, key=place.__getitem__)
+    if len(versions) > 1 and place[versions[-1]][0] == histories.newest:
+        before, after = versions[-2:]
+        return Sides(
+            f"version {after}",
+            f"version {before}",
+            lambda run: run.version == after,
+            lambda run: run.version == before,
+        )
+    newest = histories.newest
+    return Sides(
+        "the newest round",
+        "the rounds before it",
+        lambda run: run.round == newest,
+        lambda run: run.round < newest,
+    )
+
+
+def comparisons(histories: Histories, held: Sides, level: float = LEVEL) -> tuple[Comparison, ...]:
+    """All of them, the regressions first.
+
+    Only what its numbers allow to be found beside all others is tested (Tarone): which that is
+    depends on how many runs there are and which of their numbers are equal, never on which of them
+    are the newest ones.
+
+    Args:
+        histories: what was read.
+        held: which runs are held against which.
+        level: the chance of even one regression that is none.
+    """
+    measured = _measured(histories)
+    tested = [_tested(histories.runs, held, measure, values) for measure, values in measured]
+    family = decidable([tail.least for tail, _ in tested], level)
+    adjusted = dict(zip(family, holm([tested[i][0].p for i in family]), strict=True))
+    found = [
+        _comparison(measure, values, tested[i][1], adjusted.get(i), level)
+        for i, (measure, values) in enumerate(measured)
+    ]
+    order = list(Finding)
+    return tuple(sorted(found, key=lambda one: (order.index(one.finding), one.p or 1.0)))
+
+
+def _measured(histories: Histories) -> list[tuple[Measure, tuple[Value, ...]]]:
+    """Each measure with its values; what several requirements share is one."""
+    shared: dict[tuple[object, ...], tuple[Measure, tuple[Value, ...]]] = {}
+    for requirement in histories.requirements:
+        for measure, values in _measures(histories, requirement):
+            of_latency = () if measure.threshold else measure.requirements
+            key = measure.threshold, measure.unit, of_latency, values
+            known = shared.get(key)
+            if known is None:
+                shared[key] = measure, values
+            elif measure.threshold:
+                ids = (*known[0].requirements, requirement)
+                shared[key] = replace(known[0], requirements=ids), values
+    return list(shared.values())
+
+
+_Strata = Sequence[tuple[Sequence[float], Sequence[float]]]
+
+
+def _tested(
+    runs: Sequence[Run], held: Sides, measure: Measure, values: Sequence[Value]
+) -> tuple[Tail, _Strata]:
+    """The test, and the numbers that it counts: each log once, the newest ones first."""
+    strata: dict[Scenario, tuple[list[float], list[float]]] = defaultdict(lambda: ([], []))
+    passed: set[str] = set()
+    for one in values:  # from the oldest round on: a copy in a later one is nothing new
+        run = runs[one.run]
+        is_after = held.is_after(run)
+        if run.content in passed or not (is_after or held.is_before(run)):
+            continue
+        passed.add(run.content)
+        strata[one.scenario][is_after].append(one.number)
+    both = fewer([(before[::-1], after[::-1]) for before, after in strata.values()])
+    sign = -1 if measure.is_better_larger else 1
+    return larger([([sign * x for x in b], [sign * x for x in a]) for b, a in both]), both
+
+
+def _comparison(
+    measure: Measure,
+    values: tuple[Value, ...],
+    strata: _Strata,
+    p: float | None,
+    level: float,
+) -> Comparison:
+    before = [number for side, _ in strata for number in side]
+    after = [number for _, side in strata for number in side]
+    constant = len({*before, *after}) == 1
+    if p is None:
+        finding = Finding.CHANCE if constant else Finding.TOO_FEW
+    else:
+        finding = Finding.REGRESSED if p <= level else Finding.CHANCE
+    return Comparison(
+        measure,
+        finding,
+        median(before) if before else None,
+        median(after) if after else None,
+        len(before),
+        len(after),
+        p,
+        values,
+    )
+
+
+# What is measured -------------------------------------------------------------------------------
+
+
+def _measures(
+    histories: Histories, requirement: str
+) -> Iterator[tuple[Measure, tuple[Value, ...]]]:
+    """What is measured of a requirement, with the values of all runs that are comparable."""
+    judged = [
+        one
+        for (id, _), some in histories.judged.items()
+        if id == requirement
+        for one in some
+        if one.run >= 0
+    ]
+    if not judged:
+        return
+    judged.sort(key=lambda one: (one.round, histories.runs[one.run].time or -1, one.run))
+    basis = judged[-1].basis
+    same = [one for one in judged if one.basis == basis]
+    for kind, number in ((Kind.LONGEST, _longest), (Kind.MEDIAN, _median)):
+        values = tuple(_value(histories.runs, one, number(one)) for one in same)
+        known = tuple(each for each in values if each is not None)
+        if known:
+            yield Measure((requirement,), kind, "s"), known
+    yield from _margins(histories, requirement, same)
+
+
+def _longest(one: Judged) -> float | None:
+    return one.longest
+
+
+def _median(one: Judged) -> float | None:
+    return one.median
+
+
+def _value(runs: Sequence[Run], one: Judged, number: float | None) -> Value | None:
+    if number is None:
+        return None
+    return Value(one.run, runs[one.run].scenario, one.round, float(number))
+
+
+def _margins(
+    histories: Histories, requirement: str, same: Sequence[Judged]
+) -> Iterator[tuple[Measure, tuple[Value, ...]]]:
+    """The least margin of each run to each threshold; one that was crossed has none left: 0."""
+    known = {one.run: one for one in same}
+    found: dict[Measure, dict[int, float]] = defaultdict(dict)
+    for source, places in zip(histories.sources, histories.places, strict=True):
+        for place, thresholds in source.thresholds([requirement]):
+            run = places[place]
+            for each in thresholds if run in known else ():
+                margin = _margin(each)
+                if margin is not None:
+                    found[_threshold(requirement, each)][run] = margin
+    for measure, margins in found.items():
+        ordered = [(one, margins[run]) for run, one in known.items() if run in margins]
+        values = (_value(histories.runs, one, number) for one, number in ordered)
+        yield measure, tuple(each for each in values if each is not None)
+
+
+def _margin(each: Threshold) -> float | None:
+    """None where the comparison was never known."""
+    return 0.0 if each.comparison == "crossed" else each.margin
+
+
+def _threshold(requirement: str, each: Threshold) -> Measure:
+    bound = f"{each.bound:.9g}{f' {each.unit}' if each.unit else ''}"
+    text = f"{each.signal} {each.operator} {bound} ({each.proposition})"
+    return Measure((requirement,), Kind.MARGIN, each.unit, text)
+
+
+def amount(number: float, unit: str) -> str:
+    """A number of three digits with its unit."""
+    return value(float(f"{number:.3g}"), unit)
+
+
+def by_finding(found: Sequence[Comparison]) -> Mapping[Finding, int]:
+    """How many of each."""
+    return {kind: sum(one.finding is kind for one in found) for kind in Finding}

@@ -1,0 +1,325 @@
+"""Evidence as histories: what each round says of each requirement in each scenario.
+
+Runs of one scenario are comparable; a run that names none is comparable with those of its log's
+name. A round is what is held against earlier ones: each evidence, or each day, or each value of a
+label. Times are nanoseconds since 1970, of UTC.
+"""
+
+from __future__ import annotations
+
+import re
+from array import array
+from collections import Counter, defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import PurePosixPath
+
+from fretc.audit.evidence.basis import BINDINGS, CLOCK, PARAMS, SENTENCE, TOPICS
+from fretc.audit.evidence.briefs import Brief, EvidenceSource, RunFacts
+
+EVIDENCE, DAY = "evidence", "day"
+"""What a round can be, beside the value of a label."""
+SCENARIO, VERSION, COMMIT, DATE = "scenario", "version", "commit", "date"
+"""Labels that mean something here."""
+_BASIS = (SENTENCE, PARAMS, CLOCK, TOPICS, BINDINGS)
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Scenario:
+    """What is comparable: a scenario, the name of a log, or all runs of an evidence together."""
+
+    name: str
+    kind: str = SCENARIO
+
+    def __str__(self) -> str:
+        """As it is shown."""
+        return "all runs together" if self.kind == ALL else self.name
+
+
+NAME, ALL = "name", "all"
+ALL_RUNS = Scenario("", ALL)
+"""Of a requirement with a probability, which no run decides alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """A run of an evidence."""
+
+    name: str
+    content: str
+    """What tells its log from another one: copies have the same."""
+    scenario: Scenario
+    round: int
+    version: str
+    """Of the software, as a label says; empty: none does."""
+    software: str
+    """Its commit, else its round: of what runs should have one outcome."""
+    time: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """What is held against earlier ones."""
+
+    name: str
+    first: int | None
+    """The times of its runs."""
+    last: int | None
+    runs: int
+    versions: tuple[str, ...]
+
+    @property
+    def days(self) -> str:
+        """From day to day; empty where no time is known."""
+        if self.first is None or self.last is None:
+            return ""
+        days = dict.fromkeys((day(self.first), day(self.last)))
+        return " to ".join(days)
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """What one run says of one requirement."""
+
+    run: int
+    """Its number in `Histories.runs`; -1: all runs of the evidence together."""
+    round: int
+    verdict: str
+    basis: int
+    """What it rests on beside the log: the same number, the same basis."""
+    longest: float | None = None
+    """Of its answers, seconds."""
+    median: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Histories:
+    """All that was read, rounds from the oldest to the newest."""
+
+    by: str
+    rounds: tuple[Round, ...]
+    runs: tuple[Run, ...]
+    requirements: Mapping[str, str]
+    """Id → its sentence, as the newest evidence has it."""
+    judged: Mapping[tuple[str, Scenario], Sequence[Judged]]
+    sources: tuple[EvidenceSource, ...] = field(repr=False)
+    places: tuple[Sequence[int], ...] = field(repr=False)
+    """Of each source the run of the result at each place."""
+    bases: tuple[Sequence[int], ...] = field(repr=False)
+    """The same of their bases."""
+    undated: bool = False
+    """Whether the order of rounds is that in which they were given, for want of times."""
+
+    @property
+    def newest(self) -> int:
+        """The number of the newest round."""
+        return len(self.rounds) - 1
+
+
+def day(time: int) -> str:
+    """The day of a time, of UTC."""
+    return datetime.fromtimestamp(time // 10**9, UTC).date().isoformat()
+
+
+def time_of(facts: RunFacts) -> int | None:
+    """When a run was: its label `date`, else when its log begins; None: nobody knows."""
+    written = _time(facts.labels.get(DATE, ""))
+    start = facts.start_ns
+    if written is not None or start is None or not 0 <= start < _LATEST:
+        return written
+    return start
+
+
+_LATEST = 4102444800 * 10**9
+"""2100-01-01: what is later is no time of a run."""
+
+
+def _time(text: str) -> int | None:
+    """`2026-11-20`, `2026-11-20T21:00:00+01:00`, `2026_11_20-21_00_00`; without a zone, of UTC."""
+    rosbag = _ROSBAG.fullmatch(text)
+    try:
+        form = "{}-{}-{}T{}:{}:{}".format(*rosbag.groups()) if rosbag else text
+        found = datetime.fromisoformat(form)
+        aware = found if found.tzinfo is not None else found.replace(tzinfo=UTC)
+        time = round((aware - datetime(1970, 1, 1, tzinfo=UTC)).total_seconds()) * 10**9
+    except (ValueError, OverflowError):
+        return None
+    return time if 0 <= time < _LATEST else None
+
+
+_ROSBAG = re.compile(r"(\d{4})_(\d\d)_(\d\d)-(\d\d)_(\d\d)_(\d\d)", re.ASCII)
+"""How rosbag2 names folders."""
+
+
+def scenario_of(facts: RunFacts) -> Scenario:
+    """What the run is comparable by."""
+    named = facts.labels.get(SCENARIO)
+    return Scenario(named) if named else Scenario(PurePosixPath(facts.run).name or facts.run, NAME)
+
+
+# Reading ----------------------------------------------------------------------------------------
+
+
+def histories(sources: Sequence[EvidenceSource], by: str | None = None) -> Histories:
+    """Read all of it.
+
+    Args:
+        sources: at least one; in the order of time where nothing else says when they were.
+        by: what a round is: `EVIDENCE`, `DAY` or a label; None: each evidence, or each day where
+            there is one evidence.
+    """
+    by = by or (EVIDENCE if len(sources) > 1 else DAY)
+    facts_of = [list(source.runs()) for source in sources]
+    latest = [_latest(facts) for facts in facts_of]
+    undated = any(time is None for time in latest)
+    order = sorted(range(len(sources)), key=lambda i: 0 if undated else latest[i] or 0)
+    ordered = [sources[i] for i in order]
+    facts_of = [facts_of[i] for i in order]
+    rounds, round_of = _rounds(by, [each.file for each in ordered], facts_of)
+    reader = _Reader(by, round_of)
+    for i, (source, facts) in enumerate(zip(ordered, facts_of, strict=True)):
+        reader.read(i, source, facts)
+    return Histories(
+        by,
+        rounds,
+        tuple(reader.runs),
+        reader.requirements,
+        {key: tuple(found) for key, found in reader.judged.items()},
+        tuple(ordered),
+        tuple(reader.places),
+        tuple(reader.bases),
+        undated,
+    )
+
+
+def _latest(facts: Sequence[RunFacts]) -> int | None:
+    return max((time for one in facts if (time := time_of(one)) is not None), default=None)
+
+
+def _key(by: str, source: int, facts: RunFacts) -> str:
+    """What tells the round of a run from the others."""
+    if by == EVIDENCE:
+        return str(source)
+    if by == DAY:
+        time = time_of(facts)
+        return "" if time is None else day(time)
+    return facts.labels.get(by, "")
+
+
+def _rounds(
+    by: str, files: Sequence[str], facts_of: Sequence[Sequence[RunFacts]]
+) -> tuple[tuple[Round, ...], Mapping[str, int]]:
+    """The rounds, and the number of each by its key."""
+    members: dict[str, list[RunFacts]] = defaultdict(list)
+    if by == EVIDENCE:
+        members |= {str(i): [] for i in range(len(files))}
+    for i, facts in enumerate(facts_of):
+        for one in facts:
+            members[_key(by, i, one)].append(one)
+    times = {key: _times(facts) for key, facts in members.items()}
+    keys = list(members)
+    if by != EVIDENCE:  # what has no time comes first: it cannot be the newest
+        keys.sort(key=lambda key: max(times[key], default=-1))
+    rounds = tuple(
+        Round(
+            _round_name(by, key, files),
+            min(times[key], default=None),
+            max(times[key], default=None),
+            len(members[key]),
+            tuple(dict.fromkeys(v for one in members[key] if (v := one.labels.get(VERSION)))),
+        )
+        for key in keys
+    )
+    return rounds, {key: i for i, key in enumerate(keys)}
+
+
+def _times(facts: Sequence[RunFacts]) -> list[int]:
+    return [time for one in facts if (time := time_of(one)) is not None]
+
+
+def _round_name(by: str, key: str, files: Sequence[str]) -> str:
+    if by == EVIDENCE:
+        return files[int(key)]
+    return key or f"without {'a date' if by == DAY else by}"
+
+
+class _Reader:
+    """What comes together while the evidence is read."""
+
+    def __init__(self, by: str, round_of: Mapping[str, int]) -> None:
+        self.runs: list[Run] = []
+        self.requirements: dict[str, str] = {}
+        self.judged: dict[tuple[str, Scenario], list[Judged]] = defaultdict(list)
+        self.places: list[Sequence[int]] = []
+        self.bases: list[Sequence[int]] = []
+        self._by, self._round_of = by, round_of
+        self._numbers: dict[tuple[str, ...], int] = {}
+
+    def read(self, number: int, source: EvidenceSource, facts: Sequence[RunFacts]) -> None:
+        """Take in one evidence."""
+        run_of: dict[str, int] = {}
+        for one in facts:
+            run_of[one.run] = len(self.runs)
+            self.runs.append(self._run(one, self._round_of[_key(self._by, number, one)]))
+        self.requirements |= {each.id: each.sentence for each in source.requirements}
+        together = {each.requirement for each in source.probabilities}
+        places, bases = array("q"), array("q")
+        for _, brief in source.briefs():
+            run, basis = run_of[brief.run], self._basis(brief)
+            places.append(run)
+            bases.append(basis)
+            if brief.requirement not in together:
+                self._add(brief, run, basis)
+        self.places.append(places)
+        self.bases.append(bases)
+        self._add_estimates(source, number, [self.runs[i].round for i in run_of.values()])
+
+    def _run(self, facts: RunFacts, round_: int) -> Run:
+        labels = facts.labels
+        return Run(
+            facts.run,
+            facts.log or facts.log_summary or facts.run,
+            scenario_of(facts),
+            round_,
+            labels.get(VERSION, ""),
+            f"commit {labels[COMMIT]}" if COMMIT in labels else f"round {round_}",
+            time_of(facts),
+        )
+
+    def _add(self, brief: Brief, run: int, basis: int) -> None:
+        one = self.runs[run]
+        self.judged[brief.requirement, one.scenario].append(
+            Judged(
+                run,
+                one.round,
+                brief.verdict,
+                basis,
+                brief.latency_max_s,
+                brief.latency_median_s,
+            )
+        )
+
+    def _add_estimates(self, source: EvidenceSource, number: int, rounds: Sequence[int]) -> None:
+        """What all runs of an evidence say counts for the newest round that it has."""
+        own = self._round_of[str(number)] if self._by == EVIDENCE else max(rounds, default=0)
+        for one in source.probabilities:
+            self.judged[one.requirement, ALL_RUNS].append(Judged(-1, own, one.answer, 0))
+
+    def _basis(self, brief: Brief) -> int:
+        prints = brief.fingerprints
+        parts = tuple(str(getattr(prints, name)) for name in _BASIS)
+        return self._numbers.setdefault(parts, len(self._numbers))
+
+
+def verdicts_of_rounds(judged: Sequence[Judged], rounds: int) -> tuple[tuple[str, ...], ...]:
+    """The verdicts of each round."""
+    found: list[list[str]] = [[] for _ in range(rounds)]
+    for one in judged:
+        found[one.round].append(one.verdict)
+    return tuple(map(tuple, found))
+
+
+def counted(verdicts: Sequence[str]) -> Mapping[str, int]:
+    """How many of each verdict."""
+    return Counter(verdicts)

@@ -1,0 +1,203 @@
+"""Trends as one HTML file that works offline, in the style of the report and by its policy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from fretc.audit.evidence.verdicts import severity
+from fretc.report.model import phrases
+from fretc.report.page.html import hash_source, visible_texts
+from fretc.trends.changes import RED, Change
+from fretc.trends.charts import chart, strip
+from fretc.trends.comparisons import Comparison, Finding
+from fretc.trends.trends import Group, Item, Trends, arrived, gone
+from fretish.diagnostics import signs
+from fretish.diagnostics.signs import Sign
+
+_MOST_RED, _MOST = 500, 150
+"""Rows of a list; those left out are counted, with their requirements."""
+_MOST_CHARTS = 24
+
+
+@dataclass(frozen=True, slots=True)
+class _List:
+    """Items with one change."""
+
+    anchor: str
+    title: str
+    about: str
+    kinds: tuple[Change, ...]
+    sign: Sign
+
+
+_LISTS = (
+    _List("new", "Newly violated", "Violated now, and not when known last.", (Change.NEW,),
+          signs.BAD),
+    _List("first-violated", "Violated, and never judged before",
+          "The newest round is the first that judges them.", (Change.FIRST_VIOLATED,), signs.BAD),
+    _List("still", "Still violated", "Violated now, and when known last.", (Change.STILL,),
+          signs.BAD),
+    _List("lost", "Known before, open now",
+          "Violated or shown before; the newest round leaves it open, so nothing is fixed.",
+          (Change.LOST,), signs.UNKNOWN),
+    _List("fixed", "Fixed", "Violated when known last, shown now.", (Change.FIXED,), signs.GOOD),
+)  # fmt: skip
+
+
+def html(trends: Trends) -> str:
+    """The whole file."""
+    style = render("report/style.css.j2") + render("trends/style.css.j2")
+    lists = [_listed(each, trends.of(*each.kinds)) for each in _LISTS]
+    flaky = [item for item in trends.items if item.flaky]
+    regressed = trends.found(Finding.REGRESSED)
+    others = [one for one in trends.comparisons if one.finding is not Finding.REGRESSED]
+    moving = [one for one in others if len({value.number for value in one.values}) > 1]
+    pictured = moving[:_MOST_CHARTS]
+    return render(
+        "trends/page.html.j2",
+        style=style,
+        style_hash=hash_source(style),
+        fretc=__version__,
+        **visible_texts(
+            {
+                "mark": _mark(trends),
+                "headline": _headline(trends),
+                "facts": _facts(trends),
+                "rounds": [_round(i, each) for i, each in enumerate(trends.rounds, 1)],
+                "by": trends.by,
+                "lists": [each for each in lists if each["rows"]],
+                "flaky": {
+                    "rows": _rows(flaky[:_MOST_RED]),
+                    "left": _left(flaky[_MOST_RED:]),
+                    "count": phrases.whole(len(flaky)),
+                },
+                "gone_count": phrases.whole(len(trends.of(Change.GONE))),
+                "arrived_count": phrases.whole(sum(len(group.items) for group in arrived(trends))),
+                "regressions": phrases.whole(len(regressed)) if regressed else "",
+                "gone": _groups(gone(trends)),
+                "arrived": _groups(arrived(trends)),
+                "held": {"before": trends.held.before, "after": trends.held.after},
+                "level": f"{trends.level:g}",
+                "regressed": _charts(trends, regressed[:_MOST_CHARTS], "regressed"),
+                "regressed_lines": [_line(one) for one in regressed[_MOST_CHARTS:]],
+                "others": _charts(trends, pictured, "other"),
+                "few": len(trends.found(Finding.TOO_FEW)),
+                "chance": len(trends.found(Finding.CHANCE)),
+                "pictured": len(pictured),
+                "moving": len(moving),
+            }
+        ),
+    )
+
+
+def _mark(trends: Trends) -> dict[str, Any]:
+    """The sign of the whole, and its word."""
+    if trends.is_worse:
+        return {**asdict(signs.BAD), "word": "worse"}
+    if not trends.is_comparable:
+        return {**asdict(signs.UNKNOWN), "word": "not all can be compared"}
+    return {**asdict(signs.GOOD), "word": "nothing is worse"}
+
+
+def _headline(trends: Trends) -> str:
+    counts = (
+        (len(trends.of(*RED)), "new violation", ""),
+        (len(trends.found(Finding.REGRESSED)), "regression", ""),
+        (len(trends.of(Change.STILL)), "requirement still violated in a scenario",
+         "requirements still violated in scenarios"),
+        (len(trends.of(Change.LOST, Change.GONE)), "verdict lost", "verdicts lost"),
+        (len(trends.of(Change.FIXED)), "fixed", "fixed"),
+    )  # fmt: skip
+    parts = [phrases.times(count, one, many) for count, one, many in counts if count]
+    return f"{phrases.joined(parts) or 'Nothing has changed'}."
+
+
+def _facts(trends: Trends) -> list[str]:
+    newest = trends.rounds[-1]
+    versions = phrases.some([f"version {each}" for each in newest.versions], 3)
+    about = ", ".join(filter(None, [newest.days, versions, phrases.times(newest.runs, "run")]))
+    steady, never = len(trends.of(Change.STEADY)), len(trends.of(Change.NEVER_SHOWN))
+    return [
+        f"Newest round: {phrases.place(newest.name)} ({about}).",
+        f"{phrases.times(len(trends.rounds), 'round')}, {phrases.times(trends.runs, 'run')}, "
+        f"{phrases.times(len(trends.sentences), 'requirement')}; {phrases.whole(steady)} shown as "
+        f"before, {phrases.whole(never)} never shown.",
+        *(
+            ["Not all have a date: rounds are in the order in which they were given."]
+            if trends.undated and len(trends.rounds) > 1
+            else []
+        ),
+    ]
+
+
+def _round(number: int, each: Any) -> dict[str, Any]:
+    return {
+        "number": number,
+        "name": phrases.place(each.name),
+        "days": each.days,
+        "versions": phrases.some(list(each.versions), 4),
+        "runs": phrases.whole(each.runs),
+    }
+
+
+def _listed(each: _List, items: Sequence[Item]) -> dict[str, Any]:
+    most = _MOST_RED if each.sign is signs.BAD else _MOST
+    return {
+        "anchor": each.anchor,
+        "title": each.title,
+        "about": each.about,
+        "sign": asdict(each.sign),
+        "count": phrases.whole(len(items)),
+        "rows": _rows(items[:most]),
+        "left": _left(items[most:]),
+    }
+
+
+def _left(items: Sequence[Item]) -> str:
+    """What is left out, in words; empty where nothing is."""
+    if not items:
+        return ""
+    ids = phrases.some([*dict.fromkeys(item.requirement for item in items)], 20)
+    return f"{phrases.whole(len(items))} more are left out here, of {ids}: `--format json` has all."
+
+
+def _groups(groups: Sequence[Group]) -> list[str]:
+    """Each in words; of very many the first ones, and how many more there are."""
+    more = len(groups) - _MOST_RED
+    lines = [group.text for group in groups[:_MOST_RED]]
+    return [*lines, f"{phrases.whole(more)} more: `--format json` has all"] if more > 0 else lines
+
+
+def _rows(items: Sequence[Item]) -> list[dict[str, Any]]:
+    return [
+        {
+            "requirement": item.requirement,
+            "scenario": str(item.scenario),
+            "strip": asdict(strip(item.tones)),
+            "now": _now(item),
+        }
+        for item in items
+    ]
+
+
+def _now(item: Item) -> str:
+    now = item.rounds[-1]
+    verdicts = ", ".join(f"{now.count(word)} {word}" for word in sorted({*now}, key=severity))
+    notes = ["flaky"] * item.flaky + ["the requirement changed"] * item.changed
+    return "; ".join([verdicts or "not judged", *notes])
+
+
+def _line(one: Comparison) -> str:
+    return f"{one.measure.ids}, {one.measure}: {one.worse}"
+
+
+def _charts(trends: Trends, some: Sequence[Comparison], kind: str) -> list[dict[str, Any]]:
+    after = trends.is_after
+    return [
+        asdict(chart(one, len(trends.rounds), after, f"{kind}-{number}"))
+        for number, one in enumerate(some, 1)
+    ]

@@ -1,0 +1,112 @@
+"""Patterns of names: `{scenario}-{seed}.mcap` against the end of a path.
+
+`{name}` stands for one character or more, `*` for any number, neither for a slash. Each takes as
+much as it can, from left to right. The time is that of pattern times name, whatever both are.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+_TOKEN = re.compile(r"\{(?P<name>[A-Za-z][A-Za-z0-9_-]*)\}|(?P<star>\*)|(?P<text>[^{}*]+)")
+_LONGEST, _LONGEST_PART = 200, 1000
+"""Characters of a pattern, and of a part of a path that it is held against."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Token:
+    text: str
+    """What stands there to the letter; of a place the name, nothing of `*`."""
+    least: int | None = None
+    """Of a place the least number of characters; None of a text."""
+
+
+_Part = tuple[_Token, ...]
+
+
+def names(pattern: str) -> tuple[str, ...] | str:
+    """The names in a pattern, or what is wrong with it."""
+    parts = _parts(pattern)
+    if isinstance(parts, str):
+        return parts
+    return tuple(token.text for part in parts for token in part if token.least == 1)
+
+
+def match(pattern: str, path: str) -> Mapping[str, str] | None:
+    """What each name of a pattern stands for in a path; None where the path does not match.
+
+    Args:
+        pattern: a sound one; it is held against as many parts of the path as it has itself.
+        path: with slashes.
+    """
+    parts = _parts(pattern)
+    assert not isinstance(parts, str), parts
+    texts = path.split("/")[-len(parts) :]
+    if len(texts) < len(parts) or any(len(text) > _LONGEST_PART for text in texts):
+        return None
+    found: dict[str, str] = {}
+    for part, text in zip(parts, texts, strict=True):
+        one = _match(part, text)
+        if one is None:
+            return None
+        found |= one
+    return found
+
+
+@lru_cache(maxsize=64)
+def _parts(pattern: str) -> tuple[_Part, ...] | str:
+    """The parts between slashes, or what is wrong."""
+    if not 0 < len(pattern) <= _LONGEST:
+        return f"a pattern has 1 to {_LONGEST} characters"
+    parts = []
+    for written in pattern.split("/"):
+        tokens = [_token(found) for found in _TOKEN.finditer(written)]
+        if not tokens or sum(len(found[0]) for found in _TOKEN.finditer(written)) < len(written):
+            return "between slashes there are texts, `*` and `{name}`, and nothing else"
+        parts.append(tuple(tokens))
+    named = [token.text for part in parts for token in part if token.least == 1]
+    twice = next((name for name in named if named.count(name) > 1), None)
+    return f"`{{{twice}}}` stands twice in it" if twice else tuple(parts)
+
+
+def _token(found: re.Match[str]) -> _Token:
+    if found["text"] is not None:
+        return _Token(found["text"])
+    return _Token(found["name"] or "", 0 if found["star"] else 1)
+
+
+def _match(part: _Part, text: str) -> dict[str, str] | None:
+    fits = _fits(part, text)
+    if not fits[0][0]:
+        return None
+    found, at = {}, 0
+    for token, after in zip(part, fits[1:], strict=True):
+        if token.least is None:
+            at += len(token.text)
+            continue
+        end = max(end for end in range(at + token.least, len(text) + 1) if after[end])
+        if token.least:
+            found[token.text] = text[at:end]
+        at = end
+    return found
+
+
+def _fits(part: _Part, text: str) -> list[list[bool]]:
+    """Row i, column k: whether the tokens from i on match all of the text from k on."""
+    size = len(text)
+    rows = [[False] * size + [True]]
+    for token in reversed(part):
+        after, row = rows[0], [False] * (size + 1)
+        if token.least is None:
+            for k in range(size - len(token.text) + 1):
+                row[k] = after[k + len(token.text)] and text.startswith(token.text, k)
+        else:
+            later = False
+            for k in range(size - token.least, -1, -1):
+                later = later or after[k + token.least]
+                row[k] = later
+        rows.insert(0, row)
+    return rows

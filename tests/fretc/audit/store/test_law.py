@@ -1,0 +1,184 @@
+"""Evidence is the same in a file and in a store, to the letter."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from pyarrow.parquet import ParquetFile
+
+from compiler.files.records import decoded, replace, types
+from fretc.audit.evidence.briefs import brief, run_facts
+from fretc.audit.evidence.schema import Document, Result
+from fretc.audit.evidence.writer import text
+from fretc.audit.store.reader import Store, evidence, opened
+from fretc.audit.store.tables import runs_of
+from fretc.audit.store.writer import write_document
+from tests.fretc.audit.results import SHA, result
+
+SHARED = ("run", "health", "labels", "course")
+LARGE = 2**63
+
+# Values of every type of the schema, by its constraints ------------------------------------------
+
+_FLOATS = [0.0, -0.0, 5e-324, 1.7976931348623157e308, 0.1, 1.0]
+TEXTS = ["", "R1", "a.mcap", "mètre \u202e\n", '"', "violated"]
+
+
+def values(kind: Any, *, held: bool) -> st.SearchStrategy[Any]:
+    """Plain values of a type.
+
+    Args:
+        kind: the type.
+        held: only what columns hold: numbers with a point are no whole ones.
+    """
+    match kind:
+        case types.Metadata(type=inner):
+            return values(inner, held=held)
+        case types.UnionType(types=inner):
+            point = held and any(isinstance(each, types.FloatType) for each in inner)
+            some = [e for e in inner if not (point and isinstance(_bare(e), types.IntType))]
+            return st.one_of([values(each, held=held) for each in some])
+        case types.NoneType():
+            return st.none()
+        case types.BoolType():
+            return st.booleans()
+        case types.IntType(ge=least, le=most):
+            beyond = 2**63 - 1 if held else 2**64 - 1
+            least, most = -LARGE if least is None else least, beyond if most is None else most
+            few = [n for n in (least, most, 0, 1, 7) if least <= n <= most]
+            return st.sampled_from(few) | st.integers(least, most)
+        case types.FloatType(ge=least, le=most, gt=above, lt=below):
+            least = least if above is None else above
+            most = most if below is None else below
+            least, most = -1e308 if least is None else least, 1e308 if most is None else most
+            return st.sampled_from([x for x in _FLOATS if least < x < most] or [0.75]) | st.floats(
+                least, most, exclude_min=True, exclude_max=True
+            )
+        case types.LiteralType(values=words):
+            return st.sampled_from(words)
+        case types.StrType(pattern=None, min_length=least):
+            return st.sampled_from([*filter(None, TEXTS)] if least else TEXTS)
+        case types.StrType(pattern=pattern) if pattern and pattern.startswith("^F"):
+            return st.just("F405")
+        case types.StrType(max_length=most):
+            digest = st.sampled_from([SHA, "ab" * 32])
+            return digest if most else digest | st.just("")
+        case types.VarTupleType(item_type=item, min_length=least):
+            return st.lists(values(item, held=held), min_size=least or 0, max_size=2)
+        case types.TupleType(item_types=items):
+            return st.tuples(*(values(item, held=held) for item in items)).map(list)
+        case types.DictType(key_type=key, value_type=item, min_length=least):
+            names, items = values(key, held=held), values(item, held=held)
+            return st.dictionaries(names, items, min_size=least or 0, max_size=2)
+        case types.StructType() | types.DataclassType():
+            return records(kind, held=held)
+    raise AssertionError(kind)
+
+
+def _bare(kind: Any) -> Any:
+    return _bare(kind.type) if isinstance(kind, types.Metadata) else kind
+
+
+def records(kind: Any, *without: str, held: bool) -> st.SearchStrategy[Any]:
+    parts = [each for each in kind.fields if each.name not in without]
+    needed = {f.encode_name: values(f.type, held=held) for f in parts if f.required}
+    others = {f.encode_name: values(f.type, held=held) for f in parts if not f.required}
+    found = st.fixed_dictionaries(needed, optional=others)
+    return found.map(lambda value: _mended(value, kind.cls.__name__))
+
+
+def _mended(value: dict[str, Any], name: str) -> dict[str, Any]:
+    """Times in their order, as many as values; a probability for a bound."""
+    if name == "Estimated":
+        return value | {"bound": "0.99"}
+    lists = [key for key in ("times_ns", "values", "words", "x", "y") if key in value]
+    if name in ("Series", "WordSeries", "Way", "Words"):
+        size = min(len(value[key]) for key in lists)
+        value |= {key: value[key][:size] for key in lists} | {"starts": [0][:size]}
+        value["times_ns"].sort()
+        return value if name == "Way" else {key: value[key] for key in value if key != "starts"}
+    if name == "Surroundings":
+        start, end = sorted((value["start_ns"], value["end_ns"]))
+        return value | {"start_ns": start, "end_ns": end}
+    return value
+
+
+results = st.one_of(
+    *(records(types.type_info(Result), held=held) for held in (True, True, False))
+).map(lambda value: decoded(value, Result))
+heads = records(types.type_info(Document), "results", held=False)
+
+
+@st.composite
+def documents(draw: st.DrawFn) -> Document:
+    """Some results, of which some share what those of one run share."""
+    found: list[Result] = []
+    alike = draw(st.lists(st.booleans(), min_size=6, max_size=6))
+    for one, like_the_last in zip(draw(st.lists(results, max_size=6)), alike, strict=False):
+        if found and like_the_last:
+            one = replace(one, **{name: getattr(found[-1], name) for name in SHARED})
+        found.append(one)
+    return replace(decoded(draw(heads) | {"results": []}, Document), results=tuple(found))
+
+
+def stored(folder: Path, document: Document) -> Store:
+    sha256 = write_document(folder, document, 0.95)
+    assert isinstance(sha256, str), sha256
+    store = opened(str(folder))
+    assert isinstance(store, Store), store.message
+    assert store.sha256 == sha256
+    return store
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("store")
+
+
+def document(*results: Result) -> Document:
+    head = {"schema": "fretc-evidence-1", "fretc": "1", "requirements": [], "results": []}
+    bindings = {"file": "bindings.toml", "sha256": SHA}
+    return replace(decoded(head | {"bindings": bindings}, Document), results=results)
+
+
+def test_times_of_a_damaged_log_are_kept(tmp_path: Path) -> None:
+    """In the columns as far as these hold them."""
+    late = result(start_ns=0, end_ns=2**64 - 1, verdict="no data")
+    good = result(run="b.mcap", verdict="satisfied")
+    store = stored(tmp_path, document(late, good))
+    assert evidence(store).results == (late, good)
+    (main,) = (tmp_path / "results").iterdir()
+    rows = ParquetFile(main).read().to_pylist()
+    assert [(row["run"], row["verdict"], row["end_ns"]) for row in rows] == [
+        ("a.mcap", "no data", None),
+        ("b.mcap", "satisfied", None),
+    ]
+    assert [json.loads(row["exact"])["end_ns"] for row in rows if row["exact"]] == [2**64 - 1]
+
+
+@pytest.mark.slow
+@settings(
+    max_examples=30,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+@given(document=documents())
+def test_evidence_comes_back_from_a_store_to_the_letter(document: Document, folder: Path) -> None:
+    store = stored(folder, document)
+    found = evidence(store)
+    assert text(found.document) == text(document)
+    assert [*store.briefs()] == [*enumerate(map(brief, document.results))]
+    assert [*store.runs()] == [*map(run_facts, runs_of(document.results))]
+    for id in {each.requirement for each in document.results}:
+        own = [(n, r) for n, r in enumerate(document.results) if r.requirement == id]
+        assert [(n, [*x]) for n, x in store.latencies([id])] == [
+            (n, [*r.latencies]) for n, r in own
+        ]
+        assert [(n, (*x,)) for n, x in store.thresholds([id])] == [
+            (n, r.thresholds) for n, r in own
+        ]
+    for n, one in enumerate(document.results):
+        assert [*store.details([n])] == [(n, one)]

@@ -1,0 +1,476 @@
+"""What is known of an unchanged log is taken over, and the store is the one made from nothing."""
+
+import json
+import os
+import shutil
+import signal
+import stat
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from compiler.files import text_files as files
+from compiler.files.user_key import user_key
+from compiler.project.folder import load
+from compiler.project.paths import beside, requirement_files
+from fretc.audit.into_store import Session, StoredAudit
+from fretc.audit.many_logs import IN_TURN, Engine, LogAudits, audit_logs, audited, locally
+from fretc.audit.plan import Plan, planned
+from fretc.audit.store import parts
+from fretc.audit.store.reader import Store, evidence, opened
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.command import Fretc, untimed
+
+ROOT = Path(__file__).parents[3]
+STORE = Path("build/evidence")
+LOGS = ["a.mcap", "b.mcap", "c.mcap"]
+
+
+@pytest.fixture
+def fretc(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
+    """Run the command in a folder with requirements and three logs that count as old."""
+    monkeypatch.setattr(files, "_COARSEST", -1)
+    shutil.copytree(ROOT / "requirements", "requirements")
+    for log in LOGS:
+        shutil.copy(ROOT / "traces/mission-seed15.mcap", log)
+    return fretc
+
+
+def plan(evaluation: str = "columns") -> Plan:
+    paths = requirement_files("requirements")
+    assert not isinstance(paths, Diagnostic)
+    result = planned(load(paths, beside("requirements", "bindings.toml")), evaluation)
+    assert isinstance(result, Plan)
+    return result
+
+
+def session(
+    logs: Sequence[str] = LOGS, own: Plan | None = None, folder: Path = STORE, rehash: bool = False
+) -> Session:
+    key = user_key()
+    assert isinstance(key, bytes)
+    return Session(folder, own or plan(), logs, key, rehash=rehash)
+
+
+def stored(
+    logs: Sequence[str] = LOGS,
+    own: Plan | None = None,
+    engine: Engine = IN_TURN,
+    folder: Path = STORE,
+) -> tuple[StoredAudit, list[str]]:
+    """Audit into a store; also the logs that were read."""
+    names: list[str] = []
+    with session(logs, own, folder) as one:
+        found = one.run(engine, names.append)
+        assert isinstance(found, StoredAudit), found.message
+        return found, names
+
+
+def known(logs: Sequence[str] = LOGS, *, rehash: bool = False) -> dict[str, str]:
+    """Which of the logs need not be read again, and by what they are known."""
+    with session(logs, rehash=rehash) as one:
+        return {log: found.by for log, found in one.known.items()}
+
+
+def tables(folder: Path = STORE) -> dict[str, bytes]:
+    """The bytes of all tables, but for the register."""
+    found = {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*.parquet")}
+    return {name: data for name, data in found.items() if not name.startswith("register")}
+
+
+def damage(log: str) -> None:
+    """Change one byte and nothing that `ls -l` shows."""
+    before = os.stat(log)
+    data = bytearray(Path(log).read_bytes())
+    data[len(data) // 2] ^= 1
+    Path(log).write_bytes(data)
+    os.utime(log, ns=(before.st_atime_ns, before.st_mtime_ns))
+
+
+def backwards(plan: Plan, logs: Sequence[str]) -> LogAudits:
+    """An engine that is done with the last log first."""
+    for log in reversed(logs):
+        yield log, audited(plan, log)
+
+
+def interrupted(after: int) -> Engine:
+    """An engine that Ctrl-C stops when so many logs are done."""
+
+    def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
+        for log in logs[:after]:
+            yield log, audited(plan, log)
+        raise KeyboardInterrupt
+
+    return engine
+
+
+def stop_after(logs: int) -> None:
+    with session() as one, pytest.raises(KeyboardInterrupt):
+        one.run(interrupted(logs), lambda _: None)
+
+
+# The same from nothing ---------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_a_store_depends_on_no_engine_and_no_order(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(parts, "AVERAGE", 2)
+    damage("b.mcap")
+    whole = audit_logs(plan(), [*LOGS, "none.mcap"])
+    assert not isinstance(whole, Diagnostic)
+    first, _ = stored([*LOGS, "none.mcap"])
+    assert evidence(first.source).document == whole.document
+    assert (first.diagnostics, first.read) == (whole.diagnostics, whole.read)
+    manifest = (STORE / "manifest.json").read_bytes()
+    for number, engine in enumerate((backwards, locally(2))):
+        folder = Path(f"store{number}")
+        stored([*LOGS, "none.mcap"], engine=engine, folder=folder)
+        assert tables(folder) == tables()
+        assert (folder / "manifest.json").read_bytes() == manifest
+
+
+@pytest.mark.slow
+def test_heavy_logs_give_the_same_tables(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
+    stored()
+    monkeypatch.setattr("fretc.audit.into_store._HEAVY", -1)
+    stored(folder=Path("other"))
+    assert tables(Path("other")) == tables()
+
+
+@pytest.mark.slow
+def test_what_is_taken_over_is_what_would_be_made_from_nothing(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever is added, changed, gone, or called otherwise."""
+    monkeypatch.setattr(parts, "AVERAGE", 2)
+    stored()
+    shutil.copy("a.mcap", "d.mcap")
+    changes: list[tuple[list[str], list[str]]] = [
+        (LOGS, []),
+        (["a.mcap", "d.mcap", "b.mcap", "c.mcap"], ["d.mcap"]),
+        (["d.mcap", "b.mcap"], []),
+        (["b.mcap", "a.mcap"], ["a.mcap"]),
+    ]
+    for number, (logs, read) in enumerate(changes):
+        found, names = stored(logs)
+        assert names == read
+        anew, _ = stored(logs, folder=Path(f"anew{number}"))
+        assert tables() == tables(Path(f"anew{number}"))
+        assert found.diagnostics == anew.diagnostics
+        by = [each.known_by for each in found.source.register()]
+        assert by == ["read" if log in read else "stamp" for log in logs]
+
+
+@pytest.mark.slow
+def test_labels_of_the_command_are_those_of_the_last_one(fretc: Fretc) -> None:
+    stored(own=replace(plan(), labels={"version": "1", "robot": "x"}))
+    found, names = stored(own=replace(plan(), labels={"version": "2"}))
+    assert names == []
+    assert {str(one.labels) for one in found.source.runs()} == {"{'version': '2'}"}
+
+
+def test_the_command_says_what_is_known_and_shows_all(fretc: Fretc) -> None:
+    whole = fretc("audit", *LOGS)
+    again = fretc("audit", *LOGS)
+    assert (again.status, untimed(again.out)) == (whole.status, untimed(whole.out))
+    assert again.err == f"3 of 3 logs are unchanged: their results are known\n{whole.err}"
+
+
+# What is known -----------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_a_log_is_known_by_its_stamp_or_its_bytes(fretc: Fretc) -> None:
+    stored()
+    assert known() == dict.fromkeys(LOGS, "stamp")
+    assert known(rehash=True) == dict.fromkeys(LOGS, "sha256")
+    shutil.copy("a.mcap", "other.mcap")
+    os.replace("other.mcap", "a.mcap")
+    damage("b.mcap")
+    Path("c.mcap").unlink()
+    assert known() == {"a.mcap": "sha256"}
+
+
+def test_a_log_that_had_just_been_written_is_known_by_its_bytes_only(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(files, "_COARSEST", 10**18)
+    stored(LOGS[:2])
+    assert known() == {"a.mcap": "sha256", "b.mcap": "sha256"}
+
+
+def test_a_log_of_the_same_name_elsewhere_is_another_one(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stored(LOGS[:1])
+    Path("elsewhere").mkdir()
+    os.link("a.mcap", "elsewhere/a.mcap")
+    folder, own = STORE.absolute(), plan()
+    monkeypatch.chdir("elsewhere")
+    with session(LOGS[:1], own, folder) as one:
+        assert one.known == {}
+
+
+@pytest.mark.slow
+def test_a_log_that_could_not_be_read_or_has_changed_meanwhile_is_tried_again(fretc: Fretc) -> None:
+    def growing(plan: Plan, logs: Sequence[str]) -> LogAudits:
+        for log in logs:
+            yield log, replace(audited(plan, log), stamp=None)
+
+    Path("bad.mcap").write_bytes(b"no log")
+    stored(["bad.mcap", *LOGS[:2]])
+    assert known(["bad.mcap", *LOGS[:2]]) == {"a.mcap": "stamp", "b.mcap": "stamp"}
+    stored(["c.mcap"], engine=growing)
+    assert known() == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("requirements/r1.fret", "eventually", "within 300 milliseconds"),
+        ("requirements/bindings.toml", "0.01 rad/s", "0.02 rad/s"),
+    ],
+)
+def test_another_requirement_or_binding_makes_all_of_it_new(
+    fretc: Fretc, file: str, old: str, new: str
+) -> None:
+    stored()
+    text = Path(file).read_text("utf-8")
+    assert old in text
+    Path(file).write_text(text.replace(old, new), "utf-8")
+    assert known() == {}
+    assert fretc("audit", *LOGS).err.startswith(
+        "requirements, bindings or fretc have changed: all logs are audited again\n"
+    )
+
+
+def test_another_fretc_or_evaluation_makes_all_of_it_new(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stored()
+    with session(own=plan("online")) as one:
+        assert (one.known, one.earlier.stale) == ({}, True)
+    monkeypatch.setattr("fretc.audit.plan.edition", lambda: "another")
+    assert known() == {}
+
+
+# Stopped -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_an_audit_that_goes_on_gives_the_store_of_one_that_was_not_stopped(fretc: Fretc) -> None:
+    whole, _ = stored(folder=Path("whole"))
+    stop_after(2)
+    assert not (STORE / "manifest.json").exists()
+    again, names = stored()
+    assert names == ["c.mcap"]
+    assert tables() == tables(Path("whole"))
+    assert again.diagnostics == whole.diagnostics
+    assert sorted(os.listdir(STORE)) == sorted(os.listdir("whole"))
+
+
+@pytest.mark.slow
+def test_an_audit_that_is_stopped_leaves_the_store_of_the_last_one(fretc: Fretc) -> None:
+    first, _ = stored(LOGS[:1])
+    damage("a.mcap")
+    before = evidence(first.source)
+    stop_after(1)
+    store = opened(str(STORE))
+    assert isinstance(store, Store)
+    assert evidence(store) == before
+    assert known() == {"a.mcap": "stamp"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_a_command_is_stopped_and_goes_on(fretc: Fretc, stop: signal.Signals) -> None:
+    logs = [f"{name}{number}.mcap" for name in "ab" for number in range(12)]
+    for log in logs:
+        os.link("a.mcap", log)
+    code = (
+        "import fretc.audit.into_store as s; s._PATIENCE = 0; s._SHARE = 0\n"
+        "from fretc.cli import main; main()"
+    )
+    run = subprocess.Popen(
+        [sys.executable, "-c", code, "audit", *logs, "--jobs", "2"],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler) and None,
+    )
+    deadline = time.monotonic() + 60
+    while not any((STORE / "results").glob("*.parquet")) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    run.send_signal(stop)
+    _, errors = run.communicate(timeout=60)
+    assert not (STORE / "manifest.json").exists()
+    count = len(known(logs))
+    if stop is not signal.SIGKILL:
+        words = f"stopped: {count} of 24 logs are kept, the same command goes on from there\n"
+        assert (run.returncode, errors) == (130, words)
+    resumed = fretc("audit", *logs)
+    assert resumed.status == 0
+    if count:
+        told = f"{count} of 24 logs are unchanged: their results are known\n"
+        assert resumed.err.startswith(told)
+    store = opened(str(STORE))
+    assert isinstance(store, Store)
+    assert [facts.run for facts in store.runs()] == logs
+
+
+@pytest.mark.slow
+def test_two_audits_do_not_share_a_store(fretc: Fretc) -> None:
+    with session():
+        run = fretc("audit", *LOGS)
+        assert (run.status, run.out) == (2, "")
+        assert run.err.startswith(f"F912 another audit is at work on `{STORE}`\n")
+    assert fretc("audit", *LOGS).status == 0
+
+
+# Somebody else's ---------------------------------------------------------------------------------
+
+
+FOREIGN = f"`{STORE}` was not written by you in this place: nothing of it is used\n"
+
+
+@pytest.mark.slow
+def test_a_store_that_another_user_has_written_is_not_used_and_that_is_said(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    with monkeypatch.context() as other:
+        other.setenv("XDG_STATE_HOME", str(tmp_path / "other"))
+        stored()
+    assert known() == {}
+    run = fretc("audit", *LOGS)
+    assert run.err.startswith(FOREIGN)
+    assert known() == dict.fromkeys(LOGS, "stamp")
+
+
+def test_a_store_is_believed_in_its_place_only(fretc: Fretc) -> None:
+    stored()
+    shutil.move(STORE, "elsewhere")
+    with session(folder=Path("elsewhere")) as one:
+        assert (one.known, one.earlier.foreign) == ({}, True)
+
+
+@pytest.mark.slow
+def test_a_store_with_another_byte_is_not_believed(fretc: Fretc) -> None:
+    stored()
+    for path in sorted(STORE.rglob("*.*")):
+        if path.is_dir():
+            continue
+        data = path.read_bytes()
+        middle = len(data) // 2
+        path.write_bytes(data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :])
+        with session() as one:
+            assert one.known == {}, path
+            for other in STORE.rglob("*.parquet"):  # what no manifest names may be removed
+                assert other.exists()
+        path.write_bytes(data)
+    assert known() == dict.fromkeys(LOGS, "stamp")
+
+
+def test_what_vouches_for_another_manifest_or_plan_does_not_count(fretc: Fretc) -> None:
+    stored()
+    reuse = STORE / "reuse.json"
+    content = json.loads(reuse.read_text())
+    for change in ({"plan": "x"}, {"manifest": "0" * 64}, {"labels": {"a": "b"}}, {"check": ""}):
+        reuse.write_text(json.dumps(content | change))
+        assert known() == {}
+    for text in ("", "[]", "1", "{", '{"check": 1}', "\0"):
+        reuse.write_text(text)
+        assert known() == {}
+
+
+@pytest.mark.slow
+def test_a_key_that_others_can_read_is_not_used_and_the_audit_goes_on(fretc: Fretc) -> None:
+    stored()
+    path = Path(os.environ["XDG_STATE_HOME"]) / "fretc/journal.key"
+    path.chmod(0o644)
+    run = fretc("audit", *LOGS)
+    assert run.status == 0
+    assert run.err.startswith(f"F920 warning: `{path}` cannot be used: others may read or write it")
+    path.chmod(0o600)
+    path.unlink()
+    path.symlink_to("/dev/zero")
+    assert fretc("audit", *LOGS).err.startswith(f"F920 warning: `{path}` cannot be used: ")
+
+
+def test_the_key_is_made_once_and_private(fretc: Fretc) -> None:
+    before = os.umask(0)
+    try:
+        first = user_key()
+    finally:
+        os.umask(before)
+    assert first == user_key()
+    path = Path(os.environ["XDG_STATE_HOME"]) / "fretc/journal.key"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert stat.S_IMODE(path.parent.stat().st_mode) == 0o700
+    assert os.listdir(path.parent) == ["journal.key"]
+
+
+# Where it goes -----------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_one_log_is_a_file_and_several_are_a_store_and_the_other_one_goes(fretc: Fretc) -> None:
+    fretc("audit", "a.mcap")
+    assert os.listdir("build") == ["evidence.json"]
+    run = fretc("audit", *LOGS)
+    assert os.listdir("build") == ["evidence"]
+    assert "removed build/evidence.json, the evidence of an earlier audit\n" in run.err
+    run = fretc("audit", "a.mcap")
+    assert os.listdir("build") == ["evidence.json"]
+    assert "removed build/evidence, the evidence of an earlier audit\n" in run.err
+    for name in ("one", "all.json"):
+        assert fretc("audit", *LOGS, "-o", name).status == 0
+    assert os.listdir("build") == ["evidence.json"]
+    assert len(json.loads(Path("all.json").read_text())["results"]) == 3
+    assert fretc("audit", "a.mcap", "-o", "one").status == 0
+    assert fretc("report", "--evidence", "one").status in (0, 3)
+
+
+def test_nothing_of_the_user_s_is_replaced_or_removed(fretc: Fretc) -> None:
+    Path("build").mkdir()
+    Path("build/evidence.json").write_text("{}")
+    Path("mine").mkdir()
+    Path("mine/results").mkdir()
+    Path("mine/results/own.parquet").write_text("precious")
+    Path("file").write_text("precious")
+    for name in ("mine", "file"):
+        run = fretc("audit", *LOGS, "-o", name)
+        assert (run.status, run.out) == (2, "")
+        assert run.err.startswith(f"F905 `{name}` cannot be written: ")
+    assert fretc("audit", *LOGS).status == 0
+    assert Path("build/evidence.json").read_text() == "{}"
+    run = fretc("report")
+    assert run.err.startswith("F517 evidence is in `build/evidence.json` and in `build/evidence`")
+    os.symlink("mine", "link")
+    assert fretc("audit", *LOGS, "-o", "link").err.startswith("F905 ")
+    assert Path("mine/results/own.parquet").read_text() == "precious"
+
+
+def test_a_mistyped_name_does_not_cost_the_evidence_of_the_last_audit(fretc: Fretc) -> None:
+    stored()
+    before = {**tables(), "": (STORE / "manifest.json").read_bytes()}
+    run = fretc("audit", "no.mcap", "none.mcap", "-o", str(STORE))
+    assert run.status == 2
+    assert before == {**tables(), "": (STORE / "manifest.json").read_bytes()}
+    assert fretc("audit", "no.mcap", "none.mcap", "-o", "new").status == 2
+    assert not Path("new").exists()
+
+
+def test_a_place_that_cannot_be_written_is_told(fretc: Fretc) -> None:
+    Path("build").write_text("no folder")
+    run = fretc("audit", *LOGS)
+    assert run.status == 2
+    assert run.err.startswith(f"F905 `{STORE}` cannot be written: ")
+    assert Code.NOT_WRITTEN.number == "F905"

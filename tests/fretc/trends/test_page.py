@@ -1,0 +1,141 @@
+"""The page of trends: complete alone, readable without colours, safe against what logs say."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from fretc.audit.evidence.reader import Evidence
+from fretc.trends.changes import Tone
+from fretc.trends.charts import strip
+from fretc.trends.page import html
+from fretc.trends.trends import Trends
+from fretc.trends.trends import trends as trends_of
+from tests.fretc.audit.results import SHA
+from tests.fretc.trends.nights import document, judged
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+HOSTILE = "</style><script>document.title = 'broken'</script>\u202egnp.exe\x1b" + "x" * 100
+
+
+def nights(scenario: str = "door") -> Trends:
+    """Six of them: something new, something fixed, something gone, and answers that are late."""
+    sources = []
+    for night in range(6):
+        results = [
+            judged(
+                f"{night}-{run}.mcap",
+                verdict,
+                id,
+                night=night,
+                late=[0.2 + run / 100 + (0.2 if night > 3 else 0)],
+                margin=0.1 + run / 100,
+                scenario=scenario if run else f"hall {night // 5}",
+                version="2" if night > 3 else "1",
+            )
+            for run in range(6)
+            for id, verdict in (
+                ("R1", "violated" if night == 5 else "satisfied"),
+                ("R2", "satisfied" if night == 5 else "violated"),
+                ("R3", "violated" if night % 2 else "satisfied"),
+                ("R4", "no data" if night == 5 else "satisfied"),
+            )
+        ]
+        sources.append(Evidence(f"{night}.json", SHA, document(results)))
+    found = trends_of(sources)
+    assert isinstance(found, Trends)
+    return found
+
+
+def test_each_change_has_its_list_with_its_requirements() -> None:
+    page = html(nights())
+    for anchor, id in (("new", "R1"), ("fixed", "R2"), ("flaky", "R3"), ("lost", "R4")):
+        section = page.split(f'<section id="{anchor}"')[1].split("</section>")[0]
+        assert f'<th scope="row"><bdi>{id}</bdi></th>' in section
+    assert "scenario hall 0" in page.split('<section id="gone"')[1].split("</section>")[0]
+    assert page.count("<figure ") >= 2
+
+
+def test_it_is_the_same_again() -> None:
+    assert html(nights()) == html(nights())
+
+
+def test_texts_of_a_log_stay_texts() -> None:
+    page = html(nights(HOSTILE))
+    assert "<script" not in page
+    assert page.count("</style>") == 1
+    assert not {*"\u202e\x1b"} & {*page}
+    assert "\\u202egnp.exe\\x1b" in page
+
+
+def test_it_asks_nothing_of_anybody() -> None:
+    page = html(nights())
+    assert "default-src 'none'" in page
+    assert not re.search(r"(?:src|href)=\"(?!#)", page)
+
+
+def test_a_strip_is_read_without_colours() -> None:
+    tones = [None, Tone.SHOWN, Tone.SHOWN, Tone.VIOLATED, Tone.OPEN]
+    found = strip(tones)
+    assert found.text == "rounds 1 not judged, 2 to 3 shown, 4 violated, 5 open"
+    heights = {cell.kind: cell.height for cell in found.cells}
+    assert len({*heights.values()}) == len(heights) == 4
+    assert strip([Tone.SHOWN] * 100).text == "rounds 41 to 100 shown"
+
+
+# In a browser -----------------------------------------------------------------------------------
+
+CHROMIUM = "/usr/bin/chromium"
+in_browser = pytest.mark.skipif(
+    not Path(CHROMIUM).exists(), reason=f"needs {CHROMIUM}: apt-get install chromium"
+)
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    pytest.importorskip("playwright", reason="needs Playwright: pip install -e '.[dev]'")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        started = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield started
+        started.close()
+
+
+@pytest.mark.slow
+@in_browser
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [1440, 390])
+def test_axe_finds_nothing_serious_and_nothing_is_too_wide(
+    browser: Browser, tmp_path: Path, scheme: Any, width: int
+) -> None:
+    path = tmp_path / "trends.html"
+    path.write_text(html(nights(HOSTILE)), encoding="utf-8")
+    messages: list[str] = []
+    context = browser.new_context(
+        offline=True, color_scheme=scheme, viewport={"width": width, "height": 900}
+    )
+    page = context.new_page()
+    page.on("console", lambda message: messages.append(message.text))
+    page.on("pageerror", lambda error: messages.append(str(error)))
+    page.goto(path.as_uri())
+    assert page.title().startswith("Trends: ")
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    assert page.locator("svg.strip:visible").count() > 5
+    assert messages == []
+    context.close()
+    axe = browser.new_context(color_scheme=scheme, viewport={"width": width, "height": 900})
+    page = axe.new_page()
+    page.goto(path.as_uri())
+    page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
+    violations = page.evaluate("axe.run({resultTypes: ['violations']})")["violations"]
+    serious = [each for each in violations if each["impact"] in ("serious", "critical")]
+    assert [(each["id"], each["nodes"][0]["html"][:200]) for each in serious] == []
+    axe.close()

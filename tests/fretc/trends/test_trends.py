@@ -1,0 +1,225 @@
+"""From evidence to trends: rounds in order of time, red never lost, nothing compared by chance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.schema import Result
+from fretc.trends.changes import RED, Change
+from fretc.trends.comparisons import Finding
+from fretc.trends.trends import Trends, gone
+from fretc.trends.trends import trends as trends_of
+from tests.fretc.audit.results import SHA
+from tests.fretc.trends.nights import document, judged
+
+OTHER = "1" * 64
+
+
+def trends(*nights: Sequence[Result], by: str | None = None) -> Trends:
+    """Of evidence that is named by its number, in the order given."""
+    sources = [Evidence(f"{i}.json", SHA, document(night)) for i, night in enumerate(nights)]
+    found = trends_of(sources, by)
+    assert isinstance(found, Trends), found
+    return found
+
+
+def changes(found: Trends) -> dict[tuple[str, str], Change]:
+    return {(item.requirement, str(item.scenario)): item.change for item in found.items}
+
+
+def test_evidence_is_ordered_by_its_runs_and_not_as_it_is_named() -> None:
+    old = [judged("a.mcap", "satisfied", night=1)]
+    new = [judged("a.mcap", "violated", night=2)]
+    for given_order in ((old, new), (new, old)):
+        assert changes(trends(*given_order)) == {("R1", "a.mcap"): Change.NEW}
+
+
+def test_a_label_says_when_a_run_was() -> None:
+    first = [judged("a.mcap", "violated", night=9, date="2026-11-20")]
+    second = [judged("a.mcap", "satisfied", night=1, date="2026_11_21-22_00_00")]
+    found = trends(second, first)
+    assert changes(found) == {("R1", "a.mcap"): Change.FIXED}
+    assert [each.days for each in found.rounds] == ["2026-11-20", "2026-11-21"]
+
+
+def test_without_times_the_order_is_the_given_one() -> None:
+    no_time = [judged("a.mcap", "violated", night=-30_000)]
+    found = trends(no_time, [judged("a.mcap", "satisfied")])
+    assert found.undated
+    assert changes(found) == {("R1", "a.mcap"): Change.FIXED}
+
+
+def test_runs_of_a_scenario_are_comparable_whatever_their_names() -> None:
+    before = [judged("x/1.mcap", scenario="door"), judged("x/2.mcap", scenario="door")]
+    now = [judged("y/3.mcap", "violated", night=1, scenario="door")]
+    assert changes(trends(before, now)) == {("R1", "door"): Change.NEW}
+    apart = [judged("y/door", "violated", night=1)]
+    assert Change.GONE in changes(trends(before, apart)).values()
+
+
+def test_one_evidence_is_compared_day_by_day_or_by_a_label() -> None:
+    runs = [
+        judged("1/a.mcap", "satisfied", night=0, version="1"),
+        judged("2/a.mcap", "violated", night=1, version="2"),
+        judged("3/a.mcap", "violated", night=2, version="2"),
+    ]
+    found = trends(runs)
+    assert [each.name for each in found.rounds] == ["2025-11-08", "2025-11-09", "2025-11-10"]
+    assert changes(found) == {("R1", "a.mcap"): Change.STILL}
+    assert changes(trends(runs, by="version")) == {("R1", "a.mcap"): Change.NEW}
+    unlabelled = trends_of([Evidence("", SHA, document(runs))], "robot")
+    assert not isinstance(unlabelled, Trends)
+    assert unlabelled.code.number == "F560"
+
+
+def test_what_is_gone_is_named_by_scenario_and_by_requirement() -> None:
+    before = [
+        judged(f"{scenario}.mcap", verdict, id, scenario=scenario)
+        for scenario, verdict in (("door", "violated"), ("hall", "satisfied"))
+        for id in ("R1", "R2")
+    ]
+    now = [judged("hall.mcap", "satisfied", "R1", night=1, scenario="hall")]
+    found = trends(before, now)
+    lines = ["scenario door: 2 violated", "requirement R2: 1 shown"]
+    assert [each.text for each in gone(found)] == lines
+    assert not found.is_comparable
+    assert not found.is_worse
+
+
+def test_a_violation_is_told_where_the_requirement_has_changed_and_that_is_said() -> None:
+    before = [judged("a.mcap", "satisfied")]
+    now = [judged("a.mcap", "violated", night=1, sentence=OTHER)]
+    (item,) = trends(before, now).items
+    assert (item.change, item.changed, item.flaky) == (Change.NEW, True, False)
+
+
+def test_one_commit_with_both_outcomes_is_flaky() -> None:
+    runs = [
+        judged("1.mcap", "satisfied", scenario="door", commit="abc"),
+        judged("2.mcap", "violated", scenario="door", commit="abc"),
+    ]
+    (item,) = trends(runs).items
+    assert item.flaky
+    assert item.change is Change.FIRST_VIOLATED
+
+
+def test_it_is_worse_only_where_that_is_more_than_chance() -> None:
+    def nights(slow: float) -> list[list[Result]]:
+        return [
+            [
+                judged(
+                    f"{night}-{run}.mcap",
+                    night=night,
+                    late=[0.2 + run / 100 + (slow if night > 3 else 0)],
+                    scenario="door",
+                    version="2" if night > 3 else "1",
+                )
+                for run in range(5)
+            ]
+            for night in range(6)
+        ]
+
+    steady, slower = trends(*nights(0.0)), trends(*nights(0.1))
+    assert not steady.found(Finding.REGRESSED)
+    (found,) = slower.found(Finding.REGRESSED)  # of one answer, the longest is the median
+    assert str(found.measure) == "longest latency"
+    assert (found.runs_before, found.runs_after) == (20, 10)
+    assert slower.is_worse
+    faster = trends(*nights(-0.1))
+    assert not faster.is_worse
+
+
+def test_a_margin_that_shrinks_is_worse_and_one_that_is_crossed_has_none_left() -> None:
+    def night(number: int, margin: float) -> list[Result]:
+        return [
+            judged(
+                f"{number}-{run}.mcap",
+                "satisfied",
+                id,
+                night=number,
+                margin=margin and margin + run / 1000,
+                scenario="door",
+            )
+            for run in range(6)
+            for id in ("R1", "R2")
+        ]
+
+    found = trends(night(0, 0.2), night(1, 0.0))
+    (one,) = found.found(Finding.REGRESSED)
+    assert one.measure.requirements == ("R1", "R2")
+    assert one.measure.threshold == "clearance < 0.05 m (too_close)"
+    assert one.after == 0
+    assert not trends(night(0, 0.1), night(1, 0.2)).is_worse
+
+
+def test_few_runs_tell_nothing_and_that_is_said() -> None:
+    before = [judged("0.mcap", late=[0.1], scenario="door")]
+    now = [judged("1.mcap", night=1, late=[9.0], scenario="door")]
+    found = trends(before, now)
+    assert len(found.found(Finding.TOO_FEW)) == 1
+    assert not found.is_worse
+
+
+def test_a_copy_of_a_log_counts_once() -> None:
+    """The same slow log in the newest evidence again and again is one run."""
+    before = [judged(f"{run}.mcap", late=[0.1 + run / 100], scenario="d") for run in range(12)]
+
+    def late(logs: Sequence[int]) -> list[Result]:
+        return [
+            judged(f"s{run}.mcap", night=1, late=[9.0], scenario="d", log=log)
+            for run, log in enumerate(logs)
+        ]
+
+    assert trends(before, late(range(12))).found(Finding.REGRESSED)
+    assert not trends(before, late([7] * 12)).found(Finding.REGRESSED)
+
+
+def test_runs_of_a_requirement_that_was_another_one_are_not_compared() -> None:
+    before = [judged(f"{run}.mcap", late=[0.1], scenario="d", sentence=OTHER) for run in range(12)]
+    now = [judged(f"n{run}.mcap", night=1, late=[9.0], scenario="d") for run in range(12)]
+    assert not trends(before, now).found(Finding.REGRESSED)
+
+
+VERDICTS = st.sampled_from(["satisfied", "violated", "no data", "vacuous", "inconclusive"])
+RUNS = st.lists(
+    st.tuples(st.sampled_from("abc"), st.sampled_from(["R1", "R2"]), VERDICTS, st.booleans()),
+    min_size=1,
+    max_size=8,
+    unique_by=lambda each: each[:2],
+)
+
+
+@settings(max_examples=60)
+@given(st.lists(RUNS, min_size=1, max_size=4))
+def test_no_violation_of_the_newest_round_is_lost(
+    nights: list[list[tuple[str, str, str, bool]]],
+) -> None:
+    found = trends(
+        *(
+            [
+                judged(f"{run}.mcap", verdict, id, night=night, sentence=OTHER if other else SHA)
+                for run, id, verdict, other in sorted(runs)
+            ]
+            for night, runs in enumerate(nights)
+        )
+    )
+    told = changes(found)
+    keys = {(id, f"{run}.mcap") for runs in nights for run, id, _, _ in runs}
+    assert told.keys() == keys
+    for run, id, verdict, _ in nights[-1]:
+        red = told[id, f"{run}.mcap"] in (*RED, Change.STILL)
+        assert red == (verdict == "violated")
+    missing = keys - {(id, f"{run}.mcap") for run, id, _, _ in nights[-1]}
+    assert {key for key, change in told.items() if change is Change.GONE} == missing
+    in_groups = [(i.requirement, str(i.scenario)) for group in gone(found) for i in group.items]
+    assert sorted(in_groups) == sorted(missing)
+
+
+def test_the_same_evidence_gives_the_same_trends(tmp_path: Path) -> None:
+    night = [judged(f"{run}.mcap", late=[0.1 * run + 0.1], margin=0.1) for run in range(4)]
+    assert trends(night, night).items == trends(night, night).items
