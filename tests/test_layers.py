@@ -63,6 +63,7 @@ DOORS = {
         "fretc/audit/store/columns.py",
         "fretc/audit/store/files.py",
         "fretc/audit/store/reader.py",
+        "fretc/audit/store/register.py",
         "fretc/audit/store/tables.py",
     },
     "duckdb": {"fretc/audit/outputs/summary.py"},

@@ -141,7 +141,7 @@ def _events(result: Result, rules: Mapping[str, Formalized]) -> Iterator[_Event]
         elif state.state == UNKNOWN:
             yield event(state.ns, _WARNING, f"{id}: unknown from here on")
         elif before == OPEN and state.tick in answers:
-            waited = seconds(answers[state.tick] / _SECOND)
+            waited = duration(answers[state.tick] / _SECOND)
             yield event(state.ns, _INFO, f"{id}: answered after {waited}")
         elif before == UNKNOWN:
             yield event(state.ns, _INFO, f"{id}: known again")

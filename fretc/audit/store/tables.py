@@ -306,9 +306,7 @@ def _firsts(runs: pa.ChunkedArray, rows: Sequence[int]) -> list[bool]:
     """
     taken = _taken(runs, rows).to_pylist()
     before = _taken(runs, [max(0, row - 1) for row in rows]).to_pylist()
-    return [
-        row == 0 or run != last for row, run, last in zip(rows, taken, before, strict=True)
-    ]
+    return [row == 0 or run != last for row, run, last in zip(rows, taken, before, strict=True)]
 
 
 _NO_HEALTH = plain(Health(False, None, None, (), (), {}))

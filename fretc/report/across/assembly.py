@@ -5,9 +5,19 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from math import inf
 
-from fretc.audit.evidence.briefs import stretches
+from fretc.audit.evidence.briefs import Brief, stretches
 from fretc.audit.evidence.schema import Result, Threshold
-from fretc.report.across.lanes import Known, LanePlan, RunStretches, plan, with_marks
+from fretc.report.across.lanes import (
+    Known,
+    LanePlan,
+    RunStretches,
+    Tally,
+    left_out,
+    plan,
+    with_marks,
+    worst_first,
+    worst_runs,
+)
 from fretc.report.across.maps import MOST_MAPS, RunResult, run_map
 from fretc.report.across.uses import RunNumbers, uses
 from fretc.report.model import phrases
@@ -18,7 +28,7 @@ from fretc.report.model.pictures import WordLane
 from fretc.report.pictures.histograms import is_answered, seconds_allowed
 from fretc.report.sections.details import Details, Thresholds
 from fretc.report.sections.results import result_anchor
-from fretc.report.sections.runs import Run, RunKey, run_key
+from fretc.report.sections.runs import run_key
 
 _ROWS, _MARKS = 180, 1_500
 """Of the pictures of all requirements together."""
@@ -39,22 +49,18 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
     active = [a for a in details.assessments.values() if a.requirement.status != "retired"]
     most = max(_FEWEST, min(_MOST, _ROWS // max(1, len(active))))
     marks = max(10 * _FEWEST, _MARKS // max(1, len(active)))
-    of_all_requirements = [one for each in active for one in _results(each, details)]
     in_force = {assessment.anchor for assessment in active}
     chosen = {*[anchor for anchor in worst if anchor in in_force][:pictured]}
     several = [each for each in active if each.anchor in chosen and len(each.audits) > 1]
-    of_all = plan(
-        "All requirements, a lane for each run",
-        _in_order(of_all_requirements, details.runs),
-        courses={run.anchor: run.first for run in details.runs.values()},
-    )
+    tallies = _tallies(active, details)
+    of_all = _plan_of_all(active, tallies, details)
     plans = {each.anchor: _plan(each, details, most, marks) for each in several}
     known = _known(details, [at for each in (of_all, *plans.values()) for at in each.places])
     uses_of = {
         each.anchor: uses(*_numbers(each, details, thresholds, most))
         for each, thresholds in details.thresholds(plans)
     }
-    maps, maps_left_out = _maps(of_all_requirements, details)
+    maps, maps_left_out = _maps(active, tallies, details)
     return Across(
         of_all.lanes(known),
         tuple(
@@ -72,44 +78,6 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
     )
 
 
-def _maps(results: Sequence[RunStretches], details: Details) -> tuple[tuple[RunMap, ...], str]:
-    """The maps of the worst runs, and how many runs have none."""
-    grouped: dict[str, list[RunStretches]] = {}
-    for each in results:
-        grouped.setdefault(each.run, []).append(each)
-    judged = [of for of in grouped.values() if any(each.is_judged for each in of)]
-    ranked = sorted(judged, key=_badness)
-    firsts = {run.anchor: run.first for run in details.runs.values()}
-    drawn = list(filter(None, (_map(of, firsts, details) for of in ranked[:MOST_MAPS])))
-    left = ranked[MOST_MAPS:]
-    if not left or not drawn:
-        return tuple(drawn), ""
-    violations = sum(each.count[0] for of in left for each in of)
-    worst = min((each.mark for of in left for each in of), key=lambda mark: mark.severity)
-    return tuple(drawn), (
-        f"{phrases.times(len(left), 'run')} without a map, none of them worse: the worst is "
-        f"{worst.text}, with {phrases.times(violations, 'violation')}."
-    )
-
-
-def _badness(of: Sequence[RunStretches]) -> tuple[tuple[int, bool], int]:
-    return min(each.mark.severity for each in of), -sum(each.count[0] for each in of)
-
-
-def _map(
-    of: Sequence[RunStretches], firsts: Mapping[str, int], details: Details
-) -> RunMap | None:
-    """The map of a run; None where the evidence has no way of it."""
-    first = firsts[of[0].run]
-    violated = [each.place for each in of if each.count[0]]
-    found = details.evidence.details({first, *violated}) if details.evidence else ()
-    known = dict(found)
-    course = known[first].course
-    if not course or course.way is None:
-        return None
-    return run_map(course.way, [RunResult(each, known.get(each.place)) for each in of])
-
-
 def _plan(assessment: Assessment, details: Details, most: int, marks: int) -> LanePlan:
     """Of the runs that have anything to mark; the others are counted."""
     of = _results(assessment, details)
@@ -119,18 +87,99 @@ def _plan(assessment: Assessment, details: Details, most: int, marks: int) -> La
     return plan(f"{assessment.id} in its runs", marked, most, marks, note)
 
 
-def _in_order(
-    results: Sequence[RunStretches], runs: Mapping[RunKey, Run]
-) -> Sequence[RunStretches]:
-    """In the order of runs."""
-    places = {run.anchor: run.number for run in runs.values()}
-    return sorted(results, key=lambda each: places[each.run])
+def _plan_of_all(
+    active: Sequence[Assessment], tallies: Mapping[str, Tally], details: Details
+) -> LanePlan:
+    """Of the worst runs: of all others nothing is held but their number."""
+    chosen = {*worst_runs(tallies)}
+    left = [tally for run, tally in tallies.items() if run not in chosen]
+    of = _of_runs(active, details, chosen)
+    title = "All requirements, a lane for each run"
+    return plan(title, of, left=left, courses=_courses(details), ranked=bool(left))
+
+
+def _tallies(active: Sequence[Assessment], details: Details) -> Mapping[str, Tally]:
+    """Run → its worst verdict and what is counted, in the order of runs."""
+    tallies: dict[str, Tally] = {}
+    for each in active:
+        for audit in each.reviewed_audits:
+            run, known = details.runs[run_key(audit.result)].anchor, _count(audit.result)
+            before = tallies.get(run)
+            tallies[run] = (
+                before.with_one(audit.mark, known) if before else Tally(audit.mark, known)
+            )
+    return {
+        run.anchor: tallies[run.anchor] for run in details.runs.values() if run.anchor in tallies
+    }
+
+
+def _courses(details: Details) -> Mapping[str, int]:
+    """Run → the place of the result that has its course."""
+    return {run.anchor: run.first for run in details.runs.values()}
+
+
+# Maps ------------------------------------------------------------------------------------------
+
+
+def _maps(
+    active: Sequence[Assessment], tallies: Mapping[str, Tally], details: Details
+) -> tuple[tuple[RunMap, ...], str]:
+    """The maps of the worst runs, and how many runs have none; nothing else of those is read."""
+    judged = {
+        details.runs[run_key(audit.result)].anchor
+        for each in active
+        for audit in each.reviewed_audits
+        if audit.result.ticks
+    }
+    ranked = [run for run in tallies if run in judged]
+    ranked.sort(key=lambda run: worst_first(tallies[run]))
+    results: dict[str, list[RunStretches]] = {run: [] for run in ranked[:MOST_MAPS]}
+    for one in _of_runs(active, details, results):
+        results[one.run].append(one)
+    courses = _courses(details)
+    drawn = [_map(of, courses[run], details) for run, of in results.items()]
+    maps = tuple(each for each in drawn if each is not None)
+    if not maps:
+        return (), ""
+    left = left_out([tallies[run] for run in ranked[MOST_MAPS:]], "no map")
+    unknown = len(drawn) - len(maps)
+    verb = "has" if unknown == 1 else "have"
+    lost = f"{phrases.times(unknown, 'run')} {verb} no map, because no way is known."
+    return maps, " ".join(filter(None, [left, lost if unknown else ""]))
+
+
+def _map(of: Sequence[RunStretches], first: int, details: Details) -> RunMap | None:
+    """The map of a run; None where the evidence has no way of it.
+
+    Args:
+        of: all its results.
+        first: the place of the one that has its course.
+        details: the evidence.
+    """
+    violated = [each.place for each in of if each.count[0]]
+    found = dict(details.evidence.details({first, *violated}) if details.evidence else ())
+    course = found[first].course
+    if not course or course.way is None:
+        return None
+    return run_map(course.way, [RunResult(each, found.get(each.place)) for each in of])
 
 
 # What the evidence says ------------------------------------------------------------------------
 
 
-def _results(assessment: Assessment, details: Details) -> list[RunStretches]:
+def _of_runs(
+    active: Sequence[Assessment], details: Details, runs: Collection[str]
+) -> list[RunStretches]:
+    """The results of some runs, by their anchors, in the order of all runs."""
+    places = {run.anchor: run.number for run in details.runs.values()}
+    found = [one for each in active for one in _results(each, details, runs)]
+    return sorted(found, key=lambda one: places[one.run])
+
+
+def _results(
+    assessment: Assessment, details: Details, of: Collection[str] | None = None
+) -> list[RunStretches]:
+    """Those of some runs, by their anchors; None: of all."""
     return [
         RunStretches(
             run.anchor,
@@ -142,11 +191,16 @@ def _results(assessment: Assessment, details: Details) -> list[RunStretches]:
             audit.mark,
             audit.place,
             audit.result.ticks > 0,
-            (audit.result.violations, audit.result.unknown, audit.result.open),
+            _count(audit.result),
         )
         for number, audit in enumerate(assessment.reviewed_audits, 1)
         for run in [details.runs[run_key(audit.result)]]
+        if of is None or run.anchor in of
     ]
+
+
+def _count(result: Brief) -> tuple[int, int, int]:
+    return result.violations, result.unknown, result.open
 
 
 def _numbers(

@@ -55,6 +55,27 @@ class RunStretches:
 
 
 @dataclass(frozen=True, slots=True)
+class Tally:
+    """A run before its results are looked at: the worst verdict, and what is counted."""
+
+    mark: Mark
+    count: tuple[int, int, int]
+
+    def with_one(self, mark: Mark, count: tuple[int, int, int]) -> Tally:
+        """The same with one more result."""
+        worst = min(self.mark, mark, key=lambda each: each.severity)
+        a, b, c = self.count
+        return Tally(worst, (a + count[0], b + count[1], c + count[2]))
+
+
+def worst_runs(tallies: Mapping[str, Tally], most: int = MOST_LANES) -> Sequence[str]:
+    """The runs that have a lane, the worst where they are too many; else all, in their order."""
+    if len(tallies) <= most:
+        return [*tallies]
+    return sorted(tallies, key=lambda run: worst_first(tallies[run]))[:most]
+
+
+@dataclass(frozen=True, slots=True)
 class _Lane:
     """A run before its marks are made."""
 
@@ -108,7 +129,7 @@ class LanePlan:
 
     title: str
     chosen: tuple[_Lane, ...]
-    left: tuple[_Lane, ...]
+    left: tuple[Tally | _Lane, ...]
     marks: int
     """About how many marks there may be."""
     note: str
@@ -130,9 +151,9 @@ class LanePlan:
         if not end:
             return None
         drawn = _drawn(chosen, end, self.marks)
-        left_out = " ".join(filter(None, [_left_out(self.left), self.note]))
-        text = " ".join(filter(None, [_in_words(chosen), left_out]))
-        return Lanes(self.title, max(round(end, 6), 1e-6), drawn, left_out, text)
+        others = " ".join(filter(None, [left_out(self.left, "no lane"), self.note]))
+        text = " ".join(filter(None, [_in_words(chosen), others]))
+        return Lanes(self.title, max(round(end, 6), 1e-6), drawn, others, text)
 
 
 def plan(
@@ -141,7 +162,10 @@ def plan(
     most: int = MOST_LANES,
     marks: int = _MOST_MARKS,
     note: str = "",
+    left: Sequence[Tally] = (),
     courses: Mapping[str, int] = NO_COURSES,
+    *,
+    ranked: bool = False,
 ) -> LanePlan:
     """Choose the runs that have a lane: all, or the worst.
 
@@ -151,14 +175,17 @@ def plan(
         most: lanes.
         marks: about how many marks there may be.
         note: what else to say of runs without a lane.
+        left: runs that have no lane in any case, none of them worse than the others.
         courses: run → place of the result that has its signals of words.
+        ranked: whether the worst come first, though they are few.
     """
     grouped: dict[str, list[RunStretches]] = {}
     for each in results:
         grouped.setdefault(each.run, []).append(each)
     every = [_Lane(tuple(of), courses.get(run)) for run, of in grouped.items()]
-    ranked = every if len(every) <= most else sorted(every, key=_worst_first)
-    return LanePlan(title, tuple(ranked[:most]), tuple(ranked[most:]), marks, note)
+    sort = ranked or len(every) > most
+    ordered = sorted(every, key=worst_first) if sort else every
+    return LanePlan(title, tuple(ordered[:most]), (*ordered[most:], *left), marks, note)
 
 
 def with_marks(results: Sequence[RunStretches]) -> list[RunStretches]:
@@ -166,7 +193,8 @@ def with_marks(results: Sequence[RunStretches]) -> list[RunStretches]:
     return [each for each in results if any(each.count)]
 
 
-def _worst_first(lane: _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
+def worst_first(lane: Tally | _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
+    """The key that sorts runs."""
     return lane.mark.severity, tuple(-count for count in lane.count)
 
 
@@ -251,20 +279,20 @@ def _worded(mark: LaneMark) -> LaneMark:
     )
 
 
-def _left_out(left: Sequence[_Lane]) -> str:
-    """How many runs have no lane, and the worst verdict among them."""
+def left_out(left: Sequence[Tally | _Lane], what: str) -> str:
+    """How many runs have no lane or no map, and the worst verdict among them."""
     if not left:
         return ""
     worst = min((lane.mark for lane in left), key=lambda mark: mark.severity)
     counted = _counted(left)
     verb = "has" if len(left) == 1 else "have"
     return (
-        f"{phrases.times(len(left), 'run')} {verb} no lane, and none is worse than those with one: "
+        f"{phrases.times(len(left), 'run')} {verb} {what}, and none is worse than those with one: "
         f"the worst is {worst.text}{f', with {counted}' if counted else ''}."
     )
 
 
-def _counted(lanes: Sequence[_Lane]) -> str:
+def _counted(lanes: Sequence[Tally | _Lane]) -> str:
     violations, unknown, waiting = (
         sum(each) for each in zip(*(x.count for x in lanes), strict=True)
     )
@@ -278,7 +306,7 @@ def _counted(lanes: Sequence[_Lane]) -> str:
 
 def _in_words(lanes: Sequence[_Lane]) -> str:
     """Each of the worst runs with what it has, the others by their number."""
-    bad = sorted((lane for lane in lanes if any(lane.count)), key=_worst_first)
+    bad = sorted((lane for lane in lanes if any(lane.count)), key=worst_first)
     named = [f"{lane.first.label} ({lane.first.file}): {_counted([lane])}" for lane in bad[:_NAMED]]
     rest = _counted(bad[_NAMED:]) if len(bad) > _NAMED else ""
     more = f"{phrases.times(len(bad) - _NAMED, 'more run')}: {rest}" if rest else ""

@@ -24,18 +24,17 @@ class RunResult:
     """A result of a run with a way, and what names it."""
 
     of: RunStretches
-    result: Result
+    result: Result | None
+    """None: it was not read, because it has no violation."""
 
 
-def run_map(results: Sequence[RunResult]) -> RunMap | None:
-    """The map of a run; None where the evidence has no way of it.
+def run_map(way: Way, results: Sequence[RunResult]) -> RunMap | None:
+    """The map of a run; None where its way has no point.
 
     Args:
-        results: all of one run.
+        way: of the run.
+        results: all of it.
     """
-    way = next((one.result.course.way for one in results if one.result.course), None)
-    if way is None:
-        return None
     lines = tuple(
         tuple(zip(map(float, way.x[first:end]), map(float, way.y[first:end]), strict=True))
         for first, end in pairwise((*way.starts, len(way.times_ns)))
@@ -44,7 +43,7 @@ def run_map(results: Sequence[RunResult]) -> RunMap | None:
     if not points:
         return None
     placed = [mark for one in results for mark in _marks(one, way)]
-    total = sum(len(one.result.violations) for one in results)
+    total = sum(one.of.count[0] for one in results)
     marks = tuple(_worded(mark) for mark in _merged(placed, _NEAR * extent(points)))
     first = results[0].of
     worst = min((one.of.mark for one in results), key=lambda mark: mark.severity)
@@ -60,7 +59,8 @@ def extent(points: Iterable[tuple[float, float]]) -> float:
 
 
 def _marks(one: RunResult, way: Way) -> Iterable[PlaceMark]:
-    for number, violation in enumerate(one.result.violations, 1):
+    violations = one.result.violations if one.result else ()
+    for number, violation in enumerate(violations, 1):
         at = place(way, violation.start_ns)
         if at is not None:
             yield PlaceMark(

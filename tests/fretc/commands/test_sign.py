@@ -48,7 +48,7 @@ def project(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
         write("requirements/bindings.toml", BINDINGS)
         log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0)
         log("logs/bad.mcap", 0, 1.5, 0, 0, 0, 0)
-        assert fretc("audit", "logs").status == 1
+        assert fretc("audit", "logs", "-o", "build/evidence.json").status == 1
         for name in ("ada", "bob"):
             keys.written(name)
         _MADE.update((str(p), p.read_bytes()) for p in Path().rglob("*") if p.is_file())
@@ -260,7 +260,7 @@ def test_a_reviewer_signs_with_the_lock(project: Fretc) -> None:
     assert marks["r1"]["kind"] == "satisfied"
     assert marks["r2"] == {"word": "reviewed", "glyph": "◔", "kind": "inconclusive",
                            "suspect": False}  # fmt: skip
-    assert "reviewed, unauthenticated" in Path("r.md").read_text()
+    assert "review r2, by Bob: nobody signed it" in Path("r.md").read_text()
 
 
 def test_the_page_says_whose_keys_count_as_ssh_keygen_prints_them(project: Fretc) -> None:
@@ -383,7 +383,7 @@ def test_a_signature_that_does_not_verify_is_red_everywhere(project: Fretc) -> N
     assert told["overall"]["mark"]["word"] == "does not verify"
     assert told["overall"]["headline"] == f"1 signature does not verify: {place}."
     assert "does not verify" in Path("build/report.html").read_text()
-    assert f"- ✘ signature {LOCK}.intoto.jsonl\\:1" in Path("r.md").read_text()
+    assert f"✘ signature {LOCK}.intoto.jsonl\\:1: " in Path("r.md").read_text()
 
 
 def test_a_forgery_beside_a_good_signature_fails_where_a_key_is_asked_for(

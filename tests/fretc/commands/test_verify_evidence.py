@@ -33,7 +33,7 @@ def audited(fretc: Fretc) -> Fretc:
     write("requirements/bindings.toml", BINDINGS)
     log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0)
     log("logs/bad.mcap", 0, 1.5, 0, 0, 0, 0)
-    assert fretc("audit", "logs").status == 1
+    assert fretc("audit", "logs", "-o", "build/evidence.json").status == 1
     return fretc
 
 
@@ -49,7 +49,7 @@ def test_evidence_that_nobody_touched_stands(audited: Fretc) -> None:
 
 @pytest.mark.slow
 def test_evidence_is_made_again_as_closely_as_it_claims(audited: Fretc) -> None:
-    assert audited("audit", "logs", "--integrity", "full").status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json", "--integrity", "full").status == 1
     assert audited("verify-evidence").status == 0
     known = json.loads(Path("build/evidence.json").read_text())
     for result in known["results"]:
@@ -60,7 +60,7 @@ def test_evidence_is_made_again_as_closely_as_it_claims(audited: Fretc) -> None:
 
 @pytest.mark.slow
 def test_what_was_never_hashed_does_not_stand(audited: Fretc) -> None:
-    assert audited("audit", "logs", "--integrity", "index").status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json", "--integrity", "index").status == 1
     run = audited("verify-evidence")
     assert run.status == 3
     assert "? r1  not checked: its log was read by its index, and never hashed\n" in run.out
@@ -94,7 +94,7 @@ def test_another_log_under_the_same_name_is_found(audited: Fretc) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("looked", ["index", "hash", "full"])
 def test_another_log_of_the_same_verdicts_is_found(audited: Fretc, looked: str) -> None:
-    assert audited("audit", "logs", "--integrity", looked).status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json", "--integrity", looked).status == 1
     log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0.5)
     run = audited("verify-evidence")
     assert run.status == 1
@@ -181,7 +181,7 @@ def test_what_the_file_says_before_its_results_is_compared(
 @pytest.mark.slow
 def test_a_result_that_was_taken_out_is_found(audited: Fretc) -> None:
     write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
-    assert audited("audit", "logs").status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json").status == 1
     results = json.loads(Path("build/evidence.json").read_text())["results"]
     worst = next(i for i, one in enumerate(results) if one["verdict"] == "violated")
     del results[worst]
@@ -353,7 +353,7 @@ def test_a_run_that_was_reviewed_is_missed(audited: Fretc) -> None:
 def test_a_log_in_place_of_the_one_that_was_reviewed_is_found(audited: Fretc) -> None:
     assert audited("lock", *BY).status == 0
     log("logs/bad.mcap", 0, 1.5, 3, 0, 0, 0.5)
-    assert audited("audit", "logs").status == 0
+    assert audited("audit", "logs", "-o", "build/evidence.json").status == 0
     run = audited("verify-evidence")
     assert run.status == 1
     assert "logs/bad.mcap\n  ✘ r1  differs: its log is not the one that was reviewed\n" in run.out
@@ -364,23 +364,23 @@ def test_a_log_in_place_of_the_one_that_was_reviewed_is_found(audited: Fretc) ->
 def test_a_log_is_the_reviewed_one_however_closely_it_was_looked_at(
     audited: Fretc, then: str, now: str
 ) -> None:
-    assert audited("audit", "logs", "--integrity", then).status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json", "--integrity", then).status == 1
     assert audited("lock", *BY).status == 0
-    assert audited("audit", "logs", "--integrity", now).status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json", "--integrity", now).status == 1
     run = audited("verify-evidence", "--format", "json")
     assert json.loads(run.out)["counts"]["differs"] == 0
     log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0.5)
-    assert audited("audit", "logs", "--integrity", now).status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json", "--integrity", now).status == 1
     assert "is not the one that was reviewed" in audited("verify-evidence").out
 
 
 @pytest.mark.slow
 def test_a_requirement_that_was_reviewed_and_is_gone_is_missed(audited: Fretc) -> None:
     write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
-    assert audited("audit", "logs").status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json").status == 1
     assert audited("lock", *BY).status == 0
     Path("requirements/r2.fret").unlink()
-    assert audited("audit", "logs").status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json").status == 1
     run = audited("verify-evidence")
     assert run.status == 1
     assert "r2  differs: it was claimed when it was reviewed, and is not any more\n" in run.out
@@ -419,7 +419,7 @@ def test_a_manifest_is_read_as_sha256sum_reads_it(
     audited: Fretc, line: str, status: int, told: str
 ) -> None:
     Path("logs/bad.mcap").unlink()
-    assert audited("audit", "logs").status == 0
+    assert audited("audit", "logs", "-o", "build/evidence.json").status == 0
     good = hashlib.sha256(Path("logs/good.mcap").read_bytes()).hexdigest()
     manifested(line.format(good=good, GOOD=good.upper()))
     run = audited("verify-evidence", "--manifest", "logs.sha256")
@@ -430,7 +430,7 @@ def test_a_manifest_is_read_as_sha256sum_reads_it(
 @pytest.mark.slow
 def test_names_that_sha256sum_escapes_are_read(audited: Fretc) -> None:
     Path("logs/bad.mcap").rename("logs/a\\b\n.mcap")
-    assert audited("audit", "logs").status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json").status == 1
     paths = sorted(Path("logs").iterdir())
     manifested(
         *(
@@ -464,7 +464,7 @@ def test_proofs_are_made_again(audited: Fretc) -> None:
 @pytest.mark.slow
 def test_a_proof_that_is_planned_and_is_not_there_is_missed(audited: Fretc) -> None:
     write("requirements/r1.fret", f'+++\nid = "r1"\nverify = ["audit", "loop", "desk"]\n+++\n{R1}')
-    assert audited("audit", "logs").status == 1
+    assert audited("audit", "logs", "-o", "build/evidence.json").status == 1
     run = audited("verify-evidence")
     assert run.status == 3
     assert "r1  not checked: r1 plans `loop` and no proof says anything of it\n" in run.out
