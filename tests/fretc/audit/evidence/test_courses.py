@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from compiler.files.records import plain
 from fretc.audit.evidence.courses import course, place
-from fretc.audit.evidence.reader import read
+from fretc.audit.evidence.reader import Evidence, read
 from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, Result, Way
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.declarations import Declarations
