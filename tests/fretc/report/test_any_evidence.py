@@ -153,7 +153,7 @@ def outcomes(draw: st.DrawFn) -> dict[str, Any]:
         "thresholds": draw(st.lists(thresholds(), max_size=3)),
         "hashes": draw(st.sampled_from([*CHANGED.values()])),
         "health": {"intact": draw(st.booleans())},
-        **draw(st.just({}) | st.fixed_dictionaries({"course": courses()})),
+        **draw(st.fixed_dictionaries({}, optional={"course": courses()})),
     }
 
 
