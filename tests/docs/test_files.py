@@ -131,6 +131,7 @@ TABLES = {
     "variable.NAME": reader._VARIABLE,
     "interceptor": interceptor._INTERCEPTOR,
     "assume": interceptor._ASSUME,
+    "map": reader._MAP,
     "run": reader._RUN,
     "hazards.toml": hazards._FIELDS,
     "waivers.toml": waivers._FIELDS,
@@ -184,6 +185,7 @@ LEAST: Mapping[str, Table] = {
     "variable.NAME": {},
     "interceptor": {"stop": "/s", "command": "/c", "output": "/o", "period": "10 ms"},
     "assume": {"stands": "stopped", "latency": "1 s", "braking": "1 s"},
+    "map": {"x": "/at.x", "y": "/at.y"},
     "run": {},
     "hazards.toml": {"title": "t"},
     "waivers.toml": {
