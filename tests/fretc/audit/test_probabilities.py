@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import pytest
 from mcap.writer import CompressionType
 
-from tests.command import Fretc, untimed, write
+from tests.command import Fretc, Run, untimed, write
 from tests.fretc.audit.measurements.test_count_trials import fillings
 from tests.fretc.logs.logs import MS, S, number
 from tests.fretc.logs.logs import write as write_log
@@ -44,7 +44,14 @@ def fretc(fretc: Fretc) -> Fretc:
     """Run the command in a folder with bindings of c and r, and one requirement."""
     write("requirements/bindings.toml", BINDINGS)
     require(WITHIN)
-    return fretc
+
+    def run(command: str, *arguments: str) -> Run:
+        """With evidence of several logs in one file, too."""
+        named = {"-o", "--evidence", "--summary"} & {*arguments}
+        more = () if command != "audit" or named else ("-o", "build/evidence.json")
+        return fretc(command, *arguments, *more)
+
+    return run
 
 
 def require(sentence: str, id: str = "R7") -> None:
@@ -88,9 +95,9 @@ def counts() -> tuple[int, int, int]:
 @pytest.mark.slow
 def test_many_answers_support_it(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
-    run = fretc("audit", "runs", "-o", "build/evidence.json")
+    run = fretc("audit", "runs")
     assert (run.status, run.err) == (0, "wrote build/evidence.json\n")
-    listed = fretc("audit", "runs", "-o", "build/evidence.json", "-v").out
+    listed = fretc("audit", "runs", "-v").out
     assert listed.startswith(
         "runs/000.mcap\n"
         "  ◔ R7  inconclusive  1 of 1 trigger answered: judged over all runs\n"
@@ -115,7 +122,7 @@ def test_many_answers_support_it(fretc: Fretc) -> None:
 def test_a_violated_trigger_alone_is_no_violation_and_its_place_is_kept(fretc: Fretc) -> None:
     logs(40, "1000", "0100")
     log("runs/bad.mcap", "0010000", "0000000")
-    run = fretc("audit", "runs", "-o", "build/evidence.json", "-v")
+    run = fretc("audit", "runs", "-v")
     assert run.status == 3
     assert "◔ R7  inconclusive  0 of 1 trigger answered, 1 failed: judged over all runs" in run.out
     assert "at least 29 more logs, all triggers answered, would be needed" in run.out
@@ -130,7 +137,7 @@ def test_a_violated_trigger_alone_is_no_violation_and_its_place_is_kept(fretc: F
 @pytest.mark.slow
 def test_many_failures_refute_it(fretc: Fretc) -> None:
     logs(20, "10001000", "01000001")
-    run = fretc("audit", "runs", "-o", "build/evidence.json")
+    run = fretc("audit", "runs")
     assert run.status == 1
     assert "  ✘ refuted       it lies between 0.4220 and 0.5780, so not >= 0.9\n" in run.out
     assert run.err == "wrote build/evidence.json\n"
@@ -140,7 +147,7 @@ def test_many_failures_refute_it(fretc: Fretc) -> None:
 @pytest.mark.slow
 def test_so_few_logs_cannot_support_it_however_many_triggers_they_have(fretc: Fretc) -> None:
     logs(32, "1000" * 20, "0100" * 20)
-    run = fretc("audit", "runs", "-o", "build/evidence.json")
+    run = fretc("audit", "runs")
     assert (run.status, run.err) == (
         3,
         "F506 warning: the probability of R7 is estimated from 32 logs with a trigger\n"
@@ -150,7 +157,7 @@ def test_so_few_logs_cannot_support_it_however_many_triggers_they_have(fretc: Fr
     assert "    640 of 640 triggers answered, 0 failed, 0 open, in 32 logs\n" in run.out
     assert "    at least 1 more log, all triggers answered, would be needed\n" in run.out
     logs(33, "1000" * 20, "0100" * 20)
-    assert fretc("audit", "runs", "-o", "build/evidence.json").status == 0
+    assert fretc("audit", "runs").status == 0
 
 
 def test_the_counts_are_those_of_the_truth_columns(fretc: Fretc) -> None:
@@ -165,7 +172,7 @@ def test_the_counts_are_those_of_the_truth_columns(fretc: Fretc) -> None:
             if c[t] == "1":
                 ahead = r[t : t + 3]
                 expected[0 if "1" in ahead else 1 if len(ahead) == 3 else 2] += 1
-    fretc("audit", "runs", "-o", "build/evidence.json")
+    fretc("audit", "runs")
     assert counts() == tuple(expected)
     assert min(expected) > 0
 
@@ -205,7 +212,7 @@ def test_no_sentence_with_a_probability_ends_an_audit_and_each_is_counted(fretc:
 def test_what_no_run_can_meet_is_failed_at_each_trigger(fretc: Fretc) -> None:
     require("whenever c the robot shall with probability >= 0.9 finally satisfy false")
     logs(3, "1010", "0000")
-    run = fretc("audit", "runs", "-o", "build/evidence.json", "-v")
+    run = fretc("audit", "runs", "-v")
     assert run.status == 1
     assert "◔ R7  inconclusive  0 of 2 triggers answered, 2 failed: judged over all runs" in run.out
     assert counts() == (0, 6, 0)
@@ -214,10 +221,10 @@ def test_what_no_run_can_meet_is_failed_at_each_trigger(fretc: Fretc) -> None:
 @pytest.mark.slow
 def test_what_is_unknown_in_the_middle_is_open_and_damage_withholds_support(fretc: Fretc) -> None:
     logs(60, "1" * 20, "1" * 20)
-    assert fretc("audit", "runs", "-o", "build/evidence.json").status == 0
+    assert fretc("audit", "runs").status == 0
     path = Path(log("runs/cut.mcap", "1" * 20, "1" * 20, per_chunk=8))
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
-    run = fretc("audit", "runs", "-o", "build/evidence.json")
+    run = fretc("audit", "runs")
     assert run.status == 3
     assert "1 log is damaged or could not be read: what is lost could speak against it" in run.out
     answered, failed, _ = counts()
@@ -230,7 +237,7 @@ def test_damage_hides_no_failure_that_was_seen(fretc: Fretc) -> None:
     logs(40, "1000", "0001")
     path = Path(log("runs/cut.mcap", "1000" * 50, "0001" * 50, per_chunk=40))
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
-    assert fretc("audit", "runs", "-o", "build/evidence.json").status == 1
+    assert fretc("audit", "runs").status == 1
 
 
 def test_a_topic_that_falls_silent_leaves_triggers_open(fretc: Fretc) -> None:
@@ -249,7 +256,7 @@ def test_a_topic_that_falls_silent_leaves_triggers_open(fretc: Fretc) -> None:
 def test_a_copy_of_a_log_counts_once(fretc: Fretc) -> None:
     logs(28, "1000", "0100")
     shutil.copy("runs/000.mcap", "runs/copy.mcap")
-    assert fretc("audit", "runs", "-o", "build/evidence.json").status == 3
+    assert fretc("audit", "runs").status == 3
     assert (counts(), estimate()["logs"]["copies"]) == ((28, 0, 0), 1)
 
 
@@ -268,7 +275,7 @@ def test_a_log_that_was_written_again_counts_once(fretc: Fretc, integrity: str) 
     write_log(Path("runs/chunks.mcap"), unnoted, per_chunk=1)
     write_log(Path("runs/loose.mcap"), unnoted, compression=CompressionType.NONE)
     write_log(Path("runs/bare.mcap"), unnoted, data_crcs=True, statistics=False)
-    assert fretc("audit", "runs", "-o", "build/evidence.json", "--integrity", integrity).status == 3
+    assert fretc("audit", "runs", "--integrity", integrity).status == 3
     assert (counts(), estimate()["logs"]["copies"]) == ((28, 0, 0), 4)
 
 
@@ -283,7 +290,7 @@ def test_runs_that_differ_in_a_value_or_a_time_are_no_copies(fretc: Fretc) -> No
             for topic, value in zip(("/c", "/r"), values, strict=True)
         ],
     )
-    fretc("audit", "runs", "-o", "build/evidence.json")
+    fretc("audit", "runs")
     assert estimate()["logs"]["copies"] == 0
     assert estimate()["logs"]["counted"] == 3
 
@@ -303,19 +310,19 @@ def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:
         assert estimate() == first
 
 
-def test_what_was_kept_of_a_stopped_audit_counts(fretc: Fretc) -> None:
+def test_a_log_that_is_written_anew_counts_anew(fretc: Fretc) -> None:
     logs(3, "1000", "0100")
-    fretc("audit", "runs", "-o", "build/evidence.json", "--resume")
+    fretc("audit", "runs")
     content = Path("build/evidence.json").read_bytes()
     log("runs/001.mcap", "10000", "00000")
-    fretc("audit", "runs", "-o", "build/evidence.json", "--resume")
+    fretc("audit", "runs")
     assert Path("build/evidence.json").read_bytes() != content
     assert counts() == (2, 1, 0)
 
 
 def test_without_a_trigger_nothing_is_known(fretc: Fretc) -> None:
     logs(2, "0000", "0100")
-    run = fretc("audit", "runs", "-o", "build/evidence.json", "-v")
+    run = fretc("audit", "runs", "-v")
     assert run.status == 3
     assert "∅ R7  vacuous" in run.out
     assert "◔ inconclusive  there was no trigger\n" in run.out
@@ -326,7 +333,7 @@ def test_without_a_trigger_nothing_is_known(fretc: Fretc) -> None:
 def test_an_unreadable_log_is_bad_input_and_supports_nothing(fretc: Fretc) -> None:
     logs(40, "1000", "0100")
     write("runs/bad.mcap", "no log")
-    run = fretc("audit", "runs", "-o", "build/evidence.json")
+    run = fretc("audit", "runs")
     assert run.status == 2
     assert (estimate()["answer"], estimate()["logs"]["damaged"]) == (
         "inconclusive",
@@ -337,23 +344,21 @@ def test_an_unreadable_log_is_bad_input_and_supports_nothing(fretc: Fretc) -> No
 @pytest.mark.slow
 def test_the_stated_confidence_is_used(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
-    assert fretc("audit", "runs", "-o", "build/evidence.json", "--confidence", "0.99").status == 3
+    assert fretc("audit", "runs", "--confidence", "0.99").status == 3
     assert estimate()["confidence"] == 0.99
     assert " --confidence 0.99 -o " in json.dumps(reported(fretc)["commands"])
-    assert fretc("audit", "runs", "-o", "build/evidence.json", "--confidence", "0.9").status == 0
+    assert fretc("audit", "runs", "--confidence", "0.9").status == 0
     for value in ("0.5", "1", "95", "x"):
-        assert (
-            fretc("audit", "runs", "-o", "build/evidence.json", "--confidence", value).status == 2
-        )
+        assert fretc("audit", "runs", "--confidence", value).status == 2
 
 
 @pytest.mark.slow
 def test_beside_other_requirements_each_is_judged_its_way(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
     require("whenever c the robot shall within 2 ticks satisfy r", "R8")
-    assert fretc("audit", "runs", "-o", "build/evidence.json").status == 0
+    assert fretc("audit", "runs").status == 0
     require("whenever c the robot shall immediately satisfy r", "R9")
-    run = fretc("audit", "runs", "-o", "build/evidence.json")
+    run = fretc("audit", "runs")
     assert run.status == 1
     assert "✔ supported" in run.out
     kinds = {(r["requirement"], "trials" in r) for r in evidence()["results"]}
@@ -385,9 +390,7 @@ def test_the_monitor_of_one_run_is_refused_still(fretc: Fretc) -> None:
 
 def test_json_has_runs_and_probabilities_by_name(fretc: Fretc) -> None:
     logs(2, "1000", "0100")
-    content = json.loads(
-        fretc("audit", "runs", "-o", "build/evidence.json", "--format", "json").out
-    )
+    content = json.loads(fretc("audit", "runs", "--format", "json").out)
     assert content == {name: evidence()[name] for name in ("results", "probabilities")}
 
 
@@ -395,9 +398,7 @@ def test_json_has_runs_and_probabilities_by_name(fretc: Fretc) -> None:
 @pytest.mark.parametrize(("r", "kinds"), [("0100", []), ("0001", ["failure"])])
 def test_junit_has_a_suite_of_all_runs(fretc: Fretc, r: str, kinds: Sequence[str]) -> None:
     logs(33, "1000", r)
-    *_, suite = ElementTree.fromstring(
-        fretc("audit", "runs", "-o", "build/evidence.json", "--format", "junit").out
-    )
+    *_, suite = ElementTree.fromstring(fretc("audit", "runs", "--format", "junit").out)
     (case,) = suite
     assert (suite.get("name"), suite.get("failures")) == ("all runs", str(len(kinds)))
     assert [child.tag for child in case] == kinds
@@ -406,17 +407,13 @@ def test_junit_has_a_suite_of_all_runs(fretc: Fretc, r: str, kinds: Sequence[str
 @pytest.mark.slow
 def test_github_and_sarif_say_it_at_the_sentence_once_and_runs_are_no_alerts(fretc: Fretc) -> None:
     logs(30, "1000", "0001")
-    lines = fretc(
-        "audit", "runs", "-o", "build/evidence.json", "--format", "github"
-    ).out.splitlines()
+    lines = fretc("audit", "runs", "--format", "github").out.splitlines()
     assert [line.split(" ")[0] for line in lines] == ["::notice"] * 30 + ["::error"]
     assert lines[-1].startswith(
         "::error file=requirements/R7.fret,line=5,title=R7 refuted::all runs"
     )
     assert AVERAGE in lines[-1]
-    (run,) = json.loads(
-        fretc("audit", "runs", "-o", "build/evidence.json", "--format", "sarif").out
-    )["runs"]
+    (run,) = json.loads(fretc("audit", "runs", "--format", "sarif").out)["runs"]
     assert [(one["kind"], one["level"]) for one in run["results"]] == [("fail", "error")]
 
 
@@ -431,7 +428,7 @@ def reported(fretc: Fretc) -> Any:
 @pytest.mark.slow
 def test_the_report_shows_the_interval_and_the_bound(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
-    fretc("audit", "runs", "-o", "build/evidence.json")
+    fretc("audit", "runs")
     content = reported(fretc)
     (section,) = content["requirements"]
     assert section["mark"]["word"] == section["probability"]["mark"]["word"] == "supported"
@@ -449,7 +446,7 @@ def test_the_report_shows_the_interval_and_the_bound(fretc: Fretc) -> None:
 @pytest.mark.slow
 def test_the_report_of_a_refuted_one_is_broken(fretc: Fretc) -> None:
     logs(30, "1000", "0001")
-    fretc("audit", "runs", "-o", "build/evidence.json")
+    fretc("audit", "runs")
     content = reported(fretc)
     assert content["overall"]["headline"] == "R7 is refuted."
     assert content["requirements"][0]["reasons"] == [
@@ -460,7 +457,7 @@ def test_the_report_of_a_refuted_one_is_broken(fretc: Fretc) -> None:
 @pytest.mark.slow
 def test_evidence_that_does_not_add_up_is_suspect(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
-    fretc("audit", "runs", "-o", "build/evidence.json")
+    fretc("audit", "runs")
     content = evidence()
     content["probabilities"][0]["triggers"]["failed"] = 3
     write("build/evidence.json", json.dumps(content))
@@ -484,7 +481,7 @@ def test_evidence_with_a_bound_that_is_none_cannot_be_read(fretc: Fretc, bound: 
 @pytest.mark.slow
 def test_what_all_runs_say_is_made_again_with_the_evidence(fretc: Fretc) -> None:
     logs(2, "1000", "0000")
-    assert fretc("audit", "runs", "-o", "build/evidence.json", "--confidence", "0.9").status == 1
+    assert fretc("audit", "runs", "--confidence", "0.9").status == 1
     run = fretc("verify-evidence")
     assert run.status == 0
     assert "all runs\n  ✔ R7  stands\n" in run.out
@@ -524,7 +521,7 @@ def test_a_report_fails_where_all_runs_refute_and_passes_where_they_support(
 ) -> None:
     require(WITHIN.replace("0.9", "0.5"))
     logs(8 if len(answers) > 1 else 1, "10"[: len(answers)] + "000", f"{answers}000")
-    fretc("audit", "runs", "-o", "build/evidence.json")
+    fretc("audit", "runs")
     assert fretc("report", "--strict", "--junit", "r.xml").status == status
     (case,), *runs = ElementTree.parse("r.xml").getroot()
     assert [child.tag for child in case] == kinds

@@ -11,8 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fretc.audit.evidence.briefs import brief
 from fretc.audit.evidence.schema import Result
-from fretc.audit.outputs.totals import severity, sign_of, word_of
+from fretc.audit.outputs.totals import Marks, severity, sign_of, word_of
 from fretc.commands.audit_table import MOST_NAMES, MOST_REQUIREMENTS, MOST_RUNS, table
 from fretc.terminal.screen import Screen, width
 from tests.command import Fretc, untimed, write
@@ -25,7 +26,7 @@ ROOT = Path(__file__).parents[3]
 
 def shown(results: list[Result], columns: int = 80, encoding: str = "utf-8") -> list[str]:
     screen = Screen(columns, encoding)
-    lines = table(results, (), (), screen)
+    lines = table(Marks.of(map(brief, results)), screen)
     return [screen.signs("".join(text for text, _ in line)) for line in lines]
 
 

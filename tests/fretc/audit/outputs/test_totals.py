@@ -5,16 +5,17 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fretc.audit.evidence.briefs import brief
 from fretc.audit.evidence.schema import Result
 from fretc.audit.outputs.totals import (
     COUNTED,
     NOT_JUDGED,
+    Marks,
     longest,
     runs,
     severity,
     totals,
     word_of,
-    worst,
 )
 from tests.fretc.audit.results import result
 
@@ -39,7 +40,7 @@ def audits(most: int = 6) -> st.SearchStrategy[list[Result]]:
 
 @given(audits(), st.sets(st.sampled_from(["R0", "R3"])))
 def test_each_result_is_in_exactly_one_count(results: list[Result], refused: set[str]) -> None:
-    counts = totals(results, (), refused)
+    counts = totals(Marks.of(map(brief, results), (), refused))
     assert sum(total.results for total in counts) == len(results)
     assert len({total.word for total in counts}) == len(counts)
     for total in counts:
@@ -54,22 +55,25 @@ def test_each_result_is_in_exactly_one_count(results: list[Result], refused: set
 @given(audits())
 def test_what_is_violated_is_counted_first_and_named(results: list[Result]) -> None:
     violated = [each for each in results if each.verdict == "violated"]
-    first = worst(results)
+    marks = Marks.of(map(brief, results))
     if violated:
-        assert totals(results)[0].word == "violated"
-        assert first is violated[0]
-    assert (first is None) == all(each.verdict == "satisfied" for each in results)
+        assert totals(marks)[0].word == "violated"
+        assert marks.worst is not None
+        assert results[marks.worst] is violated[0]
+    assert (marks.worst is None) == all(each.verdict == "satisfied" for each in results)
+    assert marks.violated == bool(violated)
+    assert marks.shown == (marks.worst is None)
 
 
 def test_a_refused_requirement_is_not_judged_whatever_the_log() -> None:
-    (total,) = totals([result(verdict="no data")], (), {"R1"})
+    (total,) = totals(Marks.of([brief(result(verdict="no data"))], (), {"R1"}))
     assert total.word == NOT_JUDGED
 
 
 def test_a_run_that_only_counts_is_nothing_to_look_at() -> None:
     counting = [result(verdict=word, trials=TRIALS) for word in ("inconclusive", "vacuous")]
     assert {word_of(each) for each in counting} == {COUNTED}
-    assert worst(counting) is None
+    assert Marks.of(map(brief, counting)).worst is None
     assert word_of(result(verdict="no data", trials=TRIALS)) == "no data"
 
 
@@ -86,8 +90,8 @@ def broken(id: str, *stretches: tuple[int, int]) -> Result:
 
 
 def test_the_worst_is_broken_for_the_most_ticks() -> None:
-    brief, long = broken("R1", (0, 3), (5, 5)), broken("R2", (0, 2), (7, 9))
-    assert worst([brief, long]) is long
-    found = longest(brief)
+    short, long = broken("R1", (0, 3), (5, 5)), broken("R2", (0, 2), (7, 9))
+    assert Marks.of(map(brief, [short, long])).worst == 1
+    found = longest(short)
     assert found is not None
     assert (found.first_tick, found.last_tick) == (0, 3)
