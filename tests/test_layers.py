@@ -20,7 +20,7 @@ compiler.targets  compiler.targets.python  compiler.targets.automata  compiler.t
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit
-fretc.audit.outputs  fretc.audit.bindings
+fretc.audit.selection  fretc.audit.outputs  fretc.audit.bindings
 fretc.verification.engines  fretc.verification.monitor  fretc.verification.interceptor
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.report.traceability  fretc.attestation  fretc.reproduction

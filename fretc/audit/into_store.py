@@ -428,6 +428,7 @@ class Session:
             confidence=self._plan.confidence,
             parts=tuple(part for part, _ in drafts),
             register=_right(write_register(self.folder, entries)),
+            selection=about.selection,
         )
         if name == UNFINISHED:
             return made

@@ -91,10 +91,10 @@ def _stored(path: str) -> Iterator[str | Diagnostic]:
     found = below(path, lambda name: name.endswith(_LOGS) and not name.endswith(ANNOTATIONS))
     if found is None or isinstance(found, Diagnostic):
         yield path if found is None else found
-    elif path.endswith("/"):
-        yield from found or [_empty(shown(path))]
+    elif not found:
+        yield _empty(shown(path)) if path.endswith("/") else _no_match(shown(path))
     else:
-        yield from found or [_no_match(shown(path))]
+        yield from found
 
 
 def _below(path: Path, visited: dict[str, None] | None = None) -> Iterator[str | Diagnostic]:

@@ -19,7 +19,6 @@ from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import Evidence
 from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Hashes, Requirement, Result
-from fretc.audit.evidence.verdicts import VERDICTS
 from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged, unread
 from fretc.audit.evidence.writer import text as written
 from fretc.audit.measurements.judgement import Engine as Evaluation
@@ -34,7 +33,7 @@ from fretc.audit.one_log import (
 )
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
-from fretc.audit.pool import Killed, each, was_killed
+from fretc.audit.pool import ENDLESS, Killed, Late, Limits, each, was_killed, was_late
 from fretc.audit.store.recordings import Kept, KnownBy
 from fretc.logs.labels import NO_METADATA, labels, over
 from fretc.logs.reader import read
@@ -76,20 +75,6 @@ class Audit:
         return Evidence("", "", self.document)
 
 
-def estimate_lines(estimates: Sequence[Estimated]) -> tuple[tuple[str, str | None], ...]:
-    """What all runs say of each requirement with a probability, each line with its colour."""
-    return tuple(line for one in estimates for line in _block(one))
-
-
-def _block(one: Estimated) -> Iterator[tuple[str, str | None]]:
-    """What all runs say of one requirement, the answer in its colour."""
-    first, *rest = one.lines
-    verdict = VERDICTS[one.answer]
-    yield f"{one.requirement} over all runs, {one.text}", None
-    yield f"  {verdict.sign.glyph} {first}", verdict.sign.colour
-    yield from ((f"    {line}", None) for line in rest)
-
-
 EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}
 """How monitors are run: whole traces at once, or step by step."""
 
@@ -121,7 +106,10 @@ def _nothing(_: str) -> Sequence[Result]:
 
 
 def locally(
-    jobs: int, kept: Kept | None = None, known: Callable[[str], Sequence[Result]] = _nothing
+    jobs: int,
+    kept: Kept | None = None,
+    known: Callable[[str], Sequence[Result]] = _nothing,
+    limits: Limits = ENDLESS,
 ) -> Engine:
     """On this machine, in some processes.
 
@@ -129,6 +117,7 @@ def locally(
         jobs: how many.
         kept: where the samples of logs are kept.
         known: of a log, the results that `audited` may take over.
+        limits: of time; standard input only where there are none.
     """
 
     def judged(plan: Plan, log: str) -> LogAudit:
@@ -139,11 +128,13 @@ def locally(
         if STDIN in logs:  # another process does not have it
             yield STDIN, audited(plan, STDIN)
         files = [log for log in logs if log != STDIN]
-        with closing(each(partial(judged, plan), files, jobs)) as done:
+        with closing(each(partial(judged, plan), files, jobs, limits)) as done:
             for place, result in done:
                 log = files[place]
                 if isinstance(result, Killed):
                     yield log, given_up(plan, log, str(result))
+                elif isinstance(result, Late):
+                    yield log, _unaudited(plan, log, was_late(log, result, limits))
                 else:
                     yield log, result
 
@@ -393,6 +384,12 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogA
     return _with_own_labels(plan, LogAudit(tuple(records), (why,), read=False))
 
 
+def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogAudit:
+    """The results of a log for which there was no time: no data. It is not even hashed."""
+    records = [unread(called(log), each.id, why, each.basis) for each in plan.named]
+    return _with_own_labels(plan, LogAudit(tuple(records), (why,), read=False))
+
+
 def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
     """SHA-256 of a log that could not be read as one, where it is still what was tried."""
     digest = file_sha256(log)
@@ -414,4 +411,5 @@ def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estima
         ),
         results=tuple(results),
         probabilities=tuple(of_all_runs) or UNSET,
+        selection=plan.selection or UNSET,
     )

@@ -18,7 +18,7 @@ from compiler.targets.python import monitor as monitors
 from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.claim import Claim
-from fretc.audit.evidence.schema import SCHEMA
+from fretc.audit.evidence.schema import SCHEMA, Selection
 from fretc.audit.expected_response import demand
 from fretc.audit.measurements import confidence_intervals as odds
 from fretc.audit.measurements.count_trials import chance, trials
@@ -51,6 +51,8 @@ class Plan:
     """The requirements in force that are not among the claims."""
     labels: Mapping[str, str] = field(default_factory=dict, compare=False)
     """What the command says of all runs. No audit of a log depends on it: the key does not."""
+    selection: Selection | None = field(default=None, compare=False, repr=False)
+    """Which of the named logs are audited, for the evidence; None: all."""
 
     @property
     def named(self) -> tuple[Claim | RefusedRequirement, ...]:

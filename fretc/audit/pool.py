@@ -7,16 +7,20 @@ from __future__ import annotations
 
 import multiprocessing
 import signal
+import time
 from collections import deque
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
+from enum import Enum
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import ForkProcess
-from typing import Any, TypeVar
+from typing import Any, TypeVar, overload
 
 from compiler.files.processes import reply
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretc.logs.storage.inputs import shown
+from fretish.bindings.amounts import exact_duration
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 
 T = TypeVar("T")
@@ -37,6 +41,53 @@ class Killed:
         return f"signal {-self.status}" if self.status < 0 else f"exit status {self.status}"
 
 
+class Late(Enum):
+    """There was no time for a thing: its process was ended, or never began."""
+
+    OWN = "own"
+    """It took longer than a thing may."""
+    ALL = "all"
+    """The time for all things was over."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Seconds of the clock that work may take."""
+
+    each: float | None = None
+    """Of a thing; None: any."""
+    all: float | None = None
+    """Of all things together, from their beginning."""
+
+
+ENDLESS = Limits()
+
+
+def was_late(log: str, how: Late, limits: Limits) -> Diagnostic:
+    """F440, F441: a log that was not audited to its end, for want of time.
+
+    Args:
+        log: its path.
+        how: which time was over.
+        limits: those of the audit.
+    """
+    if how is Late.OWN and limits.each is not None:
+        return Diagnostic(
+            Code.LOG_OUT_OF_TIME,
+            f"the audit of `{shown(log)}` was ended after {exact_duration(limits.each)}",
+            Source(shown(log), "").span(),
+            help="give it more time by `--log-time`, or audit it alone",
+            severity=Severity.WARNING,
+        )
+    assert limits.all is not None
+    return Diagnostic(
+        Code.AUDIT_OUT_OF_TIME,
+        f"the {exact_duration(limits.all)} of the audit were over: no data",
+        help="audit the logs that are left, or give more time by `--time`",
+        severity=Severity.WARNING,
+    )
+
+
 def was_killed(log: str, how: str) -> Diagnostic:
     """F419.
 
@@ -52,48 +103,93 @@ def was_killed(log: str, how: str) -> Diagnostic:
     )
 
 
+@overload
 def each(
     function: Callable[[T], R], things: Sequence[T], jobs: int
-) -> Generator[tuple[int, R | Killed], None, None]:
+) -> Generator[tuple[int, R | Killed], None, None]: ...
+
+
+@overload
+def each(
+    function: Callable[[T], R], things: Sequence[T], jobs: int, limits: Limits
+) -> Generator[tuple[int, R | Killed | Late], None, None]: ...
+
+
+def each(
+    function: Callable[[T], R], things: Sequence[T], jobs: int, limits: Limits = ENDLESS
+) -> Generator[tuple[int, R | Killed | Late], None, None]:
     """The function of each thing with the thing's place, in the order in which they are done.
 
     Whoever stops to iterate ends the processes, whatever they are at.
 
     Args:
         function: of anything, to what can be sent between processes.
-        things: in any number; a single one is worked on by this process.
+        things: in any number; a single one without limits is worked on by this process.
         jobs: processes.
+        limits: of time; a thing that takes longer is late, and so is each one after all the time.
 
     Raises:
         Exception: what the function raises.
     """
-    if len(things) < 2:
+    if len(things) < 2 and limits == ENDLESS:
         yield from ((place, function(thing)) for place, thing in enumerate(things))
         return
+    clock = _Clock(limits)
     again: list[int] = []
-    with closing(_shared(function, things, range(len(things)), jobs)) as done:
+    with closing(_shared(function, things, range(len(things)), jobs, clock)) as done:
         for place, result in done:
             if isinstance(result, Killed):
                 again.append(place)
             else:
                 yield place, result
     for place in again:
-        yield from _shared(function, things, [place], 1)
+        yield from _shared(function, things, [place], 1, clock)
+
+
+class _Clock:
+    """What is left of the time of all things, and of each."""
+
+    def __init__(self, limits: Limits) -> None:
+        self._each = limits.each
+        self._end = None if limits.all is None else time.monotonic() + limits.all
+
+    @property
+    def is_over(self) -> bool:
+        """Whether there is no time for any thing."""
+        return self._end is not None and time.monotonic() >= self._end
+
+    def is_late(self, since: float) -> bool:
+        """Whether a thing that began then takes too long."""
+        return self._each is not None and time.monotonic() - since >= self._each
+
+    def patience(self, begun: Iterable[float]) -> float | None:
+        """Seconds until one of the things that began then is late, or all are; None: never."""
+        ends = [] if self._each is None else [since + self._each for since in begun]
+        ends += [] if self._end is None else [self._end]
+        return max(0.0, min(ends) - time.monotonic()) if ends else None
 
 
 def _shared(
-    function: Callable[[T], R], things: Sequence[T], places: Sequence[int], jobs: int
-) -> Generator[tuple[int, R | Killed], None, None]:
-    crew = _Crew(function, things)
+    function: Callable[[T], R],
+    things: Sequence[T],
+    places: Sequence[int],
+    jobs: int,
+    clock: _Clock,
+) -> Generator[tuple[int, R | Killed | Late], None, None]:
+    crew = _Crew(function, things, clock)
     waiting = deque(places)
     try:
-        for _ in range(min(jobs, len(places))):
-            crew.hire(waiting.popleft())
-        while crew.busy:
-            for place, result in crew.done():
-                if waiting:
-                    crew.hire(waiting.popleft())
-                yield place, result
+        while waiting or crew.busy:
+            if clock.is_over:
+                for place in (*crew.places, *waiting):
+                    yield place, Late.ALL
+                return
+            while waiting and len(crew.busy) < jobs:
+                crew.hire(waiting.popleft())
+            done = list(crew.done())
+            while waiting and len(crew.busy) < jobs and not clock.is_over:
+                crew.hire(waiting.popleft())  # they work while this process takes what is done
+            yield from done
     finally:
         crew.dismiss()
 
@@ -101,23 +197,32 @@ def _shared(
 class _Crew:
     """Processes, each at one thing or idle."""
 
-    def __init__(self, function: Callable[[Any], Any], things: Sequence[Any]) -> None:
-        self._function, self._things = function, things
+    def __init__(
+        self, function: Callable[[Any], Any], things: Sequence[Any], clock: _Clock
+    ) -> None:
+        self._function, self._things, self._clock = function, things, clock
         self._idle: list[tuple[Connection, ForkProcess]] = []
-        self.busy: dict[Connection, tuple[ForkProcess, int]] = {}
+        self.busy: dict[Connection, tuple[ForkProcess, int, float]] = {}
+        """Each with the place of its thing, and when that began."""
+
+    @property
+    def places(self) -> list[int]:
+        """Of the things that are worked on."""
+        return [place for _, place, _ in self.busy.values()]
 
     def hire(self, place: int) -> None:
         """Let an idle process, or a new one, work on a thing."""
         connection, process = self._idle.pop() if self._idle else self._born()
         with suppress(OSError):  # it has died meanwhile: `done` will tell
             connection.send(place)
-        self.busy[connection] = process, place
+        self.busy[connection] = process, place, time.monotonic()
 
     def done(self) -> Iterator[tuple[int, Any]]:
-        """Wait for results; there is at least one, and their processes are free again."""
-        for connection in wait(list(self.busy)):
+        """Wait for results, and for what is late; the processes of results are free again."""
+        patience = self._clock.patience(since for _, _, since in self.busy.values())
+        for connection in wait(list(self.busy), patience):
             assert isinstance(connection, Connection)
-            process, place = self.busy.pop(connection)
+            process, place, _ = self.busy.pop(connection)
             try:
                 fine, result = connection.recv()
             except (EOFError, OSError):
@@ -129,15 +234,19 @@ class _Crew:
             if not fine:
                 raise result
             yield place, result
+        for connection, (process, place, since) in list(self.busy.items()):
+            if self._clock.is_late(since):
+                del self.busy[connection]
+                _end(connection, process)
+                yield place, Late.OWN
 
     def dismiss(self) -> None:
         """End all processes at once: they only read."""
-        working = [(connection, process) for connection, (process, _) in self.busy.items()]
+        working = [(connection, process) for connection, (process, *_) in self.busy.items()]
         for _, process in (*working, *self._idle):
             process.kill()
         for connection, process in (*working, *self._idle):
-            connection.close()
-            process.join()
+            _end(connection, process)
 
     def _born(self) -> tuple[Connection, ForkProcess]:
         # Forked: the function may be what cannot be sent, and what is loaded need not be again.
@@ -151,6 +260,12 @@ class _Crew:
             process.start()
         theirs.close()
         return ours, process
+
+
+def _end(connection: Connection, process: ForkProcess) -> None:
+    process.kill()
+    connection.close()
+    process.join()
 
 
 @contextmanager

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.commands.audit_logs import selected, time_limits
 from fretc.commands.audit_progress import audit_in_memory, audit_into
+from fretc.commands.notify import notify, words
 from fretc.commands.summary import summarize
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import (
@@ -48,7 +50,9 @@ if TYPE_CHECKING:
 
     from fretc.audit.into_store import Earlier, Session
     from fretc.audit.many_logs import Engine
+    from fretc.audit.outputs.totals import Marks
     from fretc.audit.plan import Plan
+    from fretc.audit.pool import Limits
     from fretc.audit.store.recordings import Kept
     from fretc.commands.audit_outputs import Outcome, Target
 
@@ -56,7 +60,17 @@ if TYPE_CHECKING:
 _AUDIT = {
     "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
     "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
-    "Many logs": ("labels", "jobs", "engine", "rehash", "keep_columns"),
+    "Which logs": ("since", "sample", "seed"),
+    "Many logs": (
+        "labels",
+        "jobs",
+        "log_time",
+        "whole_time",
+        "engine",
+        "rehash",
+        "keep_columns",
+        "command",
+    ),
     "Questions to tables and evidence: LOG is one of them, nothing is audited": (
         "summary",
         "query",
@@ -122,6 +136,15 @@ _AUDIT = {
     show_default=True,
     help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
 )
+@click.option("--since", metavar="TIME", help="Logs since then: 2026-11-22, 24h, 7d.")
+@click.option(
+    "--sample", type=click.IntRange(min=1), metavar="N", help="At most N of the logs, by chance."
+)
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of that chance."
+)
+@click.option("--log-time", metavar="TIME", help="For each log at most: 90s, 5min.")
+@click.option("--time", "whole_time", metavar="TIME", help="For all logs at most: 6h.")
 @click.option(
     "--keep-columns",
     is_flag=True,
@@ -129,6 +152,9 @@ _AUDIT = {
 )
 @click.option(
     "--rehash", is_flag=True, help="Know a log by its SHA-256, not by its size and times."
+)
+@click.option(
+    "--notify", "command", metavar="CMD", help="Give CMD a summary on standard input, as JSON."
 )
 @path_option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
 @click.option("--resume", is_flag=True, hidden=True)
@@ -155,8 +181,14 @@ def audit(
     labels: tuple[str, ...],
     jobs: int,
     engine: str,
+    since: str | None,
+    sample: int | None,
+    seed: int,
+    log_time: str | None,
+    whole_time: str | None,
     rehash: bool,
     keep_columns: bool,
+    command: str | None,
     parquet: str | None,
     resume: bool,
     summary: bool,
@@ -165,8 +197,8 @@ def audit(
     """Audit recorded runs against all requirements.
 
     LOG is an MCAP file, a bag (.bag, .db3), a folder (all logs below it), a quoted pattern
-    ('runs/**/*.mcap'), a URL, or - for standard input. A folder of rosbag2 with several files is
-    one log.
+    ('runs/**/*.mcap'), a URL, a folder or pattern in a store (s3://bucket/runs/), or - for standard
+    input. A folder of rosbag2 with several files is one log.
 
     Each run and requirement gets a verdict: satisfied, violated, inconclusive, vacuous or no data.
     A requirement with a probability is judged over all runs: supported, refuted or inconclusive.
@@ -180,20 +212,19 @@ def audit(
     from compiler.project.folder import load
     from compiler.project.paths import beside, companions, requirement_files
     from fretc.audit.log_paths import files_of
-    from fretc.audit.log_paths import logs as logs_of
     from fretc.audit.outputs.totals import Marks
     from fretc.audit.plan import Plan, planned
     from fretc.commands import audit_outputs as outputs
     from fretc.logs.labels import given
     from fretc.logs.signals.integrity import Integrity
 
+    hook = None if command is None else words(command)
     given_labels = given(labels)
     if isinstance(given_labels, Diagnostic):
         stop(given_labels)
-    logs = logs_of(paths)
-    if isinstance(logs, Diagnostic):
-        stop(logs)
-    target = outputs.target(output, len(logs))
+    logs, selection = selected(paths, since, sample, seed)
+    limits = time_limits(log_time, whole_time, logs, engine)
+    target = outputs.target(output, selection.named if selection else len(logs))
     outputs.check(target, parquet)
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
@@ -207,7 +238,7 @@ def audit(
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         stop(*(reason for reason in plan if reason not in project.diagnostics))
-    plan = replace(plan, labels=given_labels)
+    plan = replace(plan, labels=given_labels, selection=selection)
     refusals = [reason for reason in plan.refusals if reason not in project.diagnostics]
     say_also(refusals, project.diagnostics)
     kept = _samples(target, rehash=rehash) if keep_columns else None
@@ -215,10 +246,10 @@ def audit(
         if target.is_store:
             session = stack.enter_context(_session(target.path, plan, logs, rehash=rehash))
             result: outputs.Outcome = audit_into(
-                session, _engine(engine, jobs, kept, session.earlier)
+                session, _engine(engine, jobs, limits, kept, session.earlier)
             )
         else:
-            result = audit_in_memory(plan, logs, _engine(engine, jobs, kept))
+            result = audit_in_memory(plan, logs, _engine(engine, jobs, limits, kept))
         diagnostics = project.answered(result.diagnostics)
         say_also(diagnostics, (*project.diagnostics, *refusals))
         if result.read:  # a mistyped name must not cost the evidence of the last audit
@@ -227,28 +258,36 @@ def audit(
             if parquet is not None:
                 made[Path(parquet)] = outputs.table(result)
             _deliver(result, target, made, inputs)
-        source, refused = result.source, {one.id for one in plan.refused}
-        marks = Marks.of((each for _, each in source.briefs()), result.estimates, refused)
+        source, not_judged = result.source, {one.id for one in plan.refused}
+        marks = Marks.of((each for _, each in source.briefs()), result.estimates, not_judged)
+        is_bad = plan.refused or has_errors((*project.diagnostics, *diagnostics))
+        status = BAD if is_bad else _status(marks)
+        from fretc.commands.audit_text import Places, Subject, lines
+        from fretc.commands.audit_text import summary as summary_of
+
+        subject = Subject(
+            source,
+            marks,
+            result.estimates,
+            project,
+            not_judged,
+            Places(requirements, bindings, str(target.path)),
+            time.perf_counter() - began,
+        )
         if form == "text":
-            from fretc.commands.audit_text import Places, Subject, lines
             from fretc.terminal.screen import screen
 
-            places = Places(requirements, bindings, str(target.path))
-            subject = Subject(
-                source,
-                marks,
-                result.estimates,
-                project,
-                refused,
-                places,
-                time.perf_counter() - began,
-            )
             click.echo(painted(lines(subject, screen(), every=verbose)), nl=False)
         else:
             click.echo(outputs.text(result, project, refusals, form), nl=False)
-    if plan.refused or has_errors((*project.diagnostics, *diagnostics)):
-        raise SystemExit(BAD)
-    raise SystemExit(VIOLATION if marks.violated else SHOWN if marks.shown else NOT_SHOWN)
+        notice = summary_of(subject, status) if hook is not None else {}
+    if hook is not None:  # when the store is free again: the command may read it
+        notify(hook, notice)
+    raise SystemExit(status)
+
+
+def _status(marks: Marks) -> int:
+    return VIOLATION if marks.violated else SHOWN if marks.shown else NOT_SHOWN
 
 
 def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> Session:
@@ -305,11 +344,15 @@ def _no_place_for_columns(why: str, mend: str) -> Diagnostic:
     return Diagnostic(Code.BAD_USAGE, message, help=mend)
 
 
-def _engine(name: str, jobs: int, kept: Kept | None, earlier: Earlier | None = None) -> Engine:
+def _engine(
+    name: str, jobs: int, limits: Limits, kept: Kept | None, earlier: Earlier | None = None
+) -> Engine:
     if name == "local":
         from fretc.audit.many_logs import locally
 
-        return locally(jobs, kept, earlier.results) if earlier else locally(jobs, kept)
+        if earlier is None:
+            return locally(jobs, kept, limits=limits)
+        return locally(jobs, kept, earlier.results, limits)
     if kept is not None:
         why = f"`--engine {name}` reads the logs elsewhere"
         stop(_no_place_for_columns(why, "leave out one of the two"))

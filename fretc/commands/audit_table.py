@@ -6,12 +6,13 @@ Nothing of it is wider than the screen. What does not fit is counted, and it is 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 from fretc.audit.evidence.verdicts import SHOWN
 from fretc.audit.outputs.totals import COUNTED, Marks, severity, sign_of
 from fretc.terminal.output import Piece
-from fretc.terminal.screen import Screen, fitted, padded, width
+from fretc.terminal.screen import Screen, fitted, padded, titled, width
 
 MOST_RUNS = 200
 """Columns of a table: of more runs the worst ones."""
@@ -21,17 +22,20 @@ MOST_NAMES = 20
 """Runs that are named below the table."""
 _GROUP = 10
 """Marks between two blanks."""
-_LONGEST_ID = 24
+_LONGEST_ID = 30
 Line = tuple[Piece, ...]
 _BLANK: Line = (("", None),)
 
 
-def table(grid: Marks, screen: Screen) -> Iterator[Line]:
+def table(
+    grid: Marks, screen: Screen, titles: Mapping[str, str] = MappingProxyType({})
+) -> Iterator[Line]:
     """The lines of the table, and below it the runs in which something is not shown.
 
     Args:
         grid: of two runs or more.
         screen: where it is shown.
+        titles: of requirements, by their ids; there need be none.
     """
     counts = [Counter(of_run.values()) for of_run in grid.words]
     badness = [*map(_badness, counts)]
@@ -39,7 +43,7 @@ def table(grid: Marks, screen: Screen) -> Iterator[Line]:
     worst_of = {id: severity(grid.word(id)) for id in grid.ids}
     worst_ids = sorted(grid.ids, key=worst_of.__getitem__)[:MOST_REQUIREMENTS]
     rows = [id for id in grid.ids if id in {*worst_ids}]
-    yield from _blocks(grid, rows, columns, screen)
+    yield from _blocks(grid, rows, columns, screen, titles)
     yield from _left_out(grid, rows, columns)
     bad = [run for run in columns if not {*counts[run]} <= {*SHOWN, COUNTED}]
     yield from _legend(grid, sorted(bad, key=badness.__getitem__), screen)
@@ -51,12 +55,17 @@ def _badness(counts: Counter[str]) -> tuple[tuple[int, int], ...]:
 
 
 def _blocks(
-    grid: Marks, rows: Sequence[str], columns: Sequence[int], screen: Screen
+    grid: Marks,
+    rows: Sequence[str],
+    columns: Sequence[int],
+    screen: Screen,
+    titles: Mapping[str, str],
 ) -> Iterator[Line]:
     """All rows, with as many columns as fit; then all rows again with the next ones."""
-    names = [screen.text(id) for id in rows]
-    room = min(max(map(width, (*names, "run"))), screen.width // 3, _LONGEST_ID)
-    names = [padded(fitted(name, room), room) for name in names]
+    most = min(screen.width // 3, _LONGEST_ID)
+    names = [titled(screen.text(id), screen.text(titles.get(id, "")), most) for id in rows]
+    room = max(map(width, (*names, "run")))
+    names = [padded(name, room) for name in names]
     groups = max(1, (screen.width - room - 5) // (_GROUP + 1))
     for start in range(0, len(columns), groups * _GROUP):
         block = columns[start : start + groups * _GROUP]

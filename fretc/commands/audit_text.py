@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from shlex import quote
+from typing import Any
 
 from compiler.formalization.record import wording
 from compiler.project.folder import Project
@@ -14,25 +15,30 @@ from fretc.audit.evidence.declared_units import without_samples
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result, Threshold, Violation
 from fretc.audit.evidence.verdicts import SHOWN, VERDICTS
-from fretc.audit.many_logs import estimate_lines
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretc.audit.outputs.totals import (
     COUNTED,
     Marks,
     Total,
     longest,
+    runs,
     totals,
     word_of,
 )
 from fretc.audit.outputs.violated_values import values
 from fretc.commands.audit_table import Line, table
 from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE
-from fretc.terminal.screen import Screen
+from fretc.terminal.screen import Screen, padded, titled, width
 from fretish.bindings.amounts import exact, instant, seconds, value
 from fretish.diagnostics.rendering import visible
+from fretish.documents import named
 
 _FIRST_DATE = 10**17
 """Nanoseconds, in 1973: a clock that tells less is simulated, and counts from its own zero."""
+
+
+_LONGEST_NAME = 48
+"""Columns of the name of a requirement, at least, before it is shortened."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,32 +87,60 @@ def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
         screen: where.
         every: list each result also where a table would have them.
     """
+    titles = {each.id: each.title for each in subject.project.requirements}
     if every or len(subject.marks.names) == 1:
-        yield from _each(subject)
+        yield from _listed(subject, titles, screen)
     else:
-        yield from table(subject.marks, screen)
-    for text, colour in estimate_lines(subject.estimates):
-        yield ((visible(text), colour),)
+        yield from table(subject.marks, screen, titles)
+    for one in subject.estimates:
+        yield from _estimate(one, named(one.requirement, titles.get(one.requirement, "")))
     for text in _first_to_look_at(subject):
         yield ((visible(text), None),)
     yield _last(subject)
 
 
-def _each(subject: Subject) -> Iterator[Line]:
-    """Each run, and below it each of its results."""
-    width = max(map(len, subject.marks.ids), default=0)
-    run = None
-    for _, brief in subject.source.briefs():
-        if brief.run != run:
-            run = brief.run
-            yield ((visible(run), None),)
-        verdict = VERDICTS[brief.verdict]
-        name = f"{brief.requirement:<{width}}"
-        line = f"  {verdict.sign.glyph} {name}  {verdict.word:<12}  {brief.reason}"
-        yield ((visible(line), verdict.sign.colour),)
+def _listed(subject: Subject, titles: Mapping[str, str], screen: Screen) -> Iterator[Line]:
+    """The name of each run, and a line for each of its results."""
+    most = max(_LONGEST_NAME, screen.width // 3)
+    names = {
+        id: titled(screen.text(id), screen.text(titles.get(id, "")), most)
+        for id in subject.marks.ids
+    }
+    room = max(map(width, names.values()), default=0)
+    for run in runs(brief for _, brief in subject.source.briefs()):
+        yield ((visible(run[0].run), None),)
+        for result in run:
+            verdict = VERDICTS[result.verdict]
+            name = padded(names[result.requirement], room)
+            line = f"  {verdict.sign.glyph} {name}  {verdict.word:<12}  {visible(result.reason)}"
+            yield ((line, verdict.sign.colour),)
 
 
-def _first_to_look_at(subject: Subject) -> Iterator[str]:
+def _estimate(one: Estimated, name: str) -> Iterator[Line]:
+    """What all runs say of a requirement with a probability, the answer in its colour."""
+    first, *rest = one.lines
+    verdict = VERDICTS[one.answer]
+    yield ((visible(f"{name} over all runs, {one.text}"), None),)
+    yield ((visible(f"  {verdict.sign.glyph} {first}"), verdict.sign.colour),)
+    yield from (((visible(f"    {line}"), None),) for line in rest)
+
+
+def summary(subject: Subject, status: int) -> dict[str, Any]:
+    """What `--notify` tells: a text for a person, and its numbers for a program."""
+    last = "".join(text for text, _ in _last(subject)).rsplit("  ", 1)[0]
+    worst_first = [*_first_to_look_at(subject, commands=False)]
+    marks = subject.marks
+    return {
+        "text": "\n".join(map(visible, [last, *worst_first[1:]])),
+        "status": status,
+        "runs": len(marks.names),
+        "requirements": len(marks.ids),
+        "counts": {each.word: each.results for each in totals(marks)},
+        "evidence": subject.places.evidence,
+    }
+
+
+def _first_to_look_at(subject: Subject, *, commands: bool = True) -> Iterator[str]:
     """The worst result, and the commands that show more; nothing where all is shown."""
     place = subject.marks.worst
     ((_, result),) = subject.source.details([place]) if place is not None else ((0, None),)
@@ -119,9 +153,9 @@ def _first_to_look_at(subject: Subject) -> Iterator[str]:
     else:
         return
     yield ""
-    yield f"worst: {id} {where}: {_title(subject, id)}"
+    yield f"worst: {_name(subject, id)} {where}"
     yield from (f"  {line}" for line in details)
-    for place, command in enumerate(subject.places.commands(id)):
+    for place, command in enumerate(subject.places.commands(id) if commands else ()):
         yield f"  {'more:' if place == 0 else '     '} {command}"
 
 
@@ -135,10 +169,12 @@ def _details(result: Result, subject: Subject) -> Iterator[str]:
     yield from _violation(shown, shown.violations[result.violations.index(violation)])
 
 
-def _title(subject: Subject, id: str) -> str:
-    """Of a requirement; its sentence, where it has none."""
+def _name(subject: Subject, id: str) -> str:
+    """Of a requirement: its title and id; its id and sentence, where it has no title."""
     requirement = next((each for each in subject.project.requirements if each.id == id), None)
-    return requirement.title or wording(requirement) if requirement else ""
+    if requirement is None or requirement.title:
+        return requirement.name if requirement else id
+    return f"{id} (`{wording(requirement)}`)"
 
 
 def _violation(result: Result, violation: Violation) -> Iterator[str]:

@@ -16,6 +16,7 @@ from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.topic_clocks import STILL_RUN
 from fretc.logs.signals.words import Foreign
 from fretc.logs.storage.storage_diagnostics import install
+from fretish.bindings.amounts import duration, seconds
 from fretish.bindings.declarations import Signal, short_type
 from fretish.bindings.words import listed
 from fretish.clock import Clock, TimeSource
@@ -102,8 +103,8 @@ def too_long(length: int, ticks: int, clock: Clock, place: Span) -> Diagnostic:
     """So many ticks that a time must be wrong."""
     return Diagnostic(
         Code.UNREADABLE_LOG,
-        f"the log lasts {_seconds(length)}, which is {ticks} ticks: a message has a wrong time "
-        f"({clock.time})",
+        f"the log lasts {duration(length / _SECOND)}, which is {ticks} ticks: "
+        f"a message has a wrong time ({clock.time})",
         place,
         "use another `time` under `[clock]`, or a longer `tick`",
     )
@@ -331,7 +332,8 @@ def unstamped(signal: Signal, shift: int) -> Diagnostic:
         return Diagnostic(Code.NO_FIELD, message, signal.span, severity=Severity.NOTE)
     return Diagnostic(
         Code.NO_FIELD,
-        f"{message}, and that is {_seconds(shift)} away from the stamps of the other topics",
+        f"{message}, and that is {duration(shift / _SECOND)} away from the stamps of "
+        "the other topics",
         signal.span,
         'two clocks are mixed: use `time = "log_time"` under `[clock]`',
         Severity.WARNING,
@@ -377,7 +379,8 @@ def clock_jumps(signal: Signal, jumps: int, largest: int) -> Diagnostic:
     times = "once" if jumps == 1 else f"{jumps} times, at most"
     return Diagnostic(
         Code.CLOCK_JUMP,
-        f"the clock of `{signal.path.topic}` jumps against log_time {times} by {_seconds(largest)}",
+        f"the clock of `{signal.path.topic}` jumps against log_time {times} by "
+        f"{duration(largest / _SECOND)}",
         signal.span,
         "was a clock set, a simulation begun anew, or were messages held back? "
         "durations around it are not what they seem",
@@ -389,7 +392,7 @@ def mixed_clocks(signal: Signal, other: str, apart: int) -> Diagnostic:
     """F418: against log times, the stamps of two topics are more than a second apart."""
     return Diagnostic(
         Code.MIXED_CLOCKS,
-        f"the stamps of `{signal.path.topic}` are {_seconds(abs(apart))} "
+        f"the stamps of `{signal.path.topic}` are {duration(abs(apart) / _SECOND)} "
         f"{'ahead of' if apart > 0 else 'behind'} those of `{other}`, by the times at which both "
         "were recorded",
         signal.span,
@@ -399,4 +402,4 @@ def mixed_clocks(signal: Signal, other: str, apart: int) -> Diagnostic:
 
 
 def _seconds(length: int) -> str:
-    return f"{length / _SECOND:.3f} s"
+    return seconds(length / _SECOND)

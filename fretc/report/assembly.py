@@ -15,8 +15,10 @@ from compiler.project.folder import Project
 from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.audit.evidence.briefs import Briefs, EvidenceSource
 from fretc.audit.evidence.probabilities import AVERAGE
+from fretc.audit.evidence.schema import Selection
 from fretc.audit.evidence.verdicts import NOT_EXERCISED, RETIRED
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE, SUPPORTED
+from fretc.audit.selection.choice import in_words
 from fretc.report.across.assembly import across
 from fretc.report.diagnostics import idle_waivers, stale_evidence
 from fretc.report.front.front import front
@@ -135,7 +137,7 @@ def report(
             [text for text in overall_result.sentences if text != trust(all_runs, project)],
         ),
         runs=run_list,
-        claims=_claims(assessed, len(all_runs)),
+        claims=_claims(assessed, len(all_runs), evidence.selection if evidence else None),
         counts=_counts(assessed),
         not_shown=tuple(_not_shown(view) for view in worst_first(sections) if view.reasons),
         reservations=reservations,
@@ -225,7 +227,7 @@ def _reservations(view: RequirementView, longest: Mapping[str, ResultView]) -> S
     return (*average, *([view.limit] if view.limit else []), *late, *draft)
 
 
-def _claims(assessed: Sequence[Assessment], runs: int) -> str:
+def _claims(assessed: Sequence[Assessment], runs: int, selection: Selection | None) -> str:
     active = [one for one in assessed if one.verdict != RETIRED]
     drafts = sum(one.requirement.status == "draft" for one in active)
     retired = len(assessed) - len(active)
@@ -234,6 +236,7 @@ def _claims(assessed: Sequence[Assessment], runs: int) -> str:
         f"{drafts} of them {'a draft' if drafts == 1 else 'drafts'}" if drafts else "",
         f"{retired} retired" if retired else "",
         f"audited against {phrases.times(runs, 'run')}" if runs else "not audited",
+        "" if selection is None else f"which are {in_words(selection)}",
     ]
     return f"{', '.join(filter(None, parts))}."
 

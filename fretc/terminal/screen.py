@@ -19,6 +19,8 @@ _WIDTH = 80
 """Where standard output is no terminal."""
 NARROWEST = 40
 """A narrower terminal is taken for one of this width."""
+_SHORTEST = 8
+"""Columns of a title that still says something."""
 _LETTERS = {"\N{MULTIPLICATION SIGN}": "x", "\N{HORIZONTAL ELLIPSIS}": "."} | {
     sign.glyph: sign.letter for sign in SIGNS
 }
@@ -77,6 +79,22 @@ def fitted(text: str, columns: int) -> str:
     head = _longest(text, (columns - 1) // 3)
     tail = _longest(reversed(text), columns - 1 - width(head))[::-1]
     return f"{head}\N{HORIZONTAL ELLIPSIS}{tail}"
+
+
+def titled(id: str, title: str, columns: int) -> str:
+    """A title, cut off where it is too long, and the id; the id alone where no title has room.
+
+    Args:
+        id: without control characters, as the title.
+        title: empty: there is none.
+        columns: of all; an id that is longer is fitted.
+    """
+    room = columns - width(id) - len(" ()")
+    if not title or room < _SHORTEST:
+        return fitted(id, columns)
+    if len(title) > 4 * room or width(title) > room:
+        title = f"{_longest(title, room - 1).rstrip()}\N{HORIZONTAL ELLIPSIS}"
+    return f"{title} ({id})"
 
 
 def _longest(characters: Iterable[str], columns: int) -> str:

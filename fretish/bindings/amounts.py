@@ -138,8 +138,10 @@ def exact_duration(number: float) -> str:
 
 
 def _time_unit(number: float) -> tuple[str, int]:
-    """Seconds; milliseconds, by three places, for what is less than one, also when rounded."""
-    return ("ms", 3) if 0 < abs(number) < 0.9995 else ("s", 0)
+    """Seconds, or the unit in which it is one at least, also when it is rounded; 0 in seconds."""
+    size = abs(number) or 1.0
+    units = (("s", 0), ("ms", 3), ("us", 6), ("ns", 9))
+    return next((each for each in units if size >= 0.9995 * 10.0 ** -each[1]), units[-1])
 
 
 def _moved(number: float, places: int) -> float:

@@ -131,6 +131,8 @@ class Code(Enum):
     PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")
     PHASE_PROPOSED = ("F427", "another phase of the ticks keeps its verdicts more firmly")
     GROWN = ("F431", "a log grew while it was read")
+    LOG_OUT_OF_TIME = ("F440", "the audit of a log took longer than it may")
+    AUDIT_OUT_OF_TIME = ("F441", "the time of an audit was over before all logs were judged")
 
     UNKNOWN_PARENT = ("F501", "a parent is not declared")
     BAD_HAZARDS = ("F502", "the hazards cannot be read")
@@ -217,6 +219,7 @@ class Code(Enum):
     NO_KEY = ("F920", "the user has no key, so nothing is kept of a stopped audit")
     FOREIGN_PLACE = ("F921", "evidence names a log in a place that is not looked into")
     TOO_COSTLY = ("F930", "what is read takes more time or memory than it may")
+    NOTICE_FAILED = ("F922", "the command of `--notify` did not take the summary")
     BAD_KEY = ("F931", "a key cannot be used")
     INTERNAL = ("F999", "fretc itself is at fault")
 

@@ -476,6 +476,7 @@ def test_the_options_of_an_audit_stand_under_headings(fretc: Fretc) -> None:
     assert headings == [
         "Judged by:",
         "Printed and written:",
+        "Which logs:",
         "Many logs:",
         "Questions to tables and evidence: LOG is one of them, nothing is audited:",
         "Other:",

@@ -23,6 +23,7 @@ from fretc.logs.signals.samples import Topic
 from fretc.logs.vocabulary import Words
 from fretish import expressions as e
 from fretish import syntax as s
+from fretish.bindings.amounts import duration
 from fretish.bindings.declarations import Declarations, Role, path, short_type
 from fretish.checking import RESERVED
 from fretish.clock import NANOSECONDS, in_words
@@ -332,7 +333,7 @@ def _title(topic: Topic) -> str:
 
 
 def _rounded(length: int) -> str:
-    return f"{length / 10**9:.3g} s"
+    return duration(length / 10**9)
 
 
 # Time

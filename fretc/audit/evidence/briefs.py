@@ -16,7 +16,15 @@ from typing import Any, Protocol
 from compiler.files.records import UnsetType
 from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import Bindings, Hashes, Health, Requirement, Result, Threshold
+from fretc.audit.evidence.schema import (
+    Bindings,
+    Hashes,
+    Health,
+    Requirement,
+    Result,
+    Selection,
+    Threshold,
+)
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
 
@@ -139,6 +147,10 @@ class EvidenceSource(Protocol):
     @property
     def probabilities(self) -> Sequence[Estimated]:
         """What all runs say of each requirement with a probability."""
+
+    @property
+    def selection(self) -> Selection | None:
+        """Which of the named logs were audited; None: all."""
 
     def briefs(self) -> Iterator[tuple[int, Brief]]:
         """Each result with its place, in order: the requirements of a run stand together."""

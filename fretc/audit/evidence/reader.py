@@ -17,7 +17,14 @@ from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
 from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import Bindings, Document, Requirement, Result, Threshold
+from fretc.audit.evidence.schema import (
+    Bindings,
+    Document,
+    Requirement,
+    Result,
+    Selection,
+    Threshold,
+)
 from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
@@ -60,6 +67,11 @@ class Evidence:
     def probabilities(self) -> Sequence[Estimated]:
         """What all runs say of each requirement with a probability."""
         return self.document.probabilities or ()
+
+    @property
+    def selection(self) -> Selection | None:
+        """Which of the named logs were audited; None: all."""
+        return self.document.selection or None
 
     @property
     def results(self) -> tuple[Result, ...]:

@@ -482,6 +482,19 @@ class Requirement(Record, frozen=True):
     sha256: Annotated[Sha256, about("of the canonical wording")]
 
 
+class Selection(Record, frozen=True):
+    """Which of the logs that were named were audited."""
+
+    named: Annotated[Count, about("logs")]
+    since: Annotated[str | None, about("an instant of ISO 8601; null: whatever their dates")]
+    older: Annotated[Count, about("logs from before it: they were left out")]
+    sample_of: Annotated[
+        Count | None, about("of how many logs some were chosen by chance; null: all were audited")
+    ]
+    seed: Annotated[Whole | None, about("of the chance")]
+    audited: Annotated[Count, about("logs")]
+
+
 class Document(Record, frozen=True):
     """A whole file."""
 
@@ -496,6 +509,9 @@ class Document(Record, frozen=True):
             "what all runs together say of each requirement with a probability; absent: there is "
             "none"
         ),
+    ] = UNSET
+    selection: Annotated[
+        Selection | UnsetType, about("absent: all logs that were named were audited")
     ] = UNSET
 
 

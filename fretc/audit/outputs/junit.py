@@ -122,14 +122,15 @@ def github(
         estimates: those that are judged over all runs.
     """
     places = {requirement.id: requirement.wording for requirement in requirements}
+    names = {requirement.id: requirement.name for requirement in requirements}
     lines = []
     for result in results:
         level = "notice" if result.trials is not None else _GITHUB[verdicts.level(result.verdict)]
-        title = f"{result.requirement} {result.verdict}"
+        title = f"{names[result.requirement]} {result.verdict}"
         message = f"{result.run}: {reason(result)}"
         lines.append(_annotation(level, places[result.requirement], title, message))
     for one in estimates:
-        level, title = _GITHUB[verdicts.level(one.answer)], f"{one.requirement} {one.answer}"
+        level, title = _GITHUB[verdicts.level(one.answer)], f"{names[one.requirement]} {one.answer}"
         message = f"all runs: {one.reason}; {one.lines[1]}; {AVERAGE}"
         lines.append(_annotation(level, places[one.requirement], title, message))
     return "".join(lines)

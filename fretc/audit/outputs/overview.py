@@ -11,6 +11,7 @@ from fretc.audit.evidence.writer import health
 from fretc.logs.messages.leaves import Kind, Leaf
 from fretc.logs.reader import Overview
 from fretc.logs.signals.samples import Recording, Topic
+from fretish.bindings import amounts
 from fretish.diagnostics.rendering import visible
 
 _MOST = 8
@@ -48,7 +49,7 @@ def text(overview: Overview, *, whole: bool) -> str:
 def _head(recording: Recording) -> Iterator[str]:
     length = (recording.end_ns - recording.start_ns) / 1e9
     state = "no damage found" if recording.intact else "damaged"
-    yield f"{recording.name}  {recording.size:,} bytes, {length:.3f} s, {state}"
+    yield f"{recording.name}  {recording.size:,} bytes, {amounts.duration(length)}, {state}"
     yield f"  from     {_moment(recording.start_ns)}"
     yield f"  SHA-256  {recording.sha256}"
 
@@ -57,7 +58,7 @@ def _moment(ns: int) -> str:
     """A time of the log; as a date where it can be one."""
     seconds = ns // 10**9
     if not 10**8 < seconds < 10**10:  # a simulated clock begins near 0
-        return f"{ns / 1e9:.3f} s"
+        return amounts.seconds(ns / 1e9)
     return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%d %H:%M:%S} UTC ({ns} ns)"
 
 
@@ -73,7 +74,7 @@ def _topics(overview: Overview, *, whole: bool) -> Iterator[str]:
 def _count(topic: Topic) -> str:
     rate = _rate(topic)
     longest = (topic.longest_gap_ns or 0) / 1e9
-    every = f", {rate:.4g} Hz, longest gap {longest:.3f} s" if rate else ""
+    every = f", {rate:.4g} Hz, longest gap {amounts.duration(longest)}" if rate else ""
     return f"{topic.count} message{'' if topic.count == 1 else 's'}{every}"
 
 

@@ -22,7 +22,7 @@ from compiler.files.records import (
 )
 from compiler.files.templating import to_json
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import Bindings, Requirement
+from fretc.audit.evidence.schema import Bindings, Requirement, Selection
 from fretc.audit.store.tables import TableName
 
 SCHEMA: Final = "fretc-store-1"
@@ -69,6 +69,9 @@ class Manifest(Record, frozen=True):
     probabilities: Annotated[
         Annotated[tuple[Estimated, ...], Meta(min_length=1)] | UnsetType,
         about("what all runs together say of each requirement with a probability"),
+    ] = UNSET
+    selection: Annotated[
+        Selection | UnsetType, about("absent: all logs that were named were audited")
     ] = UNSET
 
 

@@ -23,7 +23,14 @@ from fretc.audit.evidence.briefs import Brief, RunFacts, brief
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import Evidence
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
-from fretc.audit.evidence.schema import Bindings, Document, Requirement, Result, Threshold
+from fretc.audit.evidence.schema import (
+    Bindings,
+    Document,
+    Requirement,
+    Result,
+    Selection,
+    Threshold,
+)
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.store import files, tables
 from fretc.audit.store.anywhere import StoreError
@@ -96,6 +103,11 @@ class Store:
     def probabilities(self) -> Sequence[Estimated]:
         """What all runs say of each requirement with a probability."""
         return self.manifest.probabilities or ()
+
+    @property
+    def selection(self) -> Selection | None:
+        """Which of the named logs were audited; None: all."""
+        return self.manifest.selection or None
 
     def check(self) -> None:
         """Hold every table against the manifest: its bytes, and how many rows there are."""
@@ -249,6 +261,7 @@ def evidence(store: Store) -> Evidence:
         requirements=manifest.requirements,
         results=tuple(result for _, result in store.details(places)),
         probabilities=manifest.probabilities,
+        selection=manifest.selection,
     )
     return Evidence(store.file, store.sha256, document)
 

@@ -149,6 +149,7 @@ def write_document(
         confidence=confidence,
         parts=tuple(written),
         probabilities=document.probabilities,
+        selection=document.selection,
     )
     digest = write_manifest(folder, manifest)
     if isinstance(digest, str):

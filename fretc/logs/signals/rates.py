@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from fretc.logs.signals.samples import Recording, Topic
+from fretish.bindings.amounts import duration, exact_duration
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -69,8 +70,8 @@ def _tick(clock: Clock, recording: Recording) -> int | None:
 def _too_old(signal: Signal, period: int, max_age: int) -> Diagnostic:
     return Diagnostic(
         Code.UNKNOWN_BETWEEN,
-        f"`{signal.path.topic}` comes every {_ms(period)}, and a sample of `{signal.name}` counts "
-        f"for {_ms(max_age)}: in between it is unknown",
+        f"`{signal.path.topic}` comes every {_long(period, max_age)}, and a sample of "
+        f"`{signal.name}` counts for {exact_duration(max_age / 1e9)}: in between it is unknown",
         signal.span,
         help="raise `max_age` above the time between two messages, or publish more often",
         severity=Severity.WARNING,
@@ -81,8 +82,8 @@ def _slow(signal: Signal, period: int, clock: Clock, tick: int) -> Diagnostic:
     by = "" if clock.period is not None else f" (each message of `{clock.topic}`)"
     return Diagnostic(
         Code.SLOW_TOPIC,
-        f"`{signal.path.topic}` comes every {_ms(period)}, and the clock ticks every "
-        f"{_ms(tick)}{by}: most ticks see a sample of an earlier one",
+        f"`{signal.path.topic}` comes every {_long(period, tick)}, and the clock ticks every "
+        f"{exact_duration(tick / 1e9)}{by}: most ticks see a sample of an earlier one",
         signal.span,
         help="state `max_age` if that is meant, use a longer `tick`, or publish more often",
         severity=Severity.WARNING,
@@ -90,5 +91,5 @@ def _slow(signal: Signal, period: int, clock: Clock, tick: int) -> Diagnostic:
     )
 
 
-def _ms(length: int) -> str:
-    return f"{length / 10**6:.4g} ms"
+def _long(length: int, limit: int) -> str:
+    return duration(length / 1e9, [limit / 1e9])

@@ -23,6 +23,7 @@ from fretc.logs.signals.propositions import TRUE, truth
 from fretc.logs.signals.samples import EXACT, WHOLE, Values, scaled, widest
 from fretc.logs.signals.thresholds import thresholds
 from fretish import expressions as e
+from fretish.bindings import amounts
 from fretish.bindings.declarations import (
     Declarations,
     Path,
@@ -401,18 +402,17 @@ _blind_share = lru_cache(256)(blind_share)
 def _blind_zone(
     proposition: Proposition, signal: Signal, bound: float, limit: float, share: float
 ) -> Diagnostic:
+    shown_bound, shown_limit = (amounts.scaled(each, signal.unit.factor) for each in (bound, limit))
+    unit = "" if signal.unit_name == "1" else signal.unit_name
     where = "" if share == 1 else f" in {round(share * 360)} of 360 degrees"
     return Diagnostic(
         Code.BLIND_ZONE,
-        f"`{proposition.name}` compares `{signal.name}` with {_in_unit(bound, signal)}, and "
-        f"`{signal.path.topic}` reports nothing nearer than {_in_unit(limit, signal)}: what is "
+        f"`{proposition.name}` compares `{signal.name}` with "
+        f"{amounts.exact(shown_bound, unit)}, and `{signal.path.topic}` reports nothing nearer "
+        f"than {amounts.value(shown_limit, unit, [shown_bound])}: what is "
         f"nearer than the bound cannot be seen{where}",
         proposition.span,
         help="raise the bound above what the sensor can measure, or use a sensor that measures "
         "nearer; only a reading of -inf could tell that something is too near",
         severity=Severity.WARNING,
     )
-
-
-def _in_unit(value: float, signal: Signal) -> str:
-    return f"{scaled(value, 1 / signal.unit.factor):.4g} {signal.unit_name}".rstrip()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from compiler.project.folder import Project
@@ -68,7 +68,7 @@ def overall(
                 *_few(reservations),
                 _waived(active),
                 _unsigned(sections),
-                _unplanned(missing),
+                _unplanned(missing, {view.id: view.name for view in sections}),
                 _uncovered(project, assessments),
                 trust(runs, project),
                 _FLAWED if has_flaws else "",
@@ -167,11 +167,11 @@ def _forged(signatures: Signatures) -> str:
     return f"{count} {verb} not verify: {phrases.some(places)}."
 
 
-def _unplanned(missing: Sequence[Planned]) -> str:
+def _unplanned(missing: Sequence[Planned], names: Mapping[str, str]) -> str:
     if not missing:
         return ""
-    names = phrases.some([f"{plan.method} for {plan.requirement}" for plan in missing])
-    return f"No result is known of {phrases.times(len(missing), 'planned method')}: {names}."
+    methods = phrases.some([f"{plan.method} for {names[plan.requirement]}" for plan in missing])
+    return f"No result is known of {phrases.times(len(missing), 'planned method')}: {methods}."
 
 
 def _uncovered(project: Project, assessments: Sequence[Assessment]) -> str:

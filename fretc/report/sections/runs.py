@@ -187,7 +187,7 @@ def _rate(topic: Topic) -> str:
     if topic.first_ns is None or topic.last_ns is None or topic.last_ns <= topic.first_ns:
         return _NONE
     rate = (topic.count - 1) * 1e9 / (topic.last_ns - topic.first_ns)
-    return f"{rate:.1f} Hz" if rate >= 1 else f"{rate:.2g} Hz"
+    return phrases.value(rate, "Hz")
 
 
 def _named(run: Run) -> str:

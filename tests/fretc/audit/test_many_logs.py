@@ -51,7 +51,8 @@ def test_the_recorded_mission_shows_r1_with_the_stops_that_a_person_sees_in_it(
     assert replace(run, out=untimed(run.out)) == Run(
         0,
         "run.mcap\n"
-        "  ✔ R1  satisfied     held, 98 triggers, answered after 0 s (median), 39.8 s (longest)\n"
+        "  ✔ Stop when an obstacle is within 5 cm (R1)  satisfied     held, 98 triggers, "
+        "answered after 0 s (median), 39.8 s (longest)\n"
         "1 run \N{MULTIPLICATION SIGN} 1 requirement: 1 satisfied\n",
         "wrote build/evidence.json\n",
     )
@@ -79,7 +80,7 @@ def test_a_bound_makes_the_slow_answer_a_violation(fretc: Fretc) -> None:
     change("requirements/r1.fret", "shall eventually", "shall within 300 milliseconds")
     run = fretc("audit", "run.mcap")
     assert run.status == 1
-    assert "  ✘ R1  violated      broken from " in run.out
+    assert "  ✘ Stop when an obstacle is within 5 cm (R1)  violated      broken from " in run.out
     (result,) = evidence()["results"]
     first = result["violations"][0]
     assert first["trigger"] is not None
@@ -233,7 +234,10 @@ def test_stepping_shows_the_same_as_columns(fretc: Fretc) -> None:
 def test_results_can_be_read_by_other_tools(fretc: Fretc) -> None:
     junit = fretc("audit", "run.mcap", "--format", "junit")
     assert (junit.status, junit.out.startswith('<?xml version="1.0"')) == (0, True)
-    assert '<testcase name="R1" classname="run.mcap"' in junit.out
+    assert (
+        '<testcase name="Stop when an obstacle is within 5 cm (R1)" classname="run.mcap"'
+        in junit.out
+    )
     github = fretc("audit", "run.mcap", "--format", "github")
     assert github.out.startswith("::notice file=requirements/r1.fret,line=")
 

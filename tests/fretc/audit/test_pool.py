@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.audit.pool import Killed, each
+from fretc.audit.pool import Killed, Late, Limits, each
 
 
 @pytest.mark.parametrize("jobs", [1, 2, 5])
@@ -68,6 +68,33 @@ def test_a_thing_whose_process_is_killed_once_is_done_the_second_time(tmp_path: 
         return f"done {thing}"
 
     assert dict(each(work, range(3), 2)) == {i: f"done {i}" for i in range(3)}
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_a_thing_that_takes_too_long_is_late_and_the_others_are_done(jobs: int) -> None:
+    work = lambda thing: time.sleep(60 if thing % 3 == 1 else 0)  # noqa: E731
+    results = dict(each(work, range(6), jobs, Limits(each=0.3)))
+    assert results == {0: None, 1: Late.OWN, 2: None, 3: None, 4: Late.OWN, 5: None}
+    assert not active_children()
+
+
+def test_when_the_time_of_all_is_over_each_that_is_not_done_is_late() -> None:
+    work = lambda thing: time.sleep(60 if thing else 0)  # noqa: E731
+    assert dict(each(work, range(5), 1, Limits(all=0.5))) == {
+        0: None,
+        **dict.fromkeys(range(1, 5), Late.ALL),
+    }
+    assert dict(each(work, [0], 1, Limits(all=0.0))) == {0: Late.ALL}
+    assert not active_children()
+
+
+def test_a_thing_is_late_however_the_process_is_busy() -> None:
+    def work(thing: int) -> None:
+        signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM, signal.SIGALRM])
+        while thing:
+            pass
+
+    assert dict(each(work, [1], 1, Limits(each=0.3))) == {0: Late.OWN}
 
 
 def test_how_a_process_ended_is_told_in_words() -> None:

@@ -3,6 +3,7 @@
 import os
 import shutil
 from collections.abc import Callable, Iterator
+from datetime import UTC, datetime
 from pathlib import Path
 
 import boto3  # type: ignore[import-untyped]
@@ -11,6 +12,7 @@ import pytest
 from moto.server import ThreadedMotoServer
 
 from fretc.audit.log_paths import logs
+from fretc.audit.selection.dates import is_older
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc, untimed, write
 from tests.fretc.logs import logs as recordings
@@ -138,6 +140,22 @@ def test_a_log_that_cannot_be_read_is_no_data_and_no_other_is_lost(
     assert "F402" in run.err
     assert run.out.count("satisfied") == 3  # two runs, and the count
     assert "no data" in run.out
+
+
+def test_a_log_in_a_store_has_the_date_of_its_recording(robot: Fretc) -> None:
+    start = 1_700_000_000  # in November 2023
+    values = [recordings.number(i, (start + i) * recordings.S) for i in range(3)]
+    recordings.write(Path("dated.mcap"), values)
+    with fsspec.open("s3://fleet/night/dated.mcap", "wb") as file:
+        file.write(Path("dated.mcap").read_bytes())
+    dated, simulated = "s3://fleet/night/dated.mcap", "s3://fleet/night/a.mcap"
+    before, after = (datetime.fromtimestamp(start + shift, UTC) for shift in (0, 1))
+    assert not is_older(dated, before)
+    assert is_older(dated, after)
+    assert not is_older(simulated, after)  # by its change, which is now
+    assert is_older(simulated, datetime(9999, 1, 1, tzinfo=UTC))
+    run = robot("audit", "s3://fleet/night/", "--since", "1d")
+    assert "3 of 4 logs: 1 are from before" in run.err
 
 
 def test_no_file_makes_a_store_be_opened(robot: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,13 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.briefs import brief
 from fretc.audit.evidence.schema import Result
-from fretc.audit.outputs.totals import Marks, severity, sign_of, word_of
+from fretc.audit.outputs.totals import severity, sign_of, word_of
 from fretc.commands.audit_table import MOST_NAMES, MOST_REQUIREMENTS, MOST_RUNS, table
 from fretc.terminal.screen import Screen, width
 from tests.command import Fretc, untimed, write
 from tests.fretc.audit.outputs.test_totals import audits
+from tests.fretc.audit.outputs.test_totals import marks as marks_of
 from tests.fretc.audit.results import result
 from tests.fretc.logs import logs
 
@@ -26,7 +26,7 @@ ROOT = Path(__file__).parents[3]
 
 def shown(results: list[Result], columns: int = 80, encoding: str = "utf-8") -> list[str]:
     screen = Screen(columns, encoding)
-    lines = table(Marks.of(map(brief, results)), screen)
+    lines = table(marks_of(results), screen)
     return [screen.signs("".join(text for text, _ in line)) for line in lines]
 
 
@@ -138,9 +138,9 @@ def test_the_worst_is_named_with_title_value_limit_times_and_commands(robot: Fre
     run = robot("audit", "run.mcap", "-o", "e v.json")
     assert run.status == 1
     listed, worst = untimed(run.out).split("\n\n")
-    assert listed.startswith("run.mcap\n  ✘ R1  violated")
+    assert listed.startswith("run.mcap\n  ✘ Enough is left (R1)  violated")
     assert worst == (
-        "worst: R1 violated in run.mcap: Enough is left\n"
+        "worst: Enough is left (R1) violated in run.mcap\n"
         "  at 1000 s by the clock of the log, 0 s into the log, until 0.5 s\n"
         "  demanded: charged; charge = 0 %\n"
         "  limit: charge > 5 % (charged); from 0 % to 11 % in this run\n"
@@ -154,10 +154,11 @@ def test_many_runs_are_a_table_and_verbose_lists_them(robot: Fretc) -> None:
     shutil.copy("run.mcap", "same.mcap")
     run = robot("audit", "run.mcap", "same.mcap")
     assert run.out.startswith(
-        "    run 1\n  ✘ R1  ✘✘\n\n  run 1: 1 violated: run.mcap\n  run 2: 1 violated: same.mcap\n\n"
+        f"    {'run':<19} 1\n  ✘ Enough is left (R1) ✘✘\n\n"
+        "  run 1: 1 violated: run.mcap\n  run 2: 1 violated: same.mcap\n\n"
     )
     listed = robot("audit", "run.mcap", "same.mcap", "-v")
-    assert "same.mcap\n  ✘ R1  violated" in listed.out
+    assert "same.mcap\n  ✘ Enough is left (R1)  violated" in listed.out
     last = "2 runs \N{MULTIPLICATION SIGN} 1 requirement: 2 violated (1 requirement in 2 runs)\n"
     assert untimed(run.out).endswith(last)
     assert untimed(listed.out).endswith(last)

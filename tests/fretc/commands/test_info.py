@@ -25,9 +25,9 @@ def test_a_person_sees_each_topic_with_what_a_signal_can_read(fretc: Fretc) -> N
     lines = run.out.splitlines()
     assert (run.status, run.err) == (0, "")
     assert lines[0].startswith("log.mcap  ")
-    assert lines[0].endswith(" bytes, 1.100 s, no damage found")
+    assert lines[0].endswith(" bytes, 1.1 s, no damage found")
     after = {line.split()[0]: lines[i + 1].strip() for i, line in enumerate(lines[:-1])}
-    assert "  /x     std_msgs/msg/Float64, 12 messages, 10 Hz, longest gap 0.100 s" in lines
+    assert "  /x     std_msgs/msg/Float64, 12 messages, 10 Hz, longest gap 100 ms" in lines
     assert after["/x"] == ".data"
     assert ".range_max, .ranges[:], and " in after["/scan"]
     assert after["/raw"] == (

@@ -28,7 +28,7 @@ def test_clocks_that_are_mixed_and_far_apart_are_a_warning(tmp_path: Path) -> No
     (finding,) = recorded(write(tmp_path / "log.mcap", sent), declare(text)).findings
     assert finding.severity is Severity.WARNING
     assert finding.message == (
-        "the messages of `/x` have no header.stamp: their log_time is used, and that is 6.000 s "
+        "the messages of `/x` have no header.stamp: their log_time is used, and that is 6 s "
         "away from the stamps of the other topics"
     )
 
@@ -60,7 +60,7 @@ def test_a_truncated_log_says_how_far_whole_messages_go(tmp_path: Path) -> None:
     path.write_bytes(data[: third + 20])
     (finding,) = recorded(path, X).findings
     assert render(finding) == (
-        f"F403 warning: the log breaks off after byte {third}: whole messages go 0.700 s far, and "
+        f"F403 warning: the log breaks off after byte {third}: whole messages go 0.7 s far, and "
         "what came then is unknown\n"
         f"  --> {path}\n"
         "help: what it shows up to there counts, and nothing counts as satisfied"
@@ -73,7 +73,7 @@ def test_damage_is_told_with_its_place_and_time(tmp_path: Path) -> None:
     damaged(path, second + 9 + 28 + 4 + 8 + 40)
     assert render(recorded(path, X).findings[0]) == (
         f"F404 warning: the log is damaged near byte {second}: a chunk has another CRC than it "
-        "states; what was recorded from 0.400 s to 0.700 s counts as unknown\n"
+        "states; what was recorded from 0.4 s to 0.7 s counts as unknown\n"
         f"  --> {path}\n"
         "help: copy the log again from where it was recorded; nothing counts as shown by a "
         "damaged log"

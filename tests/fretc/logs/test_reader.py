@@ -101,7 +101,7 @@ def test_a_time_of_another_clock_is_refused_and_not_turned_into_a_million_years_
     diagnostic = refused(path)
     assert diagnostic.code is Code.UNREADABLE_LOG
     assert diagnostic.message == (
-        "the log lasts 1700000000.000 s, which is 17000000000 ticks: a message has a wrong time "
+        "the log lasts 1700000000 s, which is 17000000000 ticks: a message has a wrong time "
         "(log_time)"
     )
 

@@ -387,7 +387,8 @@ def test_a_planned_method_without_a_result_is_reported(tmp_path: Path) -> None:
         "What was audited held; not all that was planned is shown."
     )
     assert overall["overall"]["sentences"][2] == (
-        "No result is known of 2 planned methods: ajpf for R1 and inspection for R1."
+        "No result is known of 2 planned methods: ajpf for Title of R1 (R1) and "
+        "inspection for Title of R1 (R1)."
     )
 
 
@@ -593,7 +594,7 @@ def test_a_run_is_shown_with_its_health(tmp_path: Path) -> None:
                 "name": "/odom",
                 "type": "nav_msgs/msg/Odometry",
                 "count": "501",
-                "rate": "50.0 Hz",
+                "rate": "50 Hz",
                 "longest_gap": "40 ms",
                 "out_of_order": "3",
                 "read_for": ["vx"],

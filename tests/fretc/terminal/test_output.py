@@ -77,7 +77,7 @@ def test_a_closed_standard_output_costs_nothing_but_the_output(folder: Path) -> 
 def test_an_encoding_that_has_no_tick_mark_still_shows_the_verdict(folder: Path) -> None:
     done = in_shell(folder, f"audit {LOG}", "PYTHONIOENCODING=latin-1 {}", "latin-1")
     assert done.returncode == 0
-    assert "+ R1  satisfied" in done.stdout
+    assert "+ Stop when an obstacle is within 5 cm (R1)  satisfied" in done.stdout
 
 
 def test_evidence_never_replaces_what_is_read(folder: Path, fretc: Fretc) -> None:

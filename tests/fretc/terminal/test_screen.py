@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.terminal.screen import Screen, fitted, padded, screen, width
+from fretc.terminal.screen import Screen, fitted, padded, screen, titled, width
 from fretish.diagnostics.signs import SIGNS
 
 ENCODINGS = ("utf-8", "latin-1", "ascii", "cp437")
@@ -45,3 +45,22 @@ def test_each_sign_has_a_letter_of_its_own_for_terminals_that_cannot_write_it() 
 def test_what_is_no_terminal_has_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "200")
     assert screen().width == 80
+
+
+@pytest.mark.parametrize(
+    ("title", "columns", "text"),
+    [
+        ("No contact", 40, "No contact (R14)"),
+        ("", 40, "R14"),
+        ("Point 1 is inspected before the return", 26, "Point 1 is inspecte… (R14)"),
+        ("Point 1 is inspected before the return", 12, "R14"),
+    ],
+)
+def test_a_title_is_shortened_and_its_id_never(title: str, columns: int, text: str) -> None:
+    assert titled("R14", title, columns) == text
+
+
+@given(st.text(), st.text(), st.integers(8, 60))
+def test_a_titled_name_is_never_wider_than_its_room(id: str, title: str, columns: int) -> None:
+    screen = Screen()
+    assert width(titled(screen.text(id), screen.text(title), columns)) <= columns

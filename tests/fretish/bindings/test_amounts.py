@@ -163,6 +163,9 @@ def test_a_time_ends_at_the_millisecond() -> None:
         (0.9996, [], "1 s"),
         (0.9994, [], "999 ms"),
         (0.00125, [], "1.25 ms"),
+        (1.2e-5, [], "12 us"),
+        (1e-9, [], "1 ns"),
+        (0.0009997, [], "1 ms"),
         (39.8004, [], "39.8 s"),
         (1234.56, [], "1235 s"),
         (0.30004, [0.3], "300.04 ms"),
@@ -179,7 +182,7 @@ def test_a_duration_is_in_the_unit_that_a_person_says(
 
 def _in_seconds(text: str) -> float:
     number, unit = text.split()
-    return float(number) * {"s": 1.0, "ms": 0.001}[unit]
+    return float(number) * {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[unit]
 
 
 @given(st.integers(0, 10**13), st.integers(0, 10**13))

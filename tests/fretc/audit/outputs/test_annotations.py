@@ -200,7 +200,8 @@ def test_annotations_go_where_the_user_wants_and_are_no_logs(fretc: Fretc) -> No
     for _ in range(2):
         run = fretc("audit", "logs", "--annotations", "logs")
         assert run.status == 1
-        assert run.out.count(".mcap\n") == 1
+        assert ".fretc.mcap" not in run.out
+        assert "run.mcap\n  ✘" in run.out
     assert sorted(path.name for path in Path("logs").iterdir()) == ["run.fretc.mcap", "run.mcap"]
 
 

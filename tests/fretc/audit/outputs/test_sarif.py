@@ -118,7 +118,7 @@ def test_only_rules_and_logs_of_findings_occur() -> None:
 
 
 def test_a_run_that_only_counts_is_no_finding_and_the_answer_of_all_is_one() -> None:
-    trials = {"trials": {"answered": 1, "failed": 1, "open": 0}}
+    trials: dict[str, Any] = {"trials": {"answered": 1, "failed": 1, "open": 0}}
     counted = result("inconclusive", **trials)
     lost = result("no data", "R2", **trials)
     content = json.loads(

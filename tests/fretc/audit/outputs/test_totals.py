@@ -1,5 +1,6 @@
 """How many results have which verdict, and which one is to be looked at first."""
 
+from collections.abc import Collection, Iterable
 from typing import Any
 
 from hypothesis import given
@@ -23,6 +24,11 @@ VERDICTS = ("violated", "no data", "inconclusive", "vacuous", "satisfied")
 TRIALS = {"answered": 1, "failed": 0, "open": 0}
 
 
+def marks(results: Iterable[Result], refused: Collection[str] = ()) -> Marks:
+    """Those of these results."""
+    return Marks.of(map(brief, results), (), refused)
+
+
 def audits(most: int = 6) -> st.SearchStrategy[list[Result]]:
     """Some runs by some requirements."""
     sizes = st.tuples(st.integers(1, most), st.integers(1, most))
@@ -40,7 +46,7 @@ def audits(most: int = 6) -> st.SearchStrategy[list[Result]]:
 
 @given(audits(), st.sets(st.sampled_from(["R0", "R3"])))
 def test_each_result_is_in_exactly_one_count(results: list[Result], refused: set[str]) -> None:
-    counts = totals(Marks.of(map(brief, results), (), refused))
+    counts = totals(marks(results, refused))
     assert sum(total.results for total in counts) == len(results)
     assert len({total.word for total in counts}) == len(counts)
     for total in counts:
@@ -55,25 +61,24 @@ def test_each_result_is_in_exactly_one_count(results: list[Result], refused: set
 @given(audits())
 def test_what_is_violated_is_counted_first_and_named(results: list[Result]) -> None:
     violated = [each for each in results if each.verdict == "violated"]
-    marks = Marks.of(map(brief, results))
+    found = marks(results)
     if violated:
-        assert totals(marks)[0].word == "violated"
-        assert marks.worst is not None
-        assert results[marks.worst] is violated[0]
-    assert (marks.worst is None) == all(each.verdict == "satisfied" for each in results)
-    assert marks.violated == bool(violated)
-    assert marks.shown == (marks.worst is None)
+        assert totals(found)[0].word == "violated"
+        assert found.worst == results.index(violated[0])
+    assert (found.worst is None) == all(each.verdict == "satisfied" for each in results)
+    assert found.violated == bool(violated)
+    assert found.shown == (found.worst is None)
 
 
 def test_a_refused_requirement_is_not_judged_whatever_the_log() -> None:
-    (total,) = totals(Marks.of([brief(result(verdict="no data"))], (), {"R1"}))
+    (total,) = totals(marks([result(verdict="no data")], {"R1"}))
     assert total.word == NOT_JUDGED
 
 
 def test_a_run_that_only_counts_is_nothing_to_look_at() -> None:
     counting = [result(verdict=word, trials=TRIALS) for word in ("inconclusive", "vacuous")]
     assert {word_of(each) for each in counting} == {COUNTED}
-    assert Marks.of(map(brief, counting)).worst is None
+    assert marks(counting).worst is None
     assert word_of(result(verdict="no data", trials=TRIALS)) == "no data"
 
 
@@ -91,7 +96,7 @@ def broken(id: str, *stretches: tuple[int, int]) -> Result:
 
 def test_the_worst_is_broken_for_the_most_ticks() -> None:
     short, long = broken("R1", (0, 3), (5, 5)), broken("R2", (0, 2), (7, 9))
-    assert Marks.of(map(brief, [short, long])).worst == 1
+    assert marks([short, long]).worst == 1
     found = longest(short)
     assert found is not None
     assert (found.first_tick, found.last_tick) == (0, 3)

@@ -71,8 +71,8 @@ def values(kind: Any, *, held: bool) -> st.SearchStrategy[Any]:
         case types.TupleType(item_types=items):
             return st.tuples(*(values(item, held=held) for item in items)).map(list)
         case types.DictType(key_type=key, value_type=item, min_length=least):
-            names, items = values(key, held=held), values(item, held=held)
-            return st.dictionaries(names, items, min_size=least or 0, max_size=2)
+            names, contents = values(key, held=held), values(item, held=held)
+            return st.dictionaries(names, contents, min_size=least or 0, max_size=2)
         case types.StructType() | types.DataclassType():
             return records(kind, held=held)
     raise AssertionError(kind)
@@ -170,6 +170,7 @@ def test_evidence_comes_back_from_a_store_to_the_letter(document: Document, fold
     store = stored(folder, document)
     found = evidence(store)
     assert text(found.document) == text(document)
+    assert store.selection == (document.selection or None)
     assert [*store.briefs()] == [*enumerate(map(brief, document.results))]
     assert [*store.runs()] == [*map(run_facts, runs_of(document.results))]
     for id in {each.requirement for each in document.results}:

@@ -72,7 +72,7 @@ def test_a_clock_that_is_set_back_is_counted_and_told(tmp_path: Path) -> None:
     assert codes(recording) == ["F411", "F417"]
     finding = recording.findings[1]
     assert finding.severity is Severity.WARNING
-    assert finding.message == "the clock of `/scan` jumps against log_time once by 7.000 s"
+    assert finding.message == "the clock of `/scan` jumps against log_time once by 7 s"
 
 
 def test_log_times_are_one_clock_whatever_the_stamps(tmp_path: Path) -> None:
@@ -146,7 +146,7 @@ def test_a_publish_time_of_zero_is_none(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("shift", "words"), [(5 * S, "5.000 s ahead of"), (-2 * S, "2.000 s behind"), (S // 2, "")]
+    ("shift", "words"), [(5 * S, "5 s ahead of"), (-2 * S, "2 s behind"), (S // 2, "")]
 )
 def test_two_topics_on_two_clocks_are_told(tmp_path: Path, shift: int, words: str) -> None:
     sent = []
@@ -170,7 +170,7 @@ def test_of_three_topics_the_one_that_differs_is_told(tmp_path: Path) -> None:
             sent.append(Sent(topic, one.type, one.payload, at))
     recording = recorded(write(tmp_path / "log.mcap", sent), declare(text))
     (finding,) = recording.findings
-    assert finding.message.startswith("the stamps of `/scan` are 5.000 s behind those of `/back`")
+    assert finding.message.startswith("the stamps of `/scan` are 5 s behind those of `/back`")
 
 
 @pytest.mark.parametrize("unset", [3, 4096, 5000])

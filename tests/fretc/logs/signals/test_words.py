@@ -86,7 +86,7 @@ def test_a_text_is_read_of_every_kind_of_log(tmp_path: Path, kind: str) -> None:
     assert times(recording, "mode") == [S + i * STEP for i in range(6)]
     (finding,) = [each for each in recording.findings if each.code.number == "F423"]
     assert finding.message == (
-        "2 of 6 samples of `mode` are none of its values, the first one `charging` at 0.300 s: "
+        "2 of 6 samples of `mode` are none of its values, the first one `charging` at 0.3 s: "
         "they are unknown"
     )
     assert column(recording, declared()) == [False, True, False, None, None, True]
@@ -133,7 +133,7 @@ def test_a_number_is_the_constant_of_its_definition(
     (finding,) = [each for each in recording.findings if each.code.number == "F423"]
     assert finding.message == (
         f"{count // 6} of {count} samples of `mode` are none of its values, the first one `7` at "
-        "0.300 s: they are unknown"
+        "0.3 s: they are unknown"
     )
     assert column(recording, text)[:6] == [False, True, True, None, False, True]
 
@@ -387,7 +387,7 @@ def test_a_word_may_be_added_where_messages_have_its_number() -> None:
     assert [tick.truth["p"] for tick in end.ticks] == [True, False, None]
     (finding,) = stream.findings
     assert finding.message == (
-        "1 of 3 samples of `gear` are none of its values, the first one `reverse` at 0.200 s: "
+        "1 of 3 samples of `gear` are none of its values, the first one `reverse` at 0.2 s: "
         "they are unknown"
     )
     wrong = stream.add("mode", S, {"a": 1})
@@ -401,7 +401,7 @@ def test_a_number_that_stands_for_a_truth_value_is_named(tmp_path: Path) -> None
     (finding,) = [each for each in findings if each.code.number == "F424"]
     assert finding.message == (
         "`on` stands for a truth value, and 2 of 4 samples are neither 1 nor 0, the first one 55.5 "
-        "at 0.100 s: they are unknown"
+        "at 0.1 s: they are unknown"
     )
 
 

@@ -84,7 +84,7 @@ def test_a_log_from_standard_input_is_the_log(tmp_path: Path, kind: str) -> None
             found = info(stream)
     lines = found.stdout.decode().splitlines()
     assert (found.returncode, found.stderr) == (0, b"")
-    assert lines[0] == f"<stdin>  {len(data):,} bytes, 1.100 s, no damage found"
+    assert lines[0] == f"<stdin>  {len(data):,} bytes, 1.1 s, no damage found"
     assert lines[2] == f"  SHA-256  {hashlib.sha256(data).hexdigest()}"
 
 

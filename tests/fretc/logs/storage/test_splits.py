@@ -130,7 +130,7 @@ def test_a_bag_that_was_reindexed_has_lost_its_end(tmp_path: Path, name: str, ba
     assert recording.gaps == ((SIX[5].time, SIX[5].time),)
     assert recording.findings[0].message == (
         "it was reindexed, and the chunk that was being written when its recording broke off is "
-        f"not in it (`{backup}` is beside it): whole messages go 0.500 s far, and what came then "
+        f"not in it (`{backup}` is beside it): whole messages go 0.5 s far, and what came then "
         "is unknown"
     )
 

@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 from fretc.report.model.across import Lanes
 from tests.fretc.report.cases import R1, moment, project, report_of, requirement, result, violation
@@ -21,7 +22,10 @@ def spans(lanes: Lanes | None, kind: str) -> list[tuple[str, float, float, int]]
 
 def test_lanes_have_what_the_evidence_has(tmp_path: Path) -> None:
     known = project(tmp_path, *TEXTS)
-    bad = {"violations": [violation(10, 12), violation(60, 60)], "unknown": [[30, 33]]}
+    bad: dict[str, Any] = {
+        "violations": [violation(10, 12), violation(60, 60)],
+        "unknown": [[30, 33]],
+    }
     build = report_of(
         known,
         tmp_path,

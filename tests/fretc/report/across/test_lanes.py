@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fretc.audit.evidence.briefs import Stretches
-from fretc.report.across.lanes import RunStretches, plan
+from fretc.report.across.lanes import MOST_LANES, RunStretches, plan
 from fretc.report.model.across import LaneMark, Lanes
 from fretc.report.model.marks import verdict_mark
 
 times = st.floats(0, 1e4).map(lambda number: round(number, 3))
-spans = st.lists(st.tuples(times, times).map(lambda pair: tuple(sorted(pair))), max_size=60)
+spans = st.lists(st.tuples(times, times).map(lambda pair: (min(pair), max(pair))), max_size=60)
 
 
 @st.composite
@@ -28,9 +28,9 @@ def stretches(draw: st.DrawFn) -> Stretches:
 Drawn = list[tuple[RunStretches, Stretches]]
 
 
-def lanes(drawn: Drawn, *limits: int) -> Lanes | None:
+def lanes(drawn: Drawn, most: int = MOST_LANES, marks: int = 1_200) -> Lanes | None:
     """The picture of results with these stretches."""
-    chosen = plan("all", [each for each, _ in drawn], *limits)
+    chosen = plan("all", [each for each, _ in drawn], most, marks)
     return chosen.lanes({each.place: (own, ()) for each, own in drawn})
 
 

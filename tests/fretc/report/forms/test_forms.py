@@ -92,8 +92,11 @@ NUMBERS = (
 
 def test_csv_has_numbers_as_numbers_and_units_in_its_head(fretc: Fretc) -> None:
     known = project(Path("requirements"))
-    late = {"latencies_s": [0.25, 39.8004, 0.25], "triggers": [moment(1), moment(2), moment(400)]}
-    none: dict[str, list[object]] = {"latencies_s": [], "triggers": [], "open": []}
+    late: dict[str, Any] = {
+        "latencies_s": [0.25, 39.8004, 0.25],
+        "triggers": [moment(1), moment(2), moment(400)],
+    }
+    none: dict[str, Any] = {"latencies_s": [], "triggers": [], "open": []}
     results = [
         result(known, "satisfied", run="a.mcap", **late, open=[moment(500)]),
         result(known, "satisfied", run="b.mcap", hashes={"log": "cd" * 32}, **none),
@@ -107,7 +110,7 @@ def test_csv_has_numbers_as_numbers_and_units_in_its_head(fretc: Fretc) -> None:
         ["0", "0", "0", "0", "", ""],
     ]
     # What is no number is in quotes: a reader that turns all others into numbers reads the file.
-    typed = list(csv.reader(io.StringIO(text), quoting=csv.QUOTE_NONNUMERIC))
+    typed: list[Any] = list(csv.reader(io.StringIO(text), quoting=csv.QUOTE_NONNUMERIC))
     assert typed[1][-6:] == [3.0, 3.0, 1.0, 0.0, 0.25, 39.8004]
 
 
@@ -266,7 +269,7 @@ def test_two_runs_of_one_name_are_two_suites(fretc: Fretc) -> None:
 
 def test_a_waiver_covers_what_its_runs_show(fretc: Fretc) -> None:
     known = project(Path("requirements"))
-    broken = {"verdict": "violated", "violations": [violation(14, 20, 11)]}
+    broken: dict[str, Any] = {"verdict": "violated", "violations": [violation(14, 20, 11)]}
     results = [result(known, id="R1", run=run, **broken) for run in ("a.mcap", "b.mcap")]
     write("build/evidence.json", json.dumps(evidence(known, *results)))
     write(

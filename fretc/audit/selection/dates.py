@@ -1,0 +1,96 @@
+"""When a log was recorded, and whether that is since a time.
+
+The date of a log is the start of its recording where its summary states it, else when it changed
+last. A clock that counts from its own zero states none.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from datetime import UTC, datetime, timedelta
+
+from compiler.files.dates import now
+from fretc.audit.log_paths import files_of
+from fretc.logs.mcap.container import MAGIC, summary
+from fretc.logs.storage.folders import Folder, folder, is_folder
+from fretc.logs.storage.inputs import STDIN, is_url, opened
+from fretc.logs.storage.listings import changed, is_store
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.reading.limits import within
+from fretish.units import nanoseconds
+
+_FIRST_DATE = 10**17
+"""Nanoseconds, in 1973: a clock that tells less is simulated."""
+_DAYS = re.compile(r"\s*([0-9]{1,5})\s*d\s*")
+
+
+def since(text: str) -> datetime | Diagnostic:
+    """The time that a user means: `2026-11-22`, `2026-11-22T18:00+01:00`, `24 h`, `7 d` ago.
+
+    Without a zone it is UTC. Now is `SOURCE_DATE_EPOCH`, where that is set.
+    """
+    days, length = _DAYS.fullmatch(text), nanoseconds(text)
+    try:
+        if days is not None:
+            return now() - timedelta(days=int(days[1]))
+        if length is not None:
+            return now() - timedelta(microseconds=length // 1000)
+        moment = datetime.fromisoformat(text)
+        return (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).astimezone(UTC)
+    except (ValueError, OverflowError):
+        return Diagnostic(
+            Code.BAD_USAGE,
+            f"`--since {text}` is neither a date nor a time ago",
+            help="write `--since 2026-11-22`, `--since 2026-11-22T18:00`, `--since 24h` or "
+            "`--since 7d`",
+        )
+
+
+def is_older(log: str, than: datetime) -> bool:
+    """Whether a log is known to be older: one without a date is not."""
+    limit = int(than.timestamp()) * 10**9 + than.microsecond * 1000
+    if is_store(log):
+        change = changed(log)
+        if change is not None and change < limit:
+            return True  # a store has its own clock: what came before was recorded before
+    date = _recorded(log) or _changed(log)
+    return date is not None and date < limit
+
+
+def _recorded(log: str) -> int | None:
+    """The start of the recording in nanoseconds since 1970, where the log states a date."""
+    try:
+        start = _start_of_folder(log) if is_folder(log) else _start_of_file(log)
+    except OSError:  # whoever reads the log tells what is wrong with it
+        return None
+    return start if start is not None and start >= _FIRST_DATE else None
+
+
+def _start_of_folder(path: str) -> int | None:
+    about = folder(path)
+    return about.span[0] if isinstance(about, Folder) and about.span is not None else None
+
+
+def _start_of_file(log: str) -> int | None:
+    if log == STDIN or not (is_url(log) or os.path.isfile(log)):
+        return None
+    with opened(log, whole=False) as source:
+        if isinstance(source, Diagnostic) or source.stream.read(len(MAGIC)) != MAGIC:
+            return None
+        place = Source(log, "").span()
+        found = within(source.size, place, lambda: summary(source.stream, source.size))
+        if found is None or isinstance(found, Diagnostic) or found.statistics is None:
+            return None
+        return int(found.statistics.message_start_time)
+
+
+def _changed(log: str) -> int | None:
+    """When any of its files changed last."""
+    if log == STDIN or is_url(log):
+        return changed(log) if is_store(log) else None
+    try:
+        return max(os.stat(file).st_mtime_ns for file in files_of([log]))
+    except (OSError, ValueError):
+        return None

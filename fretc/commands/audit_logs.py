@@ -1,0 +1,84 @@
+"""The logs of an audit and the time for them, as the options say."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fretc.terminal.output import NOT_SHOWN, say_line, stop
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from fretc.audit.evidence.schema import Selection
+    from fretc.audit.pool import Limits
+
+
+def selected(
+    paths: Sequence[str], since: str | None, sample: int | None, seed: int
+) -> tuple[list[str], Selection | None]:
+    """The logs that are audited; exit status 3 where none of those that are named is left.
+
+    Args:
+        paths: as the user names them.
+        since: of which none is older; None: whatever their dates.
+        sample: how many of them by chance; None: all.
+        seed: of the chance.
+    """
+    from fretc.audit.log_paths import logs as logs_of
+    from fretc.audit.selection.choice import chosen, in_words
+    from fretc.audit.selection.dates import since as time_of
+
+    than = None if since is None else time_of(since)
+    if isinstance(than, Diagnostic):
+        stop(than)
+    logs = logs_of(paths)
+    if isinstance(logs, Diagnostic):
+        stop(logs)
+    some, selection = chosen(logs, than, sample, seed)
+    if selection is not None:
+        say_line(in_words(selection))
+    if not some:
+        say_line("nothing is audited, and evidence stays as it was")
+        raise SystemExit(NOT_SHOWN)
+    return some, selection
+
+
+def time_limits(log: str | None, whole: str | None, logs: Sequence[str], engine: str) -> Limits:
+    """The time for each log and for all of them.
+
+    Args:
+        log: `--log-time`; None: any.
+        whole: `--time`; None: any.
+        logs: that are audited.
+        engine: where.
+    """
+    from fretc.audit.pool import ENDLESS, Limits
+    from fretc.logs.storage.inputs import STDIN
+
+    limits = Limits(_seconds("--log-time", log), _seconds("--time", whole))
+    if limits != ENDLESS and (STDIN in logs or engine != "local"):
+        what = "standard input" if STDIN in logs else f"`--engine {engine}`"
+        stop(
+            Diagnostic(
+                Code.BAD_USAGE,
+                f"{what} has no limits of time",
+                help="leave out `--time` and `--log-time`, or audit files on this machine",
+            )
+        )
+    return limits
+
+
+def _seconds(option: str, text: str | None) -> float | None:
+    from fretish.units import nanoseconds
+
+    length = None if text is None else nanoseconds(text)
+    if text is not None and length is None:
+        stop(
+            Diagnostic(
+                Code.BAD_USAGE,
+                f"`{option} {text}` is no time",
+                help=f"write `{option} 90s`, `{option} 30min` or `{option} 6h`",
+            )
+        )
+    return None if length is None else length / 1e9

@@ -1,0 +1,71 @@
+"""`--notify`: a summary of an audit, for a command of the user.
+
+The command gets one JSON object on standard input; `text` is for a person, as chat hooks want it.
+"""
+
+from __future__ import annotations
+
+import shlex
+import subprocess
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fretc.terminal.output import say, say_line, stop
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.rendering import visible
+
+_PATIENCE = 60
+"""Seconds that the command may take."""
+
+
+def words(command: str) -> list[str]:
+    """The words of a command, which no shell sees; stops where there are none."""
+    try:
+        found = shlex.split(command)
+    except ValueError as error:
+        found, why = [], str(error).lower()
+    else:
+        why = "it is empty"
+    if not found:
+        stop(
+            Diagnostic(
+                Code.BAD_USAGE,
+                f"`--notify` names no command: {why}",
+                help="write the command with its options in one pair of quotes",
+            )
+        )
+    return found
+
+
+def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
+    """Give the summary to the command, and say how that ended: it changes nothing else."""
+    from compiler.files.processes import shield
+    from compiler.files.templating import to_json
+
+    shield()
+    try:
+        done = subprocess.run(
+            command,
+            input=f"{to_json(summary)}\n".encode(),
+            stdout=subprocess.DEVNULL,
+            timeout=_PATIENCE,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        say([_failed(command, f"took longer than {_PATIENCE} s")])
+    except OSError as error:
+        say([_failed(command, f"cannot be started: {error.strerror or error}")])
+    else:
+        if done.returncode:
+            say([_failed(command, f"ended with exit status {done.returncode}")])
+        else:
+            say_line(visible(f"notified by `{command[0]}`"))
+
+
+def _failed(command: Sequence[str], how: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NOTICE_FAILED,
+        f"`{command[0]}` {how}: the summary did not arrive",
+        help="try it by hand; verdicts and exit status are as without it",
+        severity=Severity.WARNING,
+    )
