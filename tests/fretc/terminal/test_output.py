@@ -80,13 +80,20 @@ def test_an_encoding_that_has_no_tick_mark_still_shows_the_verdict(folder: Path)
     assert "+ Stop when an obstacle is within 5 cm (R1)  satisfied" in done.stdout
 
 
-def test_evidence_never_replaces_what_is_read(folder: Path, fretc: Fretc) -> None:
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("./run.mcap", "`run.mcap` cannot be written: a store of evidence is a folder"),
+        ("run.json", "`run.json` cannot be written: it is `run.mcap`, which is read"),
+    ],
+)
+def test_evidence_never_replaces_what_is_read(
+    folder: Path, fretc: Fretc, name: str, why: str
+) -> None:
     shutil.copy(LOG, folder / "run.mcap")
-    done = fretc("audit", "run.mcap", "--evidence", "./run.mcap")
-    assert (done.status, done.err.splitlines()[0]) == (
-        2,
-        "F905 `run.mcap` cannot be written: it is `run.mcap`, which is read",
-    )
+    (folder / "run.json").symlink_to("run.mcap")
+    done = fretc("audit", "run.mcap", "--evidence", name)
+    assert (done.status, done.err.splitlines()[0]) == (2, f"F905 {why}")
     assert (folder / "run.mcap").read_bytes() == Path(LOG).read_bytes()
 
 
@@ -237,21 +244,22 @@ def test_a_monitor_with_a_closed_or_full_stream_tells_so(
     assert "Traceback" not in done.stderr
 
 
-@pytest.mark.parametrize("evidence", ["runs/b.mcap", "runs/a.mcap", "build/x"])
-def test_no_audit_is_begun_whose_evidence_or_journal_would_replace_a_log(
+@pytest.mark.parametrize("evidence", ["runs/b.mcap", "runs/link.json", "runs", "link"])
+def test_no_audit_is_begun_whose_evidence_would_replace_a_log(
     folder: Path, fretc: Fretc, evidence: str
 ) -> None:
     (folder / "runs").mkdir()
-    (folder / "build").mkdir()
-    for name in ("runs/b.mcap", "runs/a.mcap.journal", "build/x.journal"):
+    logs = ("runs/a.mcap", "runs/b.mcap")
+    for name in logs:
         shutil.copy(LOG, folder / name)
-    logs = ("runs/b.mcap", "runs/a.mcap.journal", "build/x.journal")
+    (folder / "runs/link.json").symlink_to("b.mcap")
+    (folder / "link").symlink_to("runs")
     done = fretc("audit", *logs, "--evidence", evidence)
     assert done.status == 2
     assert done.err.startswith("F905 ")
     assert "wrote" not in done.err
-    assert sum(path.is_file() for path in (*folder.glob("runs/*"), *folder.glob("build/*"))) == 3
-    assert (folder / "build/x.journal").read_bytes() == Path(LOG).read_bytes()
+    assert {path.name for path in folder.glob("runs/*")} == {"a.mcap", "b.mcap", "link.json"}
+    assert all((folder / name).read_bytes() == Path(LOG).read_bytes() for name in logs)
 
 
 def test_no_name_of_a_log_writes_a_verdict_of_its_own(folder: Path, fretc: Fretc) -> None:

@@ -17,7 +17,12 @@ from typing import Any
 import pytest
 from mcap.writer import Writer
 
+from compiler.files.records import decoded
 from compiler.project.folder import whole
+from fretc.audit.evidence.schema import Document
+from fretc.audit.evidence.writer import text
+from fretc.audit.store.anywhere import read
+from fretc.audit.store.writer import write_document
 from fretc.report.make import make
 from fretc.report.traceability.lock import Lock
 from fretc.report.traceability.lock import read as read_lock
@@ -198,14 +203,26 @@ def evidence(edit: Callable[[dict[str, object]], None], id: str = "R1") -> Calla
     """Edit each result of a requirement."""
 
     def make() -> None:
-        file = Path("build/evidence.json")
-        content = json.loads(file.read_text())
+        content = _document()
         for result in content["results"]:
             if result["requirement"] == id:
                 edit(result)
-        file.write_text(json.dumps(content))
+        _keep(content)
 
     return make
+
+
+def _document() -> dict[str, Any]:
+    found = read("build/evidence")
+    assert not isinstance(found, Diagnostic)
+    content: dict[str, Any] = json.loads(text(found.document))
+    return content
+
+
+def _keep(content: dict[str, Any]) -> None:
+    """As a store that somebody wrote with the tool's own means."""
+    written = write_document(Path("build/evidence"), decoded(content, Document))
+    assert not isinstance(written, Diagnostic)
 
 
 def hashed(kind: str, value: str | None) -> Callable[[], None]:
@@ -362,8 +379,7 @@ def logged(path: str, *values: float) -> Callable[[], None]:
 
 
 def fretc_of_then() -> None:
-    file = Path("build/evidence.json")
-    file.write_text(json.dumps(json.loads(file.read_text()) | {"fretc": "0.0.1"}))
+    _keep(_document() | {"fretc": "0.0.1"})
 
 
 def verdict(result: dict[str, object]) -> None:
@@ -446,7 +462,7 @@ def asked(fretc: Fretc) -> Said:
     check = fretc("check").err
     own_project = whole("requirements")
     assert not isinstance(own_project, Diagnostic)
-    outcome = make(own_project, "build/evidence.json", lock="requirements/fretc.lock")
+    outcome = make(own_project, "build/evidence", lock="requirements/fretc.lock")
     report = json.loads(outcome.json or "")["requirements"]
     verify = fretc("verify-evidence", *ONE_PROCESS, "--format", "json").out
     again = [one for one in json.loads(verify)["results"] if one["finding"] == "differs"]
