@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from operator import attrgetter
 from statistics import median
-from typing import Protocol
+from typing import Any, Protocol
 
 from compiler.files.records import UnsetType
 from fretc.audit.evidence.basis import KINDS
@@ -182,11 +183,36 @@ class Briefs:
 
     @classmethod
     def of(cls, source: EvidenceSource) -> Briefs:
-        """Those of the evidence, read once."""
+        """Those of the evidence, read once; values that many have are there once, too."""
         groups: dict[str, list[tuple[int, Brief]]] = {}
-        for placed in source.briefs():
-            groups.setdefault(placed[1].requirement, []).append(placed)
+        pools: _Pools = {str: {}, int: {}, float: {}}
+        for place, each in source.briefs():
+            groups.setdefault(each.requirement, []).append((place, _sharing(each, pools)))
         return cls(source, groups)
+
+
+_Pools = dict[type, dict[Any, Any]]
+
+
+def _sharing(brief: Brief, pools: _Pools) -> Brief:
+    """The same with values that are there already."""
+    known = [_shared(each, pools) for each in _prints(brief.fingerprints)]
+    values: list[Any] = [_shared(each, pools) for each in _values(brief)]
+    values[_AT] = Hashes(**dict(zip(_PRINTS, known, strict=True)))
+    return Brief(*values)
+
+
+def _shared(value: Any, pools: _Pools) -> Any:
+    pool = pools.get(type(value))
+    if pool is None or value == 0:  # 0.0 and -0.0 are equal, and are two
+        return value
+    return pool.setdefault(value, value)
+
+
+_PRINTS = Hashes.__struct_fields__
+_FIELDS = tuple(each.name for each in fields(Brief))
+_AT = _FIELDS.index("fingerprints")
+_prints, _values = attrgetter(*_PRINTS), attrgetter(*_FIELDS)
 
 
 def brief(result: Result) -> Brief:

@@ -93,7 +93,7 @@ class Evidence:
 
     def details(self, places: Collection[int]) -> Iterator[tuple[int, Result]]:
         """The whole results at some places, in order."""
-        for place in sorted(places):
+        for place in sorted({*places}):
             yield place, self.results[place]
 
     def latencies(self, requirements: Collection[str]) -> Iterator[tuple[int, Sequence[float]]]:

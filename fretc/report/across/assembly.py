@@ -5,9 +5,17 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from math import inf
 
-from fretc.audit.evidence.briefs import stretches
+from fretc.audit.evidence.briefs import Brief, stretches
 from fretc.audit.evidence.schema import Result, Threshold
-from fretc.report.across.lanes import Known, LanePlan, RunStretches, plan, with_marks
+from fretc.report.across.lanes import (
+    Known,
+    LanePlan,
+    RunStretches,
+    Tally,
+    plan,
+    with_marks,
+    worst_runs,
+)
 from fretc.report.across.uses import RunNumbers, uses
 from fretc.report.model import phrases
 from fretc.report.model.across import Across, RequirementAcross
@@ -17,7 +25,7 @@ from fretc.report.model.pictures import WordLane
 from fretc.report.pictures.histograms import is_answered, seconds_allowed
 from fretc.report.sections.details import Details, Thresholds
 from fretc.report.sections.results import result_anchor
-from fretc.report.sections.runs import Run, RunKey, run_key
+from fretc.report.sections.runs import run_key
 
 _ROWS, _MARKS = 180, 1_500
 """Of the pictures of all requirements together."""
@@ -41,10 +49,7 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
     in_force = {assessment.anchor for assessment in active}
     chosen = {*[anchor for anchor in worst if anchor in in_force][:pictured]}
     several = [each for each in active if each.anchor in chosen and len(each.audits) > 1]
-    of_all = plan(
-        "All requirements, a lane for each run",
-        _in_order([one for each in active for one in _results(each, details)], details.runs),
-    )
+    of_all = _plan_of_all(active, details)
     plans = {each.anchor: _plan(each, details, most, marks) for each in several}
     known = _known(details, [at for each in (of_all, *plans.values()) for at in each.places])
     uses_of = {
@@ -75,18 +80,32 @@ def _plan(assessment: Assessment, details: Details, most: int, marks: int) -> La
     return plan(f"{assessment.id} in its runs", marked, most, marks, note)
 
 
-def _in_order(
-    results: Sequence[RunStretches], runs: Mapping[RunKey, Run]
-) -> Sequence[RunStretches]:
-    """In the order of runs."""
-    places = {run.anchor: run.number for run in runs.values()}
-    return sorted(results, key=lambda each: places[each.run])
+def _plan_of_all(active: Sequence[Assessment], details: Details) -> LanePlan:
+    """Of the worst runs: of all others nothing is held but their number."""
+    tallies: dict[str, Tally] = {}
+    for each in active:
+        for audit in each.reviewed_audits:
+            run, known = details.runs[run_key(audit.result)].anchor, _count(audit.result)
+            before = tallies.get(run)
+            tallies[run] = (
+                before.with_one(audit.mark, known) if before else Tally(audit.mark, known)
+            )
+    places = {run.anchor: run.number for run in details.runs.values()}
+    tallies = {run: tallies[run] for run in sorted(tallies, key=lambda run: places[run])}
+    chosen = {*worst_runs(tallies)}
+    left = [tally for run, tally in tallies.items() if run not in chosen]
+    of = [one for each in active for one in _results(each, details, chosen)]
+    of.sort(key=lambda one: places[one.run])
+    return plan("All requirements, a lane for each run", of, left=left, ranked=bool(left))
 
 
 # What the evidence says ------------------------------------------------------------------------
 
 
-def _results(assessment: Assessment, details: Details) -> list[RunStretches]:
+def _results(
+    assessment: Assessment, details: Details, of: Collection[str] | None = None
+) -> list[RunStretches]:
+    """Those of some runs, by their anchors; None: of all."""
     return [
         RunStretches(
             run.anchor,
@@ -98,11 +117,16 @@ def _results(assessment: Assessment, details: Details) -> list[RunStretches]:
             audit.mark,
             audit.place,
             audit.result.ticks > 0,
-            (audit.result.violations, audit.result.unknown, audit.result.open),
+            _count(audit.result),
         )
         for number, audit in enumerate(assessment.reviewed_audits, 1)
         for run in [details.runs[run_key(audit.result)]]
+        if of is None or run.anchor in of
     ]
+
+
+def _count(result: Brief) -> tuple[int, int, int]:
+    return result.violations, result.unknown, result.open
 
 
 def _numbers(

@@ -53,6 +53,27 @@ class RunStretches:
 
 
 @dataclass(frozen=True, slots=True)
+class Tally:
+    """A run before its results are looked at: the worst verdict, and what is counted."""
+
+    mark: Mark
+    count: tuple[int, int, int]
+
+    def with_one(self, mark: Mark, count: tuple[int, int, int]) -> Tally:
+        """The same with one more result."""
+        worst = min(self.mark, mark, key=lambda each: each.severity)
+        a, b, c = self.count
+        return Tally(worst, (a + count[0], b + count[1], c + count[2]))
+
+
+def worst_runs(tallies: Mapping[str, Tally], most: int = MOST_LANES) -> Sequence[str]:
+    """The runs that have a lane, the worst where they are too many; else all, in their order."""
+    if len(tallies) <= most:
+        return [*tallies]
+    return sorted(tallies, key=lambda run: _worst_first(tallies[run]))[:most]
+
+
+@dataclass(frozen=True, slots=True)
 class _Lane:
     """A run before its marks are made."""
 
@@ -103,7 +124,7 @@ class LanePlan:
 
     title: str
     chosen: tuple[_Lane, ...]
-    left: tuple[_Lane, ...]
+    left: tuple[Tally | _Lane, ...]
     marks: int
     """About how many marks there may be."""
     note: str
@@ -136,6 +157,9 @@ def plan(
     most: int = MOST_LANES,
     marks: int = _MOST_MARKS,
     note: str = "",
+    left: Sequence[Tally] = (),
+    *,
+    ranked: bool = False,
 ) -> LanePlan:
     """Choose the runs that have a lane: all, or the worst.
 
@@ -145,13 +169,16 @@ def plan(
         most: lanes.
         marks: about how many marks there may be.
         note: what else to say of runs without a lane.
+        left: runs that have no lane in any case, none of them worse than the others.
+        ranked: whether the worst come first, though they are few.
     """
     grouped: dict[str, list[RunStretches]] = {}
     for each in results:
         grouped.setdefault(each.run, []).append(each)
     every = [_Lane(tuple(of)) for of in grouped.values()]
-    ranked = every if len(every) <= most else sorted(every, key=_worst_first)
-    return LanePlan(title, tuple(ranked[:most]), tuple(ranked[most:]), marks, note)
+    sort = ranked or len(every) > most
+    ordered = sorted(every, key=_worst_first) if sort else every
+    return LanePlan(title, tuple(ordered[:most]), (*ordered[most:], *left), marks, note)
 
 
 def with_marks(results: Sequence[RunStretches]) -> list[RunStretches]:
@@ -159,7 +186,7 @@ def with_marks(results: Sequence[RunStretches]) -> list[RunStretches]:
     return [each for each in results if any(each.count)]
 
 
-def _worst_first(lane: _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
+def _worst_first(lane: Tally | _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
     return lane.mark.severity, tuple(-count for count in lane.count)
 
 
@@ -244,7 +271,7 @@ def _worded(mark: LaneMark) -> LaneMark:
     )
 
 
-def _left_out(left: Sequence[_Lane]) -> str:
+def _left_out(left: Sequence[Tally | _Lane]) -> str:
     """How many runs have no lane, and the worst verdict among them."""
     if not left:
         return ""
@@ -257,7 +284,7 @@ def _left_out(left: Sequence[_Lane]) -> str:
     )
 
 
-def _counted(lanes: Sequence[_Lane]) -> str:
+def _counted(lanes: Sequence[Tally | _Lane]) -> str:
     violations, unknown, waiting = (
         sum(each) for each in zip(*(x.count for x in lanes), strict=True)
     )

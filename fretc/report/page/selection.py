@@ -24,7 +24,7 @@ from fretc.report.sections.details import Details
 
 COMPACT = 1_000
 """Above this number of results, only runs that are not satisfied have a row."""
-DETAILED, PICTURES = 100, 60
+DETAILED, PICTURES = 100, 30
 """The most results with all details, and the most pictures of violations, in one page."""
 _FEW_DETAILED, _FEW_PICTURES = 40, 20
 """The same in a compact page."""
@@ -34,7 +34,7 @@ _RUNS, _RUN_ROWS = 8, 200
 """Above the first number, runs stand in a table; the second is the most rows of that table."""
 _FOLDED = 60
 """Up to this number of results, the page has the details of satisfied runs too, folded."""
-_VIOLATIONS, _FEW_VIOLATIONS = 12, 6
+_VIOLATIONS, _FEW_VIOLATIONS = 8, 6
 """The most violations of one result above `_FOLDED` results, and in a compact page."""
 _WHOLE = 200
 """Above this number of requirements, a compact page has no formulas, artefacts and pictures."""

@@ -10,9 +10,9 @@ from types import MappingProxyType
 from compiler.formalization.formalized import Formalized
 from fretc.audit.evidence.schema import Moment, Result, Violation
 from fretc.report.model.causes import causes, falsity, in_words
-from fretc.report.model.first_tick import reading
 from fretc.report.model.phrases import duration, joined, seconds, times, value
 from fretc.report.model.pictures import Flag, Lane, Panel, SpanMark, Timeline, WordLane
+from fretc.report.pictures.first_tick import reading
 from fretc.report.pictures.signals import left_out, panels, word_lanes
 
 DETAIL = 400

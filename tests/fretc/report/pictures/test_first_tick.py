@@ -7,8 +7,8 @@ import pytest
 from compiler.files.records import replace
 from fretc.audit.evidence.samples import Samples, Window
 from fretc.audit.evidence.schema import Violation
-from fretc.report.model.first_tick import reading
 from fretc.report.model.pictures import SpanMark
+from fretc.report.pictures.first_tick import reading
 from fretc.report.pictures.signals import panels
 from fretc.report.pictures.timeline import cause
 from tests.fretc.audit.results import moment, violation
