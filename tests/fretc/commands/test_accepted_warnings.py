@@ -312,17 +312,17 @@ def test_an_acceptance_is_a_change_since_the_review_and_leaves_the_evidence_curr
     project(CAUSES["F203"], {"F203": "meant"})
     run = fretc("diff")
     assert run.status == 3
-    assert "  new      acceptance R1 F203\n" in run.out
+    assert "  reason to accept R1 F203: none → meant\n" in run.out
     assert "verdict" not in run.out
     run = fretc("check")
     assert codes(run, "warning:") == ["F512"]
-    assert "since then acceptance R1 F203 changed" in run.err
-    assert "new: acceptance R1 F203" in page(fretc)
+    assert "this has changed: reason to accept R1 F203: none → meant" in run.err
+    assert "reason to accept R1 F203" in page(fretc)
     assert fretc("lock", *BY).err.count("; accepted warnings: R1 F203\n") == 1
     assert (fretc("diff").status, fretc("check").status) == (0, 0)
     for changed in ({"F203": "other words"}, {}):
         project(CAUSES["F203"], changed)
-        assert "acceptance R1 F203" in fretc("diff").out
+        assert "reason to accept R1 F203" in fretc("diff").out
         assert "F504" not in fretc("check").err
 
 
@@ -332,7 +332,7 @@ def test_the_acceptance_of_a_topic_bears_upon_those_that_read_it(fretc: Fretc) -
     write("requirements/fretc.toml", '[accept]\nF315 = { "/other" = "x" }\n')
     assert fretc("diff").status == 0
     write("requirements/fretc.toml", '[accept]\nF315 = { "/odom" = "x" }\n')
-    assert "  new      acceptance F315 /odom\n" in fretc("diff").out
+    assert "  reason to accept F315 /odom: none → x\n" in fretc("diff").out
 
 
 def test_a_slow_topic_is_accepted_by_its_name_and_idle_once_a_log_shows_it_fast(
@@ -346,10 +346,10 @@ def test_a_slow_topic_is_accepted_by_its_name_and_idle_once_a_log_shows_it_fast(
     audited(SLOW)
     run = fretc("check")
     assert (run.status, codes(run, "accepted:")) == (0, ["F315"])
-    assert "Run 1 has findings" not in page(fretc)
+    assert "other findings in " not in page(fretc)
     write("requirements/fretc.toml", accept.replace("/odom", "/scan"))
     assert codes(fretc("check"), "warning:") == ["F550"]
-    assert "Run 1 has findings" in page(fretc)
+    assert "other findings in " in page(fretc)
     write("requirements/fretc.toml", accept)
     audited()
     assert codes(fretc("check"), "warning:") == ["F550"]

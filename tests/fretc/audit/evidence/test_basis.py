@@ -104,8 +104,8 @@ expr = "y < 9 m"
 R1, R2, R3, HAZARDS, BINDINGS = FILES
 LOGS = ("logs/a.mcap", "logs/b.mcap")
 BY = ("--reviewer", "A", "--role", "b", "--comment", "c", "--date", "2026-01-02")
-ONE_PROCESS = ("--jobs", "1")
-"""Two short logs are sooner read than a process is started for each."""
+AUDIT = ("audit", "logs", "--jobs", "1", "-o", "build/evidence.json")
+"""Two short logs are sooner read than a process is started for each; a file can be edited."""
 
 
 # What a requirement is made of ------------------------------------------------------------------
@@ -416,7 +416,7 @@ def reviewed(fretc: Fretc, _base: Path) -> Fretc:
             write(name, text)
         for path, values in zip(LOGS, ((0, 2, 3, 3, 1, 1, 0), (0, 2, 2, 2, 2, 1, 0)), strict=True):
             log(path, *values)
-        assert fretc("audit", "logs", *ONE_PROCESS).status == 0
+        assert fretc(*AUDIT).status == 0
         assert fretc("lock", *BY).status == 0
         shutil.copytree(".", _base, dirs_exist_ok=True)
     shutil.copytree(_base, ".", dirs_exist_ok=True)
@@ -448,7 +448,7 @@ def asked(fretc: Fretc) -> Said:
     assert not isinstance(own_project, Diagnostic)
     outcome = make(own_project, "build/evidence.json", lock="requirements/fretc.lock")
     report = json.loads(outcome.json or "")["requirements"]
-    verify = fretc("verify-evidence", *ONE_PROCESS, "--format", "json").out
+    verify = fretc("verify-evidence", "--jobs", "1", "--format", "json").out
     again = [one for one in json.loads(verify)["results"] if one["finding"] == "differs"]
     everywhere = any("this is fretc" in reason for one in again for reason in one["reasons"])
     return Said(
@@ -472,7 +472,7 @@ def test_a_change_reaches_what_is_made_of_it_and_nothing_else(reviewed: Fretc, n
     change.make()
     for audited in (False, True):
         if audited:
-            reviewed("audit", "logs", *ONE_PROCESS)
+            reviewed(*AUDIT)
         answers = asked(reviewed)
         assert answers.stale == dict.fromkeys(("check", "report"), change.stale(audited))
         assert answers.suspect == dict.fromkeys(
@@ -489,7 +489,7 @@ def test_there_are_more_changes_than_were_once_tried_by_hand() -> None:
 def test_evidence_of_what_has_come_back_is_still_of_something_else(reviewed: Fretc) -> None:
     before = Path(BINDINGS).read_text()
     put(BINDINGS, "x > 1 m", "x > 2 m")()
-    reviewed("audit", "logs", *ONE_PROCESS)
+    reviewed(*AUDIT)
     Path(BINDINGS).write_text(before)
     answers = asked(reviewed)
     assert list(answers.stale.values()) == [{"R1"}] * 2
@@ -508,7 +508,7 @@ def test_evidence_of_something_else_is_not_accepted(reviewed: Fretc) -> None:
     assert message in run.err
     assert Path("requirements/fretc.lock").read_text() == before
     assert reviewed("lock", "R2", *BY).status == 0, "of the others nothing is asked"
-    reviewed("audit", "logs", *ONE_PROCESS)
+    reviewed(*AUDIT)
     assert reviewed("lock", *BY, "--accept-violations").status == 0
     assert reviewed("diff").status == 0
 
@@ -525,7 +525,7 @@ def test_a_log_that_nothing_identifies_is_not_accepted(reviewed: Fretc) -> None:
 def test_a_log_that_is_gone_is_told(reviewed: Fretc, audited: bool) -> None:
     Path(LOGS[1]).unlink()
     if audited:
-        reviewed("audit", "logs", *ONE_PROCESS)
+        reviewed(*AUDIT)
         content = json.loads(reviewed("diff", "--format", "json").out)
         assert {one["requirement"] for one in content if one["suspect_links"]} == set(IDS)
     else:
@@ -578,7 +578,7 @@ def test_what_was_claimed_and_is_not_any_more_is_never_lost(
     make_it, ids = WITHDRAWN[name]
     make_it()
     if audited:
-        reviewed("audit", "logs", *ONE_PROCESS)
+        reviewed(*AUDIT)
     diff = json.loads(reviewed("diff", "--format", "json").out)
     suspects = {
         one["requirement"] for one in diff if one["suspect_links"] or one["state"] == "gone"
@@ -612,7 +612,7 @@ def test_who_accepts_that_something_is_claimed_no_more_hears_of_it_no_more(
     make_it, ids = WITHDRAWN[name]
     make_it()
     if name != "all retired":
-        reviewed("audit", "logs", *ONE_PROCESS)
+        reviewed(*AUDIT)
         assert reviewed("lock", "R1", *BY).status == 0
         assert reviewed("report", "--strict").status == 1, "R3 is still to be accepted"
         assert reviewed("lock", *sorted(ids), *BY).status == 0
