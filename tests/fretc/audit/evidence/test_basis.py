@@ -104,8 +104,10 @@ expr = "y < 9 m"
 R1, R2, R3, HAZARDS, BINDINGS = FILES
 LOGS = ("logs/a.mcap", "logs/b.mcap")
 BY = ("--reviewer", "A", "--role", "b", "--comment", "c", "--date", "2026-01-02")
-AUDIT = ("audit", "logs", "--jobs", "1", "-o", "build/evidence.json")
-"""Two short logs are sooner read than a process is started for each; a file can be edited."""
+ONE_PROCESS = ("--jobs", "1")
+"""Two short logs are sooner read than a process is started for each."""
+AUDIT = ("audit", "logs", "-o", "build/evidence.json", *ONE_PROCESS)
+"""Into a file, which can be edited."""
 
 
 # What a requirement is made of ------------------------------------------------------------------
@@ -448,7 +450,7 @@ def asked(fretc: Fretc) -> Said:
     assert not isinstance(own_project, Diagnostic)
     outcome = make(own_project, "build/evidence.json", lock="requirements/fretc.lock")
     report = json.loads(outcome.json or "")["requirements"]
-    verify = fretc("verify-evidence", "--jobs", "1", "--format", "json").out
+    verify = fretc("verify-evidence", *ONE_PROCESS, "--format", "json").out
     again = [one for one in json.loads(verify)["results"] if one["finding"] == "differs"]
     everywhere = any("this is fretc" in reason for one in again for reason in one["reasons"])
     return Said(
