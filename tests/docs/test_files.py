@@ -86,9 +86,8 @@ ROWS_OF_STORES = {
 
 
 def store_rows() -> Iterator[str]:
-    schemas: dict[str, pa.Schema] = {name: tables.schema(name) for name in tables.TABLES}
-    schemas["register"] = types()
-    for name, schema in schemas.items():
+    schemas = [*((str(name), tables.schema(name)) for name in tables.TABLES), ("register", types())]
+    for name, schema in schemas:
         columns = ", ".join(f"`{column.name}` {kind(column.type)}" for column in schema)
         yield f"| `{name}` | {ROWS_OF_STORES[name]} | {columns} |"
 
