@@ -317,12 +317,12 @@ def test_an_acceptance_is_a_change_since_the_review_and_leaves_the_evidence_curr
     run = fretc("check")
     assert codes(run, "warning:") == ["F512"]
     assert "since then this has changed: reason to accept R1 F203: none → meant" in run.err
-    assert "new: acceptance R1 F203" in page(fretc)
+    assert "Changed since the review: R1: reason to accept R1 F203: none → meant." in page(fretc)
     assert fretc("lock", *BY).err.count("; accepted warnings: R1 F203\n") == 1
     assert (fretc("diff").status, fretc("check").status) == (0, 0)
     for changed in ({"F203": "other words"}, {}):
         project(CAUSES["F203"], changed)
-        assert "acceptance R1 F203" in fretc("diff").out
+        assert "reason to accept R1 F203: " in fretc("diff").out
         assert "F504" not in fretc("check").err
 
 
