@@ -218,8 +218,10 @@ def _as_error(wrong: Diagnostic) -> Diagnostic:
 
 def _evidence(audited: EvidenceSource, proofs: Proofs | None) -> Signable:
     from fretc.attestation import statement as attestation
+    from fretc.audit.store.manifest import FILE as MANIFEST
 
-    _same_bytes(audited.file, audited.sha256)
+    place = Path(audited.file)
+    _same_bytes(str(place / MANIFEST if place.is_dir() else place), audited.sha256)
     if next(audited.briefs(), None) is None:
         stop(_usage(f"`{audited.file}` tells of no run", "audit one: `fretc audit LOG...`"))
     statement = attestation.evidence(audited, proofs)

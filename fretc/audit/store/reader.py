@@ -59,7 +59,7 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
         found = decoded(parsed(source.text), Manifest)
     except MisshapenError as error:
         return _wrong(path, f"has a manifest that is none of fretc: {error}")
-    store = Store(path, sha256(source.text), found)
+    store = Store(str(Path(path)), sha256(source.text), found)  # signatures stand beside it
     try:
         store.check()
     except StoreError as error:

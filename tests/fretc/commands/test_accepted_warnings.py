@@ -316,13 +316,13 @@ def test_an_acceptance_is_a_change_since_the_review_and_leaves_the_evidence_curr
     assert "verdict" not in run.out
     run = fretc("check")
     assert codes(run, "warning:") == ["F512"]
-    assert "this has changed: reason to accept R1 F203: none → meant" in run.err
-    assert "reason to accept R1 F203" in page(fretc)
+    assert "since then this has changed: reason to accept R1 F203: none → meant" in run.err
+    assert "Changed since the review: R1: reason to accept R1 F203: none → meant." in page(fretc)
     assert fretc("lock", *BY).err.count("; accepted warnings: R1 F203\n") == 1
     assert (fretc("diff").status, fretc("check").status) == (0, 0)
     for changed in ({"F203": "other words"}, {}):
         project(CAUSES["F203"], changed)
-        assert "reason to accept R1 F203" in fretc("diff").out
+        assert "reason to accept R1 F203: " in fretc("diff").out
         assert "F504" not in fretc("check").err
 
 
@@ -346,10 +346,10 @@ def test_a_slow_topic_is_accepted_by_its_name_and_idle_once_a_log_shows_it_fast(
     audited(SLOW)
     run = fretc("check")
     assert (run.status, codes(run, "accepted:")) == (0, ["F315"])
-    assert "other findings in " not in page(fretc)
+    assert "; no other findings." in page(fretc)
     write("requirements/fretc.toml", accept.replace("/odom", "/scan"))
     assert codes(fretc("check"), "warning:") == ["F550"]
-    assert "other findings in " in page(fretc)
+    assert "; other findings in " in page(fretc)
     write("requirements/fretc.toml", accept)
     audited()
     assert codes(fretc("check"), "warning:") == ["F550"]
