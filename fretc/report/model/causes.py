@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import partial
 from math import inf, isfinite, isnan
-from typing import Protocol, TypeVar
+from typing import Protocol, TypeVar, assert_never
 
 import numpy as np
 
@@ -72,8 +72,10 @@ def falsity(violation: Violation, rule: Formalized | None) -> str:
             return f"`{missing}` was false {_when(first, last)}, it had to be true"
         case s.Never():
             return f"`{missing}` was true {_when(first, last)}, it had to be false"
-        case _:
+        case s.Next() | s.Finally() | s.Eventually() | s.After() | s.Until() | s.Before():
             return ""
+        case _:
+            assert_never(rule.sentence.timing)
 
 
 def _is_indirect(rule: Formalized) -> bool:

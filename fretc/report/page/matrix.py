@@ -15,6 +15,7 @@ from fretc.audit.evidence.verdicts import BROKEN
 from fretc.report.model import phrases
 from fretc.report.model.front import ColumnRun, RunGroup
 from fretc.report.model.views import Mark, Report, RequirementView, Row
+from fretc.report.sections.matrix import FACTS
 
 MOST = 10_000
 """The most cells of a picture that has all of them."""
@@ -90,6 +91,8 @@ class Picture:
     is_titled: bool
     marks: tuple[Mark, ...]
     """All marks in it, the worst first."""
+    facts: tuple[Mark, ...]
+    """What is known of requirements beside their verdicts: proofs and reviews."""
     data: Mapping[str, object] | None
     """All cells for the script, where the picture is small."""
 
@@ -130,6 +133,7 @@ def picture(report: Report, anchors: Collection[str], most: int = MOST) -> Pictu
         is_small=small,
         is_titled=cells <= TITLED,
         marks=ordered,
+        facts=FACTS,
         data=_data(lines, columns, ordered) if small else None,
     )
 

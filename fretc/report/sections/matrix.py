@@ -27,8 +27,10 @@ _LOOP = Mark("closed loop proved", "◆", "")
 _MONITOR = Mark("monitor proved", "◇", "")
 _REFUTED = sign_mark("counterexample", signs.BAD)
 _REVIEWED = Mark("reviewed", "●", "")
-_CHANGED = Mark("changed since the review", "○", signs.OPEN.kind)
+_CHANGED = sign_mark("changed since the review", signs.SUSPECT)
 _UNREVIEWED = Mark("not reviewed", "", "")
+FACTS = (_LOOP, _MONITOR, _REFUTED, _REVIEWED, _CHANGED)
+"""What the key of the matrix explains beside verdicts."""
 
 
 def hazard_views(project: Project) -> tuple[HazardView, ...]:

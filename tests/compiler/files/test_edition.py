@@ -1,5 +1,6 @@
 """One edition for one text of the program, and another for any other."""
 
+import importlib.metadata
 import shutil
 from pathlib import Path
 
@@ -43,5 +44,5 @@ def test_a_file_more_is_another_edition(copy: Path) -> None:
 
 def test_another_library_is_another_edition(monkeypatch: pytest.MonkeyPatch) -> None:
     before = edition_now()
-    monkeypatch.setattr(module, "version", lambda library: "0")
+    monkeypatch.setattr(importlib.metadata, "version", lambda library: "0")
     assert edition_now() != before

@@ -354,8 +354,8 @@ def test_a_changed_parent_makes_what_is_below_it_suspect(fretc: Fretc) -> None:
     write("docs/hazards.json", strictdoc(statement=STATEMENT.replace("NOT-A", "STILL-NOT-A")))
     run = fretc("diff")
     assert run.status == 3
-    assert "  changed  parent SAFE-1\n" in run.out
-    assert "  suspect  parent SAFE-1 → text R1 (parent SAFE-1)\n" in run.out
+    assert "text of SAFE-1: " in run.out
+    assert "links are suspect: text of SAFE-1 changed\n" in run.out
 
 
 def test_the_first_document_that_has_an_id_counts() -> None:
