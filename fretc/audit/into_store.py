@@ -284,7 +284,7 @@ class Session:
         self.known = {log: one for log in logs if (one := self.earlier.find(log)) is not None}
         self.new = [log for log in logs if log not in self.known]
         self.kept = 0
-        """Logs that were audited by this session and are in the store."""
+        """Logs that were audited by this session and that an audit after it takes over."""
         self._diagnostics: dict[Diagnostic, Diagnostic] = {}
         self._of_log: dict[str, tuple[Diagnostic, ...]] = {}
         self._read = 0
@@ -379,7 +379,6 @@ class Session:
             one = _Log(entry, tables=tabled(audited.results, __version__))
         draft = self._draft_of[log]
         draft.found[log] = one
-        self.kept += entry.size is not None
         self._complete(draft)
 
     def _one(self, found: Diagnostic) -> Diagnostic:
@@ -469,6 +468,8 @@ class Session:
                 part = self._written(draft, logs)
                 found.append((part, [draft.found[log].entry for log in logs]))
         self._write(self._manifest(found, UNFINISHED), UNFINISHED)
+        entries = (entry for _, some in found for entry in some)
+        self.kept = sum(each.size is not None and each.log not in self.known for each in entries)
 
     def _finish(self) -> StoredAudit:
         found: list[tuple[Part, Sequence[Entry]]] = []

@@ -47,8 +47,13 @@ def content(path: Path, file: Table) -> bytes:
 
 
 def _opened(path: Path) -> int:
-    """A descriptor of a regular file, not of a link: what a stranger's folder has of its own."""
-    descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK)
+    """A descriptor of a regular file: neither it nor its folder is a link to somewhere else."""
+    own = os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW
+    folder = os.open(path.parent, own | os.O_DIRECTORY)
+    try:
+        descriptor = os.open(path.name, own | os.O_NONBLOCK, dir_fd=folder)
+    finally:
+        os.close(folder)
     if stat.S_ISREG(os.fstat(descriptor).st_mode):
         return descriptor
     os.close(descriptor)

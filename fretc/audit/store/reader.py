@@ -6,6 +6,7 @@ does, is F516, never half a report.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
@@ -34,13 +35,14 @@ from fretc.audit.evidence.schema import (
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.store import files, tables
 from fretc.audit.store.anywhere import StoreError
-from fretc.audit.store.manifest import FILE, REGISTER, Manifest, Part, Table, place
+from fretc.audit.store.manifest import FILE, REGISTER, UNFINISHED, Manifest, Part, Table, place
 from fretc.audit.store.register import Entry, entries, types
 from fretc.audit.store.tables import EVENTS, EXACT, RESULTS, RUNS, TABLES, TableName
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
 T = TypeVar("T")
+_BEGUN = "its audit has not come to its end"
 _BATCH = 512
 """Results that are read at once."""
 
@@ -54,7 +56,10 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
     """
     source = read_text(f"{path}/{name}")
     if isinstance(source, Diagnostic):
-        return _wrong(path, "has no manifest") if source.code is Code.NO_SUCH_FILE else source
+        if source.code is not Code.NO_SUCH_FILE:
+            return source
+        is_begun = os.path.exists(f"{path}/{UNFINISHED}")
+        return _wrong(path, "has no manifest: " + _BEGUN if is_begun else "has no manifest")
     try:
         found = decoded(parsed(source.text), Manifest)
     except MisshapenError as error:

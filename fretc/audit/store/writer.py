@@ -76,7 +76,8 @@ def write_manifest(folder: Path, manifest: Manifest, name: str = FILE) -> str | 
 
 def files(folder: Path) -> set[Path]:
     """All tables in a folder, also those that no manifest names."""
-    found = (path for table in (*TABLES, REGISTER) for path in (folder / table).glob("*"))
+    own = (folder / table for table in (*TABLES, REGISTER) if not (folder / table).is_symlink())
+    found = (path for table in own for path in table.glob("*"))
     return {path for path in found if _OURS.fullmatch(path.name)}
 
 
@@ -109,6 +110,8 @@ def _files(manifest: Manifest) -> Iterator[Path]:
 
 def is_store(folder: Path) -> bool:
     """Whether fretc has written into a folder: nothing else of a user's is ever removed."""
+    if any((folder / table).is_symlink() for table in (*TABLES, REGISTER)):
+        return False  # what is there is not in this folder
     return any(_is_manifest(folder / name) for name in (FILE, UNFINISHED))
 
 

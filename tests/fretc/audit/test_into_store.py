@@ -277,6 +277,14 @@ def test_an_audit_that_goes_on_gives_the_store_of_one_that_was_not_stopped(fretc
     assert sorted(os.listdir(STORE)) == sorted(os.listdir("whole"))
 
 
+def test_only_what_is_written_counts_as_kept(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
+    wrong = Diagnostic(Code.NOT_WRITTEN, "the disk is full")
+    monkeypatch.setattr("fretc.audit.into_store.write_part", lambda *_: wrong)
+    with session() as one:
+        assert one.run(IN_TURN, lambda _: None) == wrong
+    assert one.kept == len(known()) == 0
+
+
 @pytest.mark.slow
 def test_an_audit_that_is_stopped_leaves_the_store_of_the_last_one(fretc: Fretc) -> None:
     first, _ = stored(LOGS[:1])

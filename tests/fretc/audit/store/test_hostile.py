@@ -14,7 +14,7 @@ from fretc.audit.store.anywhere import read
 from fretc.audit.store.files import encoded
 from fretc.audit.store.reader import Store, opened
 from fretc.audit.store.tables import TABLES, TableName, tabled
-from fretc.audit.store.writer import write_document
+from fretc.audit.store.writer import is_store, remove, write_document
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.fretc.audit.results import result
 from tests.fretc.audit.store.test_law import document
@@ -83,6 +83,18 @@ def test_links_and_pipes_are_not_followed(store: Path) -> None:
     assert "does not fit its manifest" in refused(store)
 
 
+@pytest.mark.parametrize("table", TABLES)
+def test_a_folder_of_tables_that_is_a_link_is_neither_read_nor_cleared(
+    store: Path, table: TableName
+) -> None:
+    shutil.move(store / table, "elsewhere")
+    os.symlink(os.path.abspath("elsewhere"), store / table)
+    assert "does not fit its manifest" in refused(store)
+    assert not is_store(store)
+    remove(store)
+    assert any(Path("elsewhere").iterdir())
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -110,6 +122,11 @@ def test_what_is_no_manifest_is_refused(store: Path, text: str) -> None:
     refused(store)
     (store / "manifest.json").unlink()
     assert refused(store) == "the store `store` has no manifest"
+
+
+def test_a_store_whose_audit_was_stopped_says_so(store: Path) -> None:
+    os.rename(store / "manifest.json", store / "unfinished.json")
+    assert refused(store).endswith("has no manifest: its audit has not come to its end")
 
 
 def tables() -> dict[TableName, pa.Table]:
