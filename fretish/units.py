@@ -50,14 +50,15 @@ def times(left: Unit, right: Unit, power: int = 1) -> Unit:
 ONE = Unit(DIMENSIONLESS, Fraction(1))
 PERCENT = Unit(DIMENSIONLESS, Fraction(1, 100))
 SECOND = _base("s")
-_METRE, _KILOGRAM = _base("m"), _base("kg")
+METRE = _base("m")
+_KILOGRAM = _base("kg")
 _NEWTON = Unit((1, 1, -2, 0, 0, 0), Fraction(1))
 _VOLT = Unit((2, 1, -3, -1, 0, 0), Fraction(1))
 
 _UNITS: dict[str, Unit] = {
     "1": ONE,
     "%": PERCENT,
-    "m": _METRE,
+    "m": METRE,
     "km": _base("m", 1000),
     "dm": _base("m", Fraction(1, 10)),
     "cm": _base("m", Fraction(1, 100)),
@@ -80,8 +81,8 @@ _UNITS: dict[str, Unit] = {
     "mA": _base("A", Fraction(1, 1000)),
     "K": _base("K"),
     "N": _NEWTON,
-    "Nm": times(_NEWTON, _METRE),
-    "Pa": times(_NEWTON, _METRE, -2),
+    "Nm": times(_NEWTON, METRE),
+    "Pa": times(_NEWTON, METRE, -2),
     "kPa": Unit((-1, 1, -2, 0, 0, 0), Fraction(1000)),
     "bar": Unit((-1, 1, -2, 0, 0, 0), Fraction(10**5)),
     "V": _VOLT,

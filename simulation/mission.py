@@ -88,6 +88,8 @@ class Mission:
         track: where the robot really was, at every tenth of a second.
         scene: the room as it really was.
         path: the log.
+        requests: each time that the safety function changed what it wants, in seconds, and whether
+            that is a stop.
     """
 
     scenario: Scenario
@@ -103,6 +105,7 @@ class Mission:
     track: tuple[Pose, ...]
     scene: Scene
     path: Path
+    requests: tuple[tuple[float, bool], ...] = ()
 
     @property
     def contacts(self) -> int:
@@ -281,6 +284,7 @@ class _Run:
             track=tuple(judge.track),
             scene=self._scene,
             path=out,
+            requests=tuple(judge.requests),
         )
 
     def _hear_wheels(self, message: Any, now: int) -> None:
@@ -321,12 +325,15 @@ class _Judge:
         self.touched: list[Contact] = []
         self.stops: list[Stop] = []
         self.track: list[Pose] = []
+        self.requests: list[tuple[float, bool]] = []
         self._touching = self._stop = False
         self._braking: tuple[int, Pose] | None = None
 
     def hear_stop(self, message: Any, now: int) -> None:
         """On /gwendolen_control."""
         requested = bool(message.data)
+        if not self.requests or requested != self._stop:
+            self.requests.append(((now - EPOCH) / _SECOND, requested))
         if requested and not self._stop:
             self._braking = now, self._robot.pose
         if not requested and self._braking:

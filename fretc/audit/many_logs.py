@@ -15,6 +15,7 @@ from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of, totals
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
 from fretc.audit.evidence.briefs import Brief, EvidenceSource, brief
+from fretc.audit.evidence.courses import course, no_way
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import Evidence
@@ -257,11 +258,12 @@ def audited(
     new = [each for each in requirements if each.monitor.REQUIREMENTS[0].id not in taken]
     evidence = audit(recording, declarations, new, EVALUATIONS[plan.evaluation]) if new else ()
     of_claim = {e.requirement: as_record(e) for e in evidence} | taken
-    records = [of_claim[claim.id] for claim in plan.claims]
+    first, *others = (of_claim[claim.id] for claim in plan.claims)
+    records = (record_with(first, course=course(recording, declarations) or UNSET), *others)
     phased = {each.requirement: phases_of(each.phases) for each in records if each.phases}
     own = LogAudit(
-        (*records, *_refused_results(plan, records[0])),
-        (*recording.findings, *findings(phased, declarations)),
+        (*records, *_refused_results(plan, first)),
+        (*recording.findings, *findings(phased, declarations), *no_way(recording, declarations)),
         read=True,
         stamp=before if before == stamp(log) else None,
         known_by=by,
@@ -283,7 +285,9 @@ def _read(
     known = kept.recording(log, declarations, signals, integrity) if kept else None
     if known is not None:
         return known
-    recording = read(log, declarations, signals, integrity)
+    drawn = declarations.map
+    beside = (drawn.x, drawn.y) if drawn else ()
+    recording = read(log, declarations, signals, integrity, beside)
     if kept is not None and isinstance(recording, Recording) and before == stamp(log):
         kept.keep(log, before, recording, declarations, signals, integrity)
     return recording, "read"

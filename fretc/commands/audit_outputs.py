@@ -142,11 +142,15 @@ def bare(source: EvidenceSource, project: Project) -> Iterator[Result]:
 
 
 def annotation_files(outcome: Outcome, project: Project, folder: str | None) -> dict[Path, bytes]:
-    """A log of annotations for each run."""
+    """A log of annotations for each run, and a layout that shows them."""
     from fretc.audit.outputs.annotations import sidecars
+    from fretc.audit.outputs.foxglove_layout import layout_file
 
-    found = [*bare(outcome.source, project)]
-    return sidecars(found, project.rules, Path(folder or "build/annotations"))
+    found, place = [*bare(outcome.source, project)], Path(folder or "build/annotations")
+    return {
+        **sidecars(found, project.rules, place),
+        **layout_file(found, project.rules, place),
+    }
 
 
 def text(outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], form: str) -> str:

@@ -69,6 +69,7 @@ def read(
     declarations: Declarations,
     wanted: Collection[str],
     integrity: Integrity = Integrity.HASH,
+    beside: Sequence[Signal] = (),
 ) -> Recording | Diagnostic:
     """Read a log.
 
@@ -78,6 +79,8 @@ def read(
         wanted: names of declared signals.
         integrity: what is looked at beyond the messages of the topics that the bindings name. A
             log that is not as its index says is looked at in full.
+        beside: further signals, of topics that a wanted one reads, too. Nothing else of the
+            recording depends on them.
 
     Returns:
         The recording, with findings about single topics and damaged places; or what keeps the
@@ -88,20 +91,24 @@ def read(
         KeyError: a wanted signal is not declared.
     """
     signals = [declarations.signals[name] for name in dict.fromkeys(wanted)]
-    reading = partial(_read_log, path, declarations, signals, integrity)
+    reading = partial(_read_log, path, declarations, signals, integrity, beside)
     return within(0, Source(shown(path), "").span(), reading)
 
 
 def _read_log(
-    path: str, declarations: Declarations, signals: Sequence[Signal], integrity: Integrity
+    path: str,
+    declarations: Declarations,
+    signals: Sequence[Signal],
+    integrity: Integrity,
+    beside: Sequence[Signal],
 ) -> Recording | Diagnostic:
     sources = [source for some in declarations.labels.values() for source in some]
     asked = frozenset(source.text for source in sources if not source.is_path)
-    found = _opened(path, lambda: Columns(declarations, signals), integrity, asked)
+    found = _opened(path, lambda: Columns(declarations, signals, beside), integrity, asked)
     if isinstance(found, Diagnostic):
         return found
     place, run, columns, examples = found
-    recording = _recording(place, run, columns, examples, signals)
+    recording = _recording(place, run, columns, examples, signals, beside)
     return _too_long(recording, columns.clock, place) or recording
 
 
@@ -332,7 +339,12 @@ def _too_long(recording: Recording, clock: Clock, place: Span) -> Diagnostic | N
 
 
 def _recording(
-    place: Span, run: _Run, columns: Columns, examples: Examples, wanted: Sequence[Signal]
+    place: Span,
+    run: _Run,
+    columns: Columns,
+    examples: Examples,
+    wanted: Sequence[Signal],
+    beside: Sequence[Signal] = (),
 ) -> Recording:
     lost = [gap for _, _, gap in run.damages if gap is not None]
     gaps = tuple(sorted({columns.on_clock(gap) for gap in lost}))
@@ -340,10 +352,13 @@ def _recording(
     damages = [
         log_diagnostics.damaged(damage, gap, origin, file) for file, damage, gap in run.damages
     ]
-    samples = {
-        signal.name: Samples(*columns.samples(signal), signal.scale, signal.values)
-        for signal in wanted
-    }
+    samples, others = (
+        {
+            signal.name: Samples(*columns.samples(signal), signal.scale, signal.values)
+            for signal in signals
+        }
+        for signals in (wanted, beside)
+    )
     start, end = columns.span((min(a for a, _ in run.spans), max(b for _, b in run.spans)))
     return Recording(
         name=place.source.name,
@@ -365,5 +380,6 @@ def _recording(
         ),
         intact=not run.damages,
         checked=run.checked,
+        beside=others,
         described=run.described,
     )

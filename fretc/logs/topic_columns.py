@@ -135,7 +135,16 @@ class Column:
 class Columns:
     """A sink that keeps the numbers of the signals."""
 
-    def __init__(self, declarations: Declarations, wanted: Sequence[Signal]) -> None:
+    def __init__(
+        self, declarations: Declarations, wanted: Sequence[Signal], beside: Sequence[Signal] = ()
+    ) -> None:
+        """Nothing.
+
+        Args:
+            declarations: their clock and topics.
+            wanted: the signals to read.
+            beside: others, read of topics that a wanted one reads, too; nothing is found of them.
+        """
         self.topics: dict[str, Column] = {}
         """Every topic of the log."""
         self.streams: dict[str, Stream] = {}
@@ -144,6 +153,8 @@ class Columns:
         self.clock = declarations.clock
         self._source = declarations.source
         self._wanted = wanted
+        topics = {signal.path.topic for signal in wanted}
+        self._read_signals = (*wanted, *(one for one in beside if one.path.topic in topics))
         self._bound = {signal.path.topic for signal in declarations.signals.values()}
         self._bound |= {self.clock.topic} if self.clock.topic else set()
         self._extractions: dict[int, Extraction] = {}
@@ -160,7 +171,7 @@ class Columns:
                 type_,
                 stream.channel.message_encoding,
                 topic in self._bound,
-                [signal for signal in self._wanted if signal.path.topic == topic],
+                [signal for signal in self._read_signals if signal.path.topic == topic],
             )
         column = self.topics[topic]
         for signal in tuple(column.signals):

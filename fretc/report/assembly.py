@@ -78,7 +78,7 @@ def report(
         book: who signed what.
     """
     briefs = Briefs.of(evidence) if evidence else None
-    runs_by_key = runs(evidence)
+    runs_by_key = runs(briefs)
     all_runs = tuple(runs_by_key.values())
     all_proofs = merged(proofs.proofs if proofs else (), ajpf)
     assessed = assessments(project, briefs, lock, waivers, all_proofs)

@@ -289,6 +289,14 @@ class Assumed:
 
 
 @dataclass(frozen=True, slots=True)
+class Map:
+    """`[map]`: where the robot is, for the pictures of a report; no verdict depends on it."""
+
+    x: Signal
+    y: Signal
+
+
+@dataclass(frozen=True, slots=True)
 class LabelSource:
     """Where a label of a run comes from: the metadata of its log, or the path of it."""
 
@@ -326,6 +334,7 @@ class Declarations:
     mistakes: Mapping[Part, tuple[Diagnostic, ...]] = field(default_factory=dict)
     """Each signal and proposition that is declared and cannot be used, and why; the mistakes of a
     signal are those of the propositions that read it, too."""
+    map: Map | None = None
     labels: Mapping[str, tuple[LabelSource, ...]] = field(default_factory=dict)
     """`[run.label]`: each label of runs, with its sources; the first that says something counts."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from math import isfinite
 from typing import Any, TypeVar
 
@@ -18,6 +19,7 @@ from fretish.bindings.declarations import (
     Default,
     Invalid,
     LabelSource,
+    Map,
     Modality,
     Part,
     Path,
@@ -41,7 +43,7 @@ from fretish.reading import name_patterns
 from fretish.reading.limits import within
 from fretish.reading.toml_text import Tables, as_key, read
 
-_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "run")
+_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run")
 _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
 """A topic, and no duration: a duration begins with a digit."""
 _CLOCK = ("time", "tick", "phase", "end", "rounding")
@@ -58,6 +60,7 @@ MOST_LABELS = 32
 _MOST_SOURCES, _LONGEST_SOURCE = 8, 200
 _EXACT = 2**53
 """Numbers of words below it are exact in every field."""
+_MAP = ("x", "y")
 _NOWHERE = Path("", ())
 _PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
 _INVALID = {
@@ -126,8 +129,51 @@ class _Reader(Fields):
             loop.interceptor(),
             self._assumed(loop),
             self.mistakes,
+            self._map(),
             self._labels(),
         )
+
+    def _map(self) -> Map | None:
+        """`[map]`; None where it is absent, or has mistakes, which become diagnostics."""
+        table = self.tables.data.get("map")
+        if table is None:
+            return None
+        if not isinstance(table, dict):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`map` must be a table",
+                self.tables.place("map"),
+                'write `[map]`, and below it `x = "/odom.pose.pose.position.x"`',
+            )
+            return None
+        self._check_keys(table, _MAP, "[map]", "map")
+        x, y = self._coordinate(table, "x"), self._coordinate(table, "y")
+        return Map(x, y) if x is not None and y is not None else None
+
+    def _coordinate(self, table: Mapping[str, Any], key: str) -> Signal | None:
+        """A coordinate of the map: as the signal of the same path reads it, else in metres."""
+        text = table.get(key)
+        where = path(text) if isinstance(text, str) else None
+        if where is None or where.each:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`{key}` of the map must be a topic and one number of its messages",
+                self.tables.value("map", key) if key in table else self.tables.place("map"),
+                f'write `{key} = "/odom.pose.pose.position.{key}"`',
+            )
+            return None
+        same = next((signal for signal in self.signals.values() if signal.path == where), None)
+        own = same or Signal("", where, units.METRE, "m")
+        if own.unit.dimension != units.METRE.dimension:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`{key}` of the map must be a length, and `{own.name}` is in "
+                f"{own.unit_name or 'plain numbers'}",
+                self.tables.value("map", key),
+                f'give `[signal.{own.name}]` a length for its unit: `unit = "m"`',
+            )
+            return None
+        return replace(own, name=f"[map] {key}", span=self.tables.value("map", key))
 
     def _parts(self, kind: str, read: Callable[[str, Mapping[str, Any]], T | None]) -> dict[str, T]:
         """The parts without a mistake; `mistakes` holds those of the others."""

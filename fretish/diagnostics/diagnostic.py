@@ -130,6 +130,7 @@ class Code(Enum):
     PHASE_DEPENDENT = ("F425", "a verdict depends on where the grid of ticks begins")
     PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")
     PHASE_PROPOSED = ("F427", "another phase of the ticks keeps its verdicts more firmly")
+    NO_WAY = ("F428", "the map has nothing to draw")
     GROWN = ("F431", "a log grew while it was read")
     LOG_OUT_OF_TIME = ("F440", "the audit of a log took longer than it may")
     AUDIT_OUT_OF_TIME = ("F441", "the time of an audit was over before all logs were judged")

@@ -86,9 +86,8 @@ ROWS_OF_STORES = {
 
 
 def store_rows() -> Iterator[str]:
-    schemas: dict[str, pa.Schema] = {name: tables.schema(name) for name in tables.TABLES}
-    schemas["register"] = types()
-    for name, schema in schemas.items():
+    schemas = [*((str(name), tables.schema(name)) for name in tables.TABLES), ("register", types())]
+    for name, schema in schemas:
         columns = ", ".join(f"`{column.name}` {kind(column.type)}" for column in schema)
         yield f"| `{name}` | {ROWS_OF_STORES[name]} | {columns} |"
 
@@ -131,6 +130,7 @@ TABLES = {
     "variable.NAME": reader._VARIABLE,
     "interceptor": interceptor._INTERCEPTOR,
     "assume": interceptor._ASSUME,
+    "map": reader._MAP,
     "run": reader._RUN,
     "hazards.toml": hazards._FIELDS,
     "waivers.toml": waivers._FIELDS,
@@ -184,6 +184,7 @@ LEAST: Mapping[str, Table] = {
     "variable.NAME": {},
     "interceptor": {"stop": "/s", "command": "/c", "output": "/o", "period": "10 ms"},
     "assume": {"stands": "stopped", "latency": "1 s", "braking": "1 s"},
+    "map": {"x": "/at.x", "y": "/at.y"},
     "run": {},
     "hazards.toml": {"title": "t"},
     "waivers.toml": {

@@ -9,7 +9,7 @@ from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
 
 from simulation.mission import Contact
-from simulation.picture import animate, draw
+from simulation.picture import _clusters, _contact_times, _counts, _nose, _state, animate, draw
 from simulation.world.motion import Pose
 from simulation.world.scenario import load
 from tests.simulation.missions import record
@@ -52,10 +52,50 @@ def test_the_film_shows_the_whole_mission(tmp_path: Path) -> None:
     mission = record(tmp_path / "a.mcap", load("obstacle-moved"), max_seconds=30)
     film = Image.open(BytesIO(animate(mission)))
     assert isinstance(film, GifImageFile)
-    assert film.n_frames == 15
+    assert film.n_frames == 16
     red = []
-    for frame in (0, 14):
+    for frame in (0, 15):
         film.seek(frame)
         seen = np.asarray(film.convert("RGB")).astype(int) - (192, 24, 42)
         red.append(int((np.abs(seen).max(axis=2) < 40).sum()))
     assert red[0] == 0 < red[1]
+
+
+def test_the_last_frame_has_all_of_the_way() -> None:
+    assert _counts(0) == []
+    assert _counts(1) == [1]
+    assert _counts(41) == [1, 21, 41]
+    assert _counts(45) == [1, 21, 41, 45]
+
+
+def test_the_robot_looks_where_its_yaw_says() -> None:
+    (x, ahead), (y, up) = _nose(Pose(2.0, 1.0, np.pi / 2))
+    assert (x, y) == (2.0, 1.0)
+    assert ahead == pytest.approx(2.0)
+    assert up > 1.2
+
+
+def test_every_contact_is_in_one_name() -> None:
+    places = [(1.0, 1.0, 3.0), (1.1, 1.0, 4.5), (5.0, 1.0, 9.0)]
+    contacts = [Contact(Pose(x, y), seconds) for x, y, seconds in places]
+    clusters = _clusters(contacts)
+    assert [contact for cluster in clusters for contact in cluster] == contacts
+    assert [_contact_times(cluster) for cluster in clusters] == ["2 contacts: 3.0, 4.5 s", "9.0 s"]
+    assert _contact_times(contacts * 2) == "6 contacts: 3.0, 4.5, 9.0 s, ..."
+
+
+@pytest.mark.slow
+def test_the_film_says_what_the_safety_function_wants(tmp_path: Path) -> None:
+    mission = record(tmp_path / "a.mcap", load("nominal"), max_seconds=2)
+    shown = replace(mission, requests=((0.5, False), (1.0, True), (1.5, False)))
+    texts = [_state(shown, now)[0] for now in (0.1, 0.6, 1.0, 1.4, 1.6)]
+    assert texts == [
+        "the safety function is silent",
+        "free to drive",
+        "stop requested",
+        "stop requested",
+        "free to drive",
+    ]
+    off = replace(shown, scenario=load("safety-off"))
+    assert _state(off, 1.0)[0] == "no safety function"
+    assert animate(shown) == animate(shown)

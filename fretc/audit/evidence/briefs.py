@@ -180,15 +180,20 @@ class Briefs:
     source: EvidenceSource
     by_requirement: Mapping[str, Sequence[tuple[int, Brief]]]
     """Those of each requirement that has any, with their places, in order."""
+    firsts: Mapping[tuple[str, str], int]
+    """The place of the first result of each run, by the name and the hash of its log."""
 
     @classmethod
     def of(cls, source: EvidenceSource) -> Briefs:
         """Those of the evidence, read once; values that many have are there once, too."""
         groups: dict[str, list[tuple[int, Brief]]] = {}
         pools: _Pools = {str: {}, int: {}, float: {}}
+        firsts: dict[tuple[str, str], int] = {}
         for place, each in source.briefs():
-            groups.setdefault(each.requirement, []).append((place, _sharing(each, pools)))
-        return cls(source, groups)
+            shared = _sharing(each, pools)
+            groups.setdefault(each.requirement, []).append((place, shared))
+            firsts.setdefault((shared.run, shared.log), place)
+        return cls(source, groups, firsts)
 
 
 _Pools = dict[type, dict[Any, Any]]
@@ -284,6 +289,8 @@ def run_facts(results: Sequence[Result]) -> RunFacts:
 
 def stretches(result: Result) -> Stretches:
     """The stretches of a result."""
+    if not (result.violations or result.unknown or result.open):
+        return Stretches(_length(result), (), (), ())
     at = _seconds(result)
     return Stretches(
         length=at(result.ticks),
@@ -317,6 +324,15 @@ def _seconds(result: Result) -> Callable[[int], float]:
         return round(times[before] + (times[after] - times[before]) * share, 9)
 
     return at
+
+
+def _length(result: Result) -> float:
+    """When the last tick ends, of a result without stretches."""
+    last = [events[-1] for events in (result.triggers, result.states, result.answers) if events]
+    known = max(last, key=lambda event: event.tick, default=None)
+    if known is None or not known.tick:
+        return round(result.ticks * _mean_tick(result), 9)
+    return round(known.seconds + (result.ticks - known.tick) * (known.seconds / known.tick), 9)
 
 
 def _mean_tick(result: Result) -> float:

@@ -270,19 +270,27 @@ MOST_POINTS, MOST_WORDS = 300, 300
 """Points of the way, and changes of one signal of words, that evidence keeps of a run."""
 
 
+_FAR = 10**9
+Metre = Annotated[int, Meta(ge=-_FAR, le=_FAR)] | Annotated[float, Meta(ge=-_FAR, le=_FAR)]
+
+
 class Way(Record, frozen=True):
     """Where the robot was, as lines with few points, for a map; no verdict depends on it."""
 
     times_ns: Annotated[tuple[Whole, ...], Meta(max_length=MOST_POINTS)]
-    x: Annotated[tuple[Number, ...], Meta(max_length=MOST_POINTS), about("in metres")]
-    y: Annotated[tuple[Number, ...], Meta(max_length=MOST_POINTS), about("in metres")]
+    x: Annotated[tuple[Metre, ...], Meta(max_length=MOST_POINTS), about("in metres")]
+    y: Annotated[tuple[Metre, ...], Meta(max_length=MOST_POINTS), about("in metres")]
     starts: Annotated[
         tuple[Count, ...],
         Meta(max_length=MOST_POINTS),
         about("where a new line begins: between two lines the place is unknown"),
     ]
     error: Annotated[
-        Distance, about("metres: no place that was recorded is farther from the lines")
+        Distance,
+        about(
+            "metres: at the time of no sample the robot was farther from the place that the line "
+            "has at that time"
+        ),
     ]
     lines_left_out: Annotated[Count, about("lines that are not kept, because there are too many")]
 
@@ -310,7 +318,7 @@ class Words(Record, frozen=True):
 
 
 class Course(Record, frozen=True):
-    """What the pictures of a run show beside its results; the same in each result of the run."""
+    """What the pictures of a run show beside its results; it stands in the first of them."""
 
     way: Annotated[Way | None, about("null: the bindings declare no map, or nothing is known")]
     words: Annotated[dict[str, Words], about("each signal of words that the requirements read")]
@@ -424,7 +432,10 @@ class Result(Record, frozen=True, kw_only=True):
     ] = UNSET
     course: Annotated[
         Course | UnsetType,
-        about("absent: the bindings declare no map, and no signal of words is read"),
+        about(
+            "in the first result of the run; absent, too, where the bindings declare no map, and "
+            "no signal of words is read"
+        ),
     ] = UNSET
     labels: Annotated[
         Annotated[dict[LabelName, LabelText], Meta(min_length=1, max_length=32)] | UnsetType,

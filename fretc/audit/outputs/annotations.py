@@ -1,8 +1,8 @@
 """The results of an audit, as a log of its own that Foxglove plays beside the audited one.
 
-`/fretc/verdicts` tells each trigger, answer and violation, and the verdict at the end;
-`/fretc/<id>` tells the state of a requirement whenever it changes. Times are nanoseconds of the
-clock by which the run was judged.
+`/fretc/<id>` tells the state of a requirement whenever it changes, `/fretc/verdicts` says it in
+words, with each violation, and the verdict at the end; nothing else is a message. Times are
+nanoseconds of the clock by which the run was judged.
 
 Source: https://docs.foxglove.dev, schema foxglove.Log; MCAP format registry, encoding `json`.
 """
@@ -28,6 +28,7 @@ from compiler.formalization.record import wording
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import ANNOTATIONS
+from fretc.audit.measurements.states import OPEN, UNKNOWN
 from fretc.audit.outputs.violated_values import values
 from fretish.bindings.amounts import duration, seconds
 from monitors import kernel
@@ -130,15 +131,21 @@ def _events(result: Result, rules: Mapping[str, Formalized]) -> Iterator[_Event]
         where = {"name": id, "file": place.source.name, "line": place.line}
         return _Event(max(0, ns), VERDICTS, {"level": level, "message": message, **where})
 
+    answers = _longest_waits(result)
+    before = ""
     for state in result.states:
         content = {"requirement": id, "state": state.state}
         yield _Event(max(0, state.ns), state_topic(id), content)
-    triggers = {moment.tick: moment for moment in result.triggers}
-    for trigger in triggers.values():
-        yield event(trigger.ns, _INFO, f"{id}: triggered")
-    for answer in result.answers:
-        waited = duration((answer.ns - triggers[answer.trigger].ns) / _SECOND)
-        yield event(answer.ns, _INFO, f"{id}: answered after {waited}")
+        if state.state == OPEN:
+            yield event(state.ns, _INFO, f"{id}: triggered, an answer is awaited")
+        elif state.state == UNKNOWN:
+            yield event(state.ns, _WARNING, f"{id}: unknown from here on")
+        elif before == OPEN and state.tick in answers:
+            waited = duration(answers[state.tick] / _SECOND)
+            yield event(state.ns, _INFO, f"{id}: answered after {waited}")
+        elif before == UNKNOWN:
+            yield event(state.ns, _INFO, f"{id}: known again")
+        before = state.state
     for violation in result.violations:
         cause = violation.trigger
         at_first = f": {values(result, violation)}" if violation.values else ""
@@ -148,6 +155,17 @@ def _events(result: Result, rules: Mapping[str, Formalized]) -> Iterator[_Event]
     verdict = f"{id}: {result.verdict}: {result.reason}"
     assert result.end_ns is not None, "there is a sidecar of what could be read only"
     yield event(result.end_ns, _LEVELS.get(result.verdict, _WARNING), verdict)
+
+
+def _longest_waits(result: Result) -> dict[int, int]:
+    """The tick of each answer, with the nanoseconds that its oldest trigger waited."""
+    triggers = {moment.tick: moment.ns for moment in result.triggers}
+    waits: dict[int, int] = {}
+    for answer in result.answers:
+        if answer.trigger in triggers:
+            waited = answer.ns - triggers[answer.trigger]
+            waits[answer.tick] = max(waited, waits.get(answer.tick, 0))
+    return waits
 
 
 def _metadata(results: Sequence[Result]) -> dict[str, str]:

@@ -136,8 +136,9 @@ def _reading(declarations: Declarations, wanted: Sequence[str], integrity: Integ
     signals = declarations.signals
     labels = {name: [repr(each) for each in some] for name, some in declarations.labels.items()}
     read = [repr(signals[name]) for name in wanted]
+    beside = repr(declarations.map)
     bound = sorted(map(repr, signals.values()))
-    return sha256(json.dumps([repr(declarations.clock), read, bound, labels, integrity]))
+    return sha256(json.dumps([repr(declarations.clock), read, bound, beside, labels, integrity]))
 
 
 def _unchanged(log: str, about: Mapping[str, Any], *, rehash: bool) -> KnownBy | None:
@@ -182,20 +183,25 @@ def _described(recording: Recording) -> tuple[dict[str, Any], list[Array]]:
     """A recording as plain values and arrays, but for its findings; equal times are kept once."""
     arrays: list[Array] = [recording.ticks]
     places: dict[bytes, int] = {}
-    samples = {}
-    for name, each in recording.samples.items():
-        times = each.times.tobytes()
-        if times not in places:
-            places[times] = len(arrays)
-            arrays.append(each.times)
-        samples[name] = [places[times], len(arrays), str(each.scale), each.words]
-        arrays.append(each.values)
+
+    def kept(samples: Mapping[str, Samples]) -> dict[str, Any]:
+        found = {}
+        for name, each in samples.items():
+            times = each.times.tobytes()
+            if times not in places:
+                places[times] = len(arrays)
+                arrays.append(each.times)
+            found[name] = [places[times], len(arrays), str(each.scale), each.words]
+            arrays.append(each.values)
+        return found
+
     return {
         "name": recording.name,
         "sha256": recording.sha256,
         "size": recording.size,
         "span": [recording.start_ns, recording.end_ns],
-        "samples": samples,
+        "samples": kept(recording.samples),
+        "beside": kept(recording.beside),
         "gaps": recording.gaps,
         "topics": {name: astuple(topic) for name, topic in recording.topics.items()},
         "nearest": dict(recording.nearest),
@@ -208,10 +214,13 @@ def _described(recording: Recording) -> tuple[dict[str, Any], list[Array]]:
 def _recording(
     about: Mapping[str, Any], arrays: Sequence[Array], declarations: Declarations
 ) -> Recording:
-    samples = {
-        name: Samples(arrays[times], arrays[values], Fraction(scale), tuple(words))
-        for name, (times, values, scale, words) in about["samples"].items()
-    }
+    samples, beside = (
+        {
+            name: Samples(arrays[times], arrays[values], Fraction(scale), tuple(words))
+            for name, (times, values, scale, words) in about[key].items()
+        }
+        for key in ("samples", "beside")
+    )
     return Recording(
         name=about["name"],
         sha256=about["sha256"],
@@ -227,6 +236,7 @@ def _recording(
         intact=about["intact"],
         checked=Checked(**about["checked"]),
         described={name: tuple(values) for name, values in about["described"].items()},
+        beside=beside,
     )
 
 

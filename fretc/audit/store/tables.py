@@ -17,7 +17,7 @@ import pyarrow.compute as pc
 
 from compiler.files.checked_json import MisshapenError
 from compiler.files.checked_json import plain as parsed
-from compiler.files.records import decoded, plain, replace
+from compiler.files.records import UNSET, decoded, plain, replace
 from compiler.files.templating import to_json
 from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
 from fretc.audit.evidence.reader import VERDICTS
@@ -101,13 +101,15 @@ def _below(path: str, fields: Iterable[Field]) -> Iterator[Field]:
     return (each.below(path) for each in fields)
 
 
-_SHARED = ("health", "labels", "course")
+_SHARED = ("health", "labels")
 """What all results of a run share."""
+_COURSE = "course"
+"""What the first of them has."""
 _FLAT = "run requirement verdict finite reason clock ticks start_ns end_ns trials".split()
-_ELSEWHERE = ("violations", "hashes", *_SHARED, *_FLAT)
+_ELSEWHERE = ("violations", "hashes", *_SHARED, _COURSE, *_FLAT)
 _MAIN = tuple(each for each in fields_of(Result) if each.name in _FLAT)
 _NESTED = tuple(each for each in fields_of(Result) if each.name not in _ELSEWHERE)
-_OF_RUN = tuple(each for each in fields_of(Result) if each.name in _SHARED[1:])
+_OF_RUN = tuple(each for each in fields_of(Result) if each.name in (*_SHARED[1:], _COURSE))
 _COUNTS = tuple(e for e in fields_of(Brief) if e.name not in (*_FLAT, "fingerprints"))
 _FACTS = tuple(e for e in fields_of(RunFacts) if e.name not in _SHARED)
 _HASHES = fields_of(Hashes)
@@ -217,11 +219,15 @@ def _table(fields: Sequence[Field], rows: Sequence[Any], *, exact: bool) -> pa.T
 
 
 def runs_of(results: Iterable[Result]) -> list[list[Result]]:
-    """The results of each run: those that stand together and share what a run has once."""
+    """The results of each run: those that stand together and share what a run has once.
+
+    One with a course is the first of its run.
+    """
     runs: list[list[Result]] = []
     ids: set[str] = set()
     for result in results:
-        if not runs or result.requirement in ids or _shared(result) != _shared(runs[-1][0]):
+        is_first = not runs or result.requirement in ids or result.course is not UNSET
+        if is_first or _shared(result) != _shared(runs[-1][0]):
             runs.append([])
             ids = set()
         runs[-1].append(result)
@@ -230,7 +236,7 @@ def runs_of(results: Iterable[Result]) -> list[list[Result]]:
 
 
 def _shared(result: Result) -> tuple[object, ...]:
-    return (result.run, result.health, *(getattr(result, each.attribute) for each in _OF_RUN))
+    return (result.run, *(getattr(result, name) for name in _SHARED))
 
 
 # Read --------------------------------------------------------------------------------------------
@@ -268,6 +274,7 @@ def _results(tables: Tables, rows: Sequence[int] | None) -> list[Result]:
 def _held(tables: Tables, rows: Sequence[int]) -> list[Result]:
     """The results in some rows that columns hold as they are."""
     main, events = (_taken(tables[name], rows) for name in (RESULTS, EVENTS))
+    main_rows = tables[RESULTS]["run_row"]
     run_rows = main["run_row"].to_pylist()
     shared = _of_runs(tables[RUNS], run_rows)
     parts = zip(
@@ -282,7 +289,24 @@ def _held(tables: Tables, rows: Sequence[int]) -> list[Result]:
         for flat, nested, hashes, violations in parts
     ]
     found = decoded(records, list[Result])
-    return [replace(each, **shared[n]) for each, n in zip(found, run_rows, strict=True)]
+    bare = {row: {**of_run, _COURSE: UNSET} for row, of_run in shared.items()}
+    firsts = _firsts(main_rows, rows)
+    return [
+        replace(each, **(shared if is_first else bare)[n])
+        for each, n, is_first in zip(found, run_rows, firsts, strict=True)
+    ]
+
+
+def _firsts(runs: pa.ChunkedArray, rows: Sequence[int]) -> list[bool]:
+    """Whether each of these rows is the first one of its run.
+
+    Args:
+        runs: the run of each row of the table.
+        rows: some of them.
+    """
+    taken = _taken(runs, rows).to_pylist()
+    before = _taken(runs, [max(0, row - 1) for row in rows]).to_pylist()
+    return [row == 0 or run != last for row, run, last in zip(rows, taken, before, strict=True)]
 
 
 _NO_HEALTH = plain(Health(False, None, None, (), (), {}))

@@ -157,6 +157,8 @@ class Recording:
     findings: tuple[Diagnostic, ...]
     intact: bool
     checked: Checked = EVERYTHING
+    beside: Mapping[str, Samples] = field(default_factory=dict)
+    """Signals that were read for pictures; no verdict and no finding depends on them."""
     described: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """What the metadata of the log says, as far as labels ask for it: `build.version` → values."""
     derived: dict[tuple[object, ...], Any] = field(

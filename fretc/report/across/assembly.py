@@ -12,13 +12,16 @@ from fretc.report.across.lanes import (
     LanePlan,
     RunStretches,
     Tally,
+    left_out,
     plan,
     with_marks,
+    worst_first,
     worst_runs,
 )
+from fretc.report.across.maps import MOST_MAPS, RunResult, run_map
 from fretc.report.across.uses import RunNumbers, uses
 from fretc.report.model import phrases
-from fretc.report.model.across import Across, RequirementAcross
+from fretc.report.model.across import Across, RequirementAcross, RunMap
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.audits import SingleAudit
 from fretc.report.model.pictures import WordLane
@@ -49,13 +52,15 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
     in_force = {assessment.anchor for assessment in active}
     chosen = {*[anchor for anchor in worst if anchor in in_force][:pictured]}
     several = [each for each in active if each.anchor in chosen and len(each.audits) > 1]
-    of_all = _plan_of_all(active, details)
+    tallies = _tallies(active, details)
+    of_all = _plan_of_all(active, tallies, details)
     plans = {each.anchor: _plan(each, details, most, marks) for each in several}
     known = _known(details, [at for each in (of_all, *plans.values()) for at in each.places])
     uses_of = {
         each.anchor: uses(*_numbers(each, details, thresholds, most))
         for each, thresholds in details.thresholds(plans)
     }
+    maps, maps_left_out = _maps(active, tallies, details)
     return Across(
         of_all.lanes(known),
         tuple(
@@ -68,6 +73,8 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
             for each in active
             if each.anchor in chosen
         ),
+        maps,
+        maps_left_out,
     )
 
 
@@ -80,8 +87,19 @@ def _plan(assessment: Assessment, details: Details, most: int, marks: int) -> La
     return plan(f"{assessment.id} in its runs", marked, most, marks, note)
 
 
-def _plan_of_all(active: Sequence[Assessment], details: Details) -> LanePlan:
+def _plan_of_all(
+    active: Sequence[Assessment], tallies: Mapping[str, Tally], details: Details
+) -> LanePlan:
     """Of the worst runs: of all others nothing is held but their number."""
+    chosen = {*worst_runs(tallies)}
+    left = [tally for run, tally in tallies.items() if run not in chosen]
+    of = _of_runs(active, details, chosen)
+    title = "All requirements, a lane for each run"
+    return plan(title, of, left=left, courses=_courses(details), ranked=bool(left))
+
+
+def _tallies(active: Sequence[Assessment], details: Details) -> Mapping[str, Tally]:
+    """Run → its worst verdict and what is counted, in the order of runs."""
     tallies: dict[str, Tally] = {}
     for each in active:
         for audit in each.reviewed_audits:
@@ -90,16 +108,72 @@ def _plan_of_all(active: Sequence[Assessment], details: Details) -> LanePlan:
             tallies[run] = (
                 before.with_one(audit.mark, known) if before else Tally(audit.mark, known)
             )
-    places = {run.anchor: run.number for run in details.runs.values()}
-    tallies = {run: tallies[run] for run in sorted(tallies, key=lambda run: places[run])}
-    chosen = {*worst_runs(tallies)}
-    left = [tally for run, tally in tallies.items() if run not in chosen]
-    of = [one for each in active for one in _results(each, details, chosen)]
-    of.sort(key=lambda one: places[one.run])
-    return plan("All requirements, a lane for each run", of, left=left, ranked=bool(left))
+    return {
+        run.anchor: tallies[run.anchor] for run in details.runs.values() if run.anchor in tallies
+    }
+
+
+def _courses(details: Details) -> Mapping[str, int]:
+    """Run → the place of the result that has its course."""
+    return {run.anchor: run.first for run in details.runs.values()}
+
+
+# Maps ------------------------------------------------------------------------------------------
+
+
+def _maps(
+    active: Sequence[Assessment], tallies: Mapping[str, Tally], details: Details
+) -> tuple[tuple[RunMap, ...], str]:
+    """The maps of the worst runs, and how many runs have none; nothing else of those is read."""
+    judged = {
+        details.runs[run_key(audit.result)].anchor
+        for each in active
+        for audit in each.reviewed_audits
+        if audit.result.ticks
+    }
+    ranked = [run for run in tallies if run in judged]
+    ranked.sort(key=lambda run: worst_first(tallies[run]))
+    results: dict[str, list[RunStretches]] = {run: [] for run in ranked[:MOST_MAPS]}
+    for one in _of_runs(active, details, results):
+        results[one.run].append(one)
+    courses = _courses(details)
+    drawn = [_map(of, courses[run], details) for run, of in results.items()]
+    maps = tuple(each for each in drawn if each is not None)
+    if not maps:
+        return (), ""
+    left = left_out([tallies[run] for run in ranked[MOST_MAPS:]], "no map")
+    unknown = len(drawn) - len(maps)
+    verb = "has" if unknown == 1 else "have"
+    lost = f"{phrases.times(unknown, 'run')} {verb} no map, because no way is known."
+    return maps, " ".join(filter(None, [left, lost if unknown else ""]))
+
+
+def _map(of: Sequence[RunStretches], first: int, details: Details) -> RunMap | None:
+    """The map of a run; None where the evidence has no way of it.
+
+    Args:
+        of: all its results.
+        first: the place of the one that has its course.
+        details: the evidence.
+    """
+    violated = [each.place for each in of if each.count[0]]
+    found = dict(details.evidence.details({first, *violated}) if details.evidence else ())
+    course = found[first].course
+    if not course or course.way is None:
+        return None
+    return run_map(course.way, [RunResult(each, found.get(each.place)) for each in of])
 
 
 # What the evidence says ------------------------------------------------------------------------
+
+
+def _of_runs(
+    active: Sequence[Assessment], details: Details, runs: Collection[str]
+) -> list[RunStretches]:
+    """The results of some runs, by their anchors, in the order of all runs."""
+    places = {run.anchor: run.number for run in details.runs.values()}
+    found = [one for each in active for one in _results(each, details, runs)]
+    return sorted(found, key=lambda one: places[one.run])
 
 
 def _results(
@@ -178,7 +252,7 @@ def word_lanes(result: Result) -> tuple[WordLane, ...]:
         words = list(series.words)
         if series.changes_left_out and times:
             words[-1] = None
-        ends = [*times[1:], inf]
+        ends = [*times[1:], inf][: len(times)]
         pieces = tuple(
             (round(max(0.0, start), 6), round(min(end, after), 6), word)
             for start, after, word in zip(times, ends, words, strict=True)

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
+from types import MappingProxyType
 
 from fretc.audit.evidence.briefs import Stretches
 from fretc.report.model import phrases
@@ -16,6 +17,7 @@ from fretc.report.model.across import LaneMark, Lanes, RunLane
 from fretc.report.model.marks import Mark
 from fretc.report.model.pictures import WordLane
 
+NO_COURSES: Mapping[str, int] = MappingProxyType({})
 MOST_LANES = 40
 """Of the picture of all requirements."""
 _DETAIL, _COARSEST = 240, 4
@@ -70,7 +72,7 @@ def worst_runs(tallies: Mapping[str, Tally], most: int = MOST_LANES) -> Sequence
     """The runs that have a lane, the worst where they are too many; else all, in their order."""
     if len(tallies) <= most:
         return [*tallies]
-    return sorted(tallies, key=lambda run: _worst_first(tallies[run]))[:most]
+    return sorted(tallies, key=lambda run: worst_first(tallies[run]))[:most]
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +80,8 @@ class _Lane:
     """A run before its marks are made."""
 
     results: tuple[RunStretches, ...]
+    course: int | None = None
+    """The place of the result that has the signals of words; None: they are not to be shown."""
     known: Mapping[int, Known] = field(default_factory=dict)
     """Of those results that are read, by their places."""
 
@@ -96,14 +100,15 @@ class _Lane:
 
     @property
     def places(self) -> Iterator[int]:
-        """The results to read: those with something to mark, and one that was judged."""
+        """The results to read: those with something to mark or words, and one that was judged."""
         judged = [each for each in self.results if each.is_judged]
         yield from (each.place for each in (*judged[:1], *with_marks(self.results)))
+        if self.course is not None:
+            yield self.course
 
     @property
     def words(self) -> tuple[WordLane, ...]:
-        """Those of any of its results: they are the same in all."""
-        return next((words for _, words in self.known.values() if words), ())
+        return self.known[self.course][1] if self.course is not None else ()
 
     @property
     def count(self) -> tuple[int, int, int]:
@@ -146,9 +151,9 @@ class LanePlan:
         if not end:
             return None
         drawn = _drawn(chosen, end, self.marks)
-        left_out = " ".join(filter(None, [_left_out(self.left), self.note]))
-        text = " ".join(filter(None, [_in_words(chosen), left_out]))
-        return Lanes(self.title, round(end, 6), drawn, left_out, text)
+        others = " ".join(filter(None, [left_out(self.left, "no lane"), self.note]))
+        text = " ".join(filter(None, [_in_words(chosen), others]))
+        return Lanes(self.title, max(round(end, 6), 1e-6), drawn, others, text)
 
 
 def plan(
@@ -158,6 +163,7 @@ def plan(
     marks: int = _MOST_MARKS,
     note: str = "",
     left: Sequence[Tally] = (),
+    courses: Mapping[str, int] = NO_COURSES,
     *,
     ranked: bool = False,
 ) -> LanePlan:
@@ -170,14 +176,15 @@ def plan(
         marks: about how many marks there may be.
         note: what else to say of runs without a lane.
         left: runs that have no lane in any case, none of them worse than the others.
+        courses: run → place of the result that has its signals of words.
         ranked: whether the worst come first, though they are few.
     """
     grouped: dict[str, list[RunStretches]] = {}
     for each in results:
         grouped.setdefault(each.run, []).append(each)
-    every = [_Lane(tuple(of)) for of in grouped.values()]
+    every = [_Lane(tuple(of), courses.get(run)) for run, of in grouped.items()]
     sort = ranked or len(every) > most
-    ordered = sorted(every, key=_worst_first) if sort else every
+    ordered = sorted(every, key=worst_first) if sort else every
     return LanePlan(title, tuple(ordered[:most]), (*ordered[most:], *left), marks, note)
 
 
@@ -186,7 +193,8 @@ def with_marks(results: Sequence[RunStretches]) -> list[RunStretches]:
     return [each for each in results if any(each.count)]
 
 
-def _worst_first(lane: Tally | _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
+def worst_first(lane: Tally | _Lane) -> tuple[tuple[int, bool], tuple[int, ...]]:
+    """The key that sorts runs."""
     return lane.mark.severity, tuple(-count for count in lane.count)
 
 
@@ -271,15 +279,15 @@ def _worded(mark: LaneMark) -> LaneMark:
     )
 
 
-def _left_out(left: Sequence[Tally | _Lane]) -> str:
-    """How many runs have no lane, and the worst verdict among them."""
+def left_out(left: Sequence[Tally | _Lane], what: str) -> str:
+    """How many runs have no lane or no map, and the worst verdict among them."""
     if not left:
         return ""
     worst = min((lane.mark for lane in left), key=lambda mark: mark.severity)
     counted = _counted(left)
     verb = "has" if len(left) == 1 else "have"
     return (
-        f"{phrases.times(len(left), 'run')} {verb} no lane, and none is worse than those with one: "
+        f"{phrases.times(len(left), 'run')} {verb} {what}, and none is worse than those with one: "
         f"the worst is {worst.text}{f', with {counted}' if counted else ''}."
     )
 
@@ -298,7 +306,7 @@ def _counted(lanes: Sequence[Tally | _Lane]) -> str:
 
 def _in_words(lanes: Sequence[_Lane]) -> str:
     """Each of the worst runs with what it has, the others by their number."""
-    bad = sorted((lane for lane in lanes if any(lane.count)), key=_worst_first)
+    bad = sorted((lane for lane in lanes if any(lane.count)), key=worst_first)
     named = [f"{lane.first.label} ({lane.first.file}): {_counted([lane])}" for lane in bad[:_NAMED]]
     rest = _counted(bad[_NAMED:]) if len(bad) > _NAMED else ""
     more = f"{phrases.times(len(bad) - _NAMED, 'more run')}: {rest}" if rest else ""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
+from math import floor, log10
 
 from fretc.report.across.uses import percent
-from fretc.report.model.across import LaneMark, Lanes, Use, UseRow, Uses
+from fretc.report.model import phrases
+from fretc.report.model.across import LaneMark, Lanes, PlaceMark, RunMap, Use, UseRow, Uses
 from fretc.report.model.marks import Mark
 from fretc.report.model.phrases import decimal
 from fretc.report.pictures.plots import WIDTH, places
@@ -88,6 +90,8 @@ class DrawnLanes:
     top: int
     axis: int
     row: int
+    is_calm: bool
+    """Whether nothing was violated; the lanes of a requirement are then left out of print."""
     runs: tuple[DrawnRun, ...]
     ticks: tuple[tuple[float, str], ...]
 
@@ -140,6 +144,7 @@ def drawn_lanes(content: Lanes, id: str, anchors: Collection[str]) -> DrawnLanes
         top=_TOP,
         axis=y + 2,
         row=_ROW,
+        is_calm=not any(m.kind == "violated" for run in content.lanes for m in run.marks),
         runs=tuple(runs),
         ticks=tuple((x(place), decimal(place)) for place in places(0.0, content.end)),
     )
@@ -148,10 +153,8 @@ def drawn_lanes(content: Lanes, id: str, anchors: Collection[str]) -> DrawnLanes
 def _mark(mark: LaneMark, y: int, x: _Place, anchors: Collection[str]) -> DrawnMark:
     below, height = _KINDS[mark.kind]
     start = min(x(mark.start), WIDTH - _RIGHT - _THINNEST)
-    picture = f"picture-{mark.anchor}.{mark.number}"
-    links = [picture if mark.number else "", mark.anchor]
-    link = next((one for one in links if one in anchors), mark.section)
     width = round(max(_THINNEST, x(mark.end) - start), 1)
+    link = _link(mark, anchors)
     return DrawnMark(mark.kind, start, y + below, width, height, link, mark.text)
 
 
@@ -213,6 +216,8 @@ class DrawnUses:
     axis: int
     row: int
     bound: float
+    is_calm: bool
+    """Whether no bound was crossed; it is then left out of print."""
     rows: tuple[DrawnRow, ...]
     ticks: tuple[tuple[float, str], ...]
 
@@ -234,6 +239,7 @@ def drawn_uses(content: Uses, id: str, anchors: Collection[str]) -> DrawnUses:
         axis=axis,
         row=_ROW,
         bound=_share(1.0),
+        is_calm=not any(use.is_crossed for row in content.rows for use in row.uses),
         rows=tuple(
             _row(row, name, _TOP + _ROW * place, anchors)
             for place, (row, name) in enumerate(zip(content.rows, names, strict=True))
@@ -272,3 +278,120 @@ def _row(row: UseRow, name: str, y: int, anchors: Collection[str]) -> DrawnRow:
 
 def _words_of(use: Use) -> str:
     return f"{percent(use.share)}: {use.text}" if use.share is not None else use.text
+
+
+# Maps ------------------------------------------------------------------------------------------
+
+_MAP, _EDGE, _FOOT = 360, 14, 30
+"""Width of a map, the room around it, and that of the scale bar below it."""
+_TALLEST = 420
+_BAR = 0.25
+"""The scale bar is at most so much of the width."""
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnPlace:
+    """A mark of violations, with its link."""
+
+    x: float
+    y: float
+    link: str
+    text: str
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnMap:
+    """The map of a run: one metre is as long upwards as to the right."""
+
+    id: str
+    title: str
+    text: str
+    mark: Mark
+    link: str
+    is_calm: bool
+    """Whether nothing was violated in its run."""
+    width: int
+    height: int
+    path: str
+    start: tuple[float, float]
+    end: tuple[float, float]
+    places: tuple[DrawnPlace, ...]
+    bar: float
+    """The length of the scale bar."""
+    bar_label: str
+
+
+def drawn_map(content: RunMap, id: str, anchors: Collection[str]) -> DrawnMap:
+    """The layout of a map; arguments as of `drawn_lanes`."""
+    points = [point for line in content.lines for point in line]
+    points += [(mark.x, mark.y) for mark in content.marks]
+    xs, ys = zip(*points, strict=True)
+    wide, high = max(max(xs) - min(xs), 1e-3), max(max(ys) - min(ys), 1e-3)
+    if max(wide, high) < 1.0:
+        wide = high = 1.0
+    scale = min((_MAP - 2 * _EDGE) / wide, (_TALLEST - 2 * _EDGE) / high)
+    middle = (min(xs) + max(xs)) / 2
+    top = max(ys)
+
+    def at(x: float, y: float) -> tuple[float, float]:
+        right = _MAP / 2 + (x - middle) * scale
+        return round(right, 1), round(_EDGE + (top - y) * scale, 1)
+
+    height = round(2 * _EDGE + (top - min(ys)) * scale) + _FOOT
+    metres = _round_below(_BAR * _MAP / scale)
+    return DrawnMap(
+        id=id,
+        title=f"{content.label}, {content.file}",
+        text=content.text,
+        mark=content.mark,
+        link=content.anchor if content.anchor in anchors else "runs",
+        is_calm=not content.marks and not content.unplaced,
+        width=_MAP,
+        height=height,
+        path="".join(_line(line, at) for line in content.lines),
+        start=at(*content.lines[0][0]),
+        end=at(*content.lines[-1][-1]),
+        places=tuple(_places(content.marks, at, anchors)),
+        bar=round(metres * scale, 1),
+        bar_label=f"{metres:g} m",
+    )
+
+
+def _places(
+    marks: Sequence[PlaceMark],
+    at: Callable[[float, float], tuple[float, float]],
+    anchors: Collection[str],
+) -> Iterator[DrawnPlace]:
+    """The marks; one without room for its name says it where the reader points at it."""
+    named: list[tuple[float, float]] = []
+    for mark in marks:
+        x, y = at(mark.x, mark.y)
+        name = phrases.some(mark.requirements, 2)
+        wide = 14 + _LETTER * len(name)
+        fits = all(abs(x - a) > wide or abs(y - b) > 11 for a, b in named)
+        if fits:
+            named.append((x, y))
+        yield DrawnPlace(x, y, _link(mark, anchors), mark.text, name if fits else "")
+
+
+def _link(mark: PlaceMark | LaneMark, anchors: Collection[str]) -> str:
+    """To the picture of the first violation, else to its result, else to its requirement."""
+    links = [f"picture-{mark.anchor}.{mark.number}" if mark.number else "", mark.anchor]
+    return next((one for one in links if one in anchors), mark.section)
+
+
+def _line(
+    line: Sequence[tuple[float, float]], at: Callable[[float, float], tuple[float, float]]
+) -> str:
+    places = list(dict.fromkeys(at(*point) for point in line)) if len(line) == 2 else []
+    places = places or [at(*point) for point in line]
+    first, *others = places
+    rest = "".join(f"L{x:g} {y:g}" for x, y in others) or "h0"
+    return f"M{first[0]:g} {first[1]:g}{rest}"
+
+
+def _round_below(length: float) -> float:
+    """1, 2 or 5 times a power of ten, not above `length`."""
+    power = 10.0 ** floor(log10(length))
+    return next(power * n for n in (5, 2, 1) if power * n <= length * (1 + 1e-9))

@@ -69,10 +69,11 @@ def uses(
     bounds = {key: bound for key, of in grouped.items() if (bound := _bound(of)) is not None}
     letters = _lettered(allowed, bounds)
     rows = [_row(run, allowed, bounds, letters) for run in runs]
-    known = sorted((row for row in rows if row.uses), key=_rank)
-    if len(known) < 2:
+    places = sorted((n for n, row in enumerate(rows) if row.uses), key=lambda n: _rank(rows[n]))
+    if len(places) < 2:
         return None
-    shown, left = known[:most], known[most:]
+    shown = [_row(runs[n], allowed, bounds, letters, worded=True) for n in places[:most]]
+    left = [rows[n] for n in places[most:]]
     notes = tuple(
         filter(
             None,
@@ -145,12 +146,15 @@ def _row(
     allowed: float | None,
     bounds: Mapping[_Key, _Bound],
     letters: Mapping[_Key | None, str],
+    *,
+    worded: bool = False,
 ) -> UseRow:
+    """The row of a run; words only where they are asked for, since most rows are not shown."""
     found = list(_of_latency(run, allowed, letters))
     for each in run.thresholds:
         key = _key(each)
         if key in bounds and key in letters and each.comparison is not None:
-            found.append(_of_threshold(each, bounds[key], letters[key]))
+            found.append(_of_threshold(each, bounds[key], letters[key], worded=worded))
     found.sort(key=_most_used)
     return UseRow(run.label, run.file, run.mark, run.anchor, run.section, tuple(found))
 
@@ -190,21 +194,23 @@ def _of_latency(
 # Thresholds ------------------------------------------------------------------------------------
 
 
-def _of_threshold(each: Threshold, of: _Bound, letter: str) -> Use:
+def _of_threshold(each: Threshold, of: _Bound, letter: str, *, worded: bool) -> Use:
     side = of.side or (each.comparison if each.comparison != "crossed" else None)
     beyond = each.comparison != side
     worst = _worst(each, side)
     distance = _beyond(each, side) if beyond else each.margin
-    bound = exact(each.bound, each.unit)
-    if worst is None:
-        text = f"crossed {bound}"
-    else:
-        text = f"{phrases.value(worst, each.unit, [each.bound])}, bound {bound}"
     if distance is None or not of.scale or not isfinite(distance / of.scale):
         share = None if beyond else 0.0
     else:
         share = 1 + distance / of.scale if beyond else max(0.0, 1 - distance / of.scale)
-    return Use(letter, share, beyond, text)
+    return Use(letter, share, beyond, _measured(each, worst) if worded else "")
+
+
+def _measured(each: Threshold, worst: float | None) -> str:
+    bound = exact(each.bound, each.unit)
+    if worst is None:
+        return f"crossed {bound}"
+    return f"{phrases.value(worst, each.unit, [each.bound])}, bound {bound}"
 
 
 def _reach(each: Threshold) -> float:

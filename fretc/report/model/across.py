@@ -102,8 +102,41 @@ class RequirementAcross:
 
 
 @dataclass(frozen=True, slots=True)
+class PlaceMark:
+    """Where violations began that lie side by side; fields as of `LaneMark`."""
+
+    x: float
+    y: float
+    count: int
+    requirements: tuple[str, ...]
+    anchor: str
+    section: str
+    number: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class RunMap:
+    """The way of the robot in one run, in metres, with each violation where it began."""
+
+    anchor: str
+    label: str
+    file: str
+    mark: Mark
+    lines: tuple[tuple[tuple[float, float], ...], ...]
+    marks: tuple[PlaceMark, ...]
+    unplaced: int
+    """Violations that began where the place of the robot is unknown."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Across:
     """All runs of all requirements, and those of each."""
 
     lanes: Lanes | None
     requirements: tuple[RequirementAcross, ...]
+    maps: tuple[RunMap, ...]
+    """Of the runs with a way, the worst first."""
+    maps_left_out: str
+    """How many runs with a way have no map; empty: none."""

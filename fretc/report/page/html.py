@@ -12,7 +12,7 @@ from compiler.explanation.diagram import diagram
 from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
-from fretc.report.across.layout import drawn_lanes, drawn_uses
+from fretc.report.across.layout import drawn_lanes, drawn_map, drawn_uses
 from fretc.report.model.changes import Change, follows, new_violations
 from fretc.report.model.phrases import visible
 from fretc.report.model.views import Report
@@ -108,6 +108,10 @@ def _across(report: Report, choice: Selection, links: frozenset[str]) -> dict[st
     everything = report.across.lanes
     return {
         "lanes": everything and asdict(drawn_lanes(everything, "across-lanes", links)),
+        "maps": [
+            asdict(drawn_map(each, f"map-{each.anchor}", links)) for each in report.across.maps
+        ],
+        "maps_left_out": report.across.maps_left_out,
         "requirements": {
             each.anchor: {
                 "lanes": each.lanes

@@ -8,7 +8,7 @@ from dataclasses import replace as changed
 
 from compiler.files.records import replace
 from compiler.project.folder import Project
-from fretc.audit.evidence.briefs import Brief, EvidenceSource, RunFacts
+from fretc.audit.evidence.briefs import Brief, Briefs, RunFacts
 from fretc.audit.evidence.schema import Checked, Finding, Topic
 from fretc.report.model import phrases
 from fretc.report.model.views import Remark, RunSummary, TopicView, sign_mark
@@ -30,6 +30,8 @@ class Run:
     facts: RunFacts
     """Without its topics, which are many: `topic_views` has those of one run."""
     has_topics: bool
+    first: int = 0
+    """The place of its first result in the evidence: that one has the course of the run."""
 
     @property
     def anchor(self) -> str:
@@ -50,12 +52,13 @@ def run_key(result: Brief | RunFacts) -> RunKey:
     return result.run, result.log
 
 
-def runs(evidence: EvidenceSource | None) -> dict[RunKey, Run]:
+def runs(briefs: Briefs | None) -> dict[RunKey, Run]:
     """The runs of the evidence, numbered from 1 in its order."""
     numbered: dict[RunKey, Run] = {}
-    for facts in evidence.runs() if evidence else ():
+    for facts in briefs.source.runs() if briefs else ():
         bare = changed(facts, health=replace(facts.health, topics={}))
-        run = Run(len(numbered) + 1, bare, bool(facts.health.topics))
+        first = briefs.firsts.get(run_key(facts), 0) if briefs else 0
+        run = Run(len(numbered) + 1, bare, bool(facts.health.topics), first)
         numbered.setdefault(run_key(facts), run)
     return numbered
 

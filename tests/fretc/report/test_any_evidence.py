@@ -115,6 +115,28 @@ def audits(draw: st.DrawFn) -> list[dict[str, Any]]:
 
 
 @st.composite
+def courses(draw: st.DrawFn) -> dict[str, Any]:
+    """A way of any form, and words at any times."""
+    ns = st.integers(-(2**62), 2**62) | st.integers(0, 12 * 10**9)
+    metres = st.floats(-1e9, 1e9) | st.sampled_from([0.0, 5e-324, 1e9, -1e9])
+    points = draw(st.lists(st.tuples(metres, metres), max_size=5))
+    size = len(points)
+    starts = sorted(draw(st.sets(st.integers(0, size - 1)))) if size else []
+    way = {
+        "times_ns": sorted(draw(st.lists(ns, min_size=size, max_size=size))),
+        "x": [x for x, _ in points],
+        "y": [y for _, y in points],
+        "starts": starts,
+        "error": draw(st.floats(0, 1e9)),
+        "lines_left_out": draw(st.integers(0, 2)),
+    }
+    words = draw(st.lists(st.none() | st.just("drive"), max_size=3))
+    times = sorted(draw(st.lists(ns, min_size=len(words), max_size=len(words))))
+    mode = {"times_ns": times, "words": words, "changes_left_out": draw(st.integers(0, 1))}
+    return {"way": draw(st.just(way) | st.none()), "words": {"mode": mode}}
+
+
+@st.composite
 def outcomes(draw: st.DrawFn) -> dict[str, Any]:
     verdict = draw(st.sampled_from([*WORDS, "violated", "violated"]))
     is_red = verdict == "violated"
@@ -131,6 +153,7 @@ def outcomes(draw: st.DrawFn) -> dict[str, Any]:
         "thresholds": draw(st.lists(thresholds(), max_size=3)),
         "hashes": draw(st.sampled_from([*CHANGED.values()])),
         "health": {"intact": draw(st.booleans())},
+        **draw(st.fixed_dictionaries({}, optional={"course": courses()})),
     }
 
 

@@ -82,15 +82,35 @@ def test_what_happened_is_told_in_order_of_time() -> None:
     messages, _ = read(sidecar([result()], RULES))
     events = [(ns // S, one["level"], one["message"]) for ns, one in messages[VERDICTS]]
     assert events == [
-        (101, 2, "R1: triggered"),
-        (101, 2, "R1: answered after 0 s"),
-        (102, 2, "R1: triggered"),
+        (102, 2, "R1: triggered, an answer is awaited"),
         (105, 4, "R1: violated from here on, triggered at 2 s: x = 5 km/h"),
         (105, 4, "R1: violated up to here"),
         (120, 4, "R1: violated: broken"),
     ]
     _, first = messages[VERDICTS][0]
     assert (first["name"], first["file"], first["line"]) == ("R1", "r.fret", 1)
+
+
+def test_only_changes_of_state_are_messages() -> None:
+    states = [(0, "idle"), (10, "open"), (14, "idle"), (20, "unknown"), (25, "idle")]
+    quiet = result(
+        verdict="satisfied",
+        states=[moment(tick, state=state) for tick, state in states],
+        triggers=[moment(tick) for tick in (*range(10, 14), *range(30, 90))],
+        answers=[
+            *(moment(14, trigger=tick) for tick in range(10, 14)),
+            *(moment(tick, trigger=tick) for tick in range(30, 90)),
+        ],
+        violations=[],
+    )
+    messages, _ = read(sidecar([quiet], RULES))
+    assert [(ns // S - 100, one["message"]) for ns, one in messages[VERDICTS]] == [
+        (10, "R1: triggered, an answer is awaited"),
+        (14, "R1: answered after 4 s"),
+        (20, "R1: unknown from here on"),
+        (20, "R1: satisfied: broken"),
+        (25, "R1: known again"),
+    ]
 
 
 def test_each_requirement_has_its_states() -> None:
@@ -180,7 +200,8 @@ def test_the_command_writes_it_beside_the_log_and_leaves_the_log(fretc: Fretc) -
     before = Path("run.mcap").read_bytes()
     run = fretc("audit", "run.mcap", "--annotate")
     assert run.status == 1
-    assert run.err.endswith("wrote build/annotations/run.fretc.mcap\n")
+    assert "wrote build/annotations/run.fretc.mcap\n" in run.err
+    assert run.err.endswith("wrote build/annotations/foxglove-layout.json\n")
     assert Path("run.mcap").read_bytes() == before
     first = Path("build/annotations/run.fretc.mcap").read_bytes()
     messages, metadata = read(first)
@@ -202,7 +223,11 @@ def test_annotations_go_where_the_user_wants_and_are_no_logs(fretc: Fretc) -> No
         assert run.status == 1
         assert ".fretc.mcap" not in run.out
         assert "run.mcap\n  ✘" in run.out
-    assert sorted(path.name for path in Path("logs").iterdir()) == ["run.fretc.mcap", "run.mcap"]
+    assert sorted(path.name for path in Path("logs").iterdir()) == [
+        "foxglove-layout.json",
+        "run.fretc.mcap",
+        "run.mcap",
+    ]
 
 
 def test_nothing_is_written_where_something_cannot_be(fretc: Fretc) -> None:

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from pyarrow.parquet import ParquetFile
 
-from compiler.files.records import decoded, replace, types
+from compiler.files.records import UNSET, decoded, replace, types
 from fretc.audit.evidence.briefs import brief, run_facts
 from fretc.audit.evidence.schema import Document, Result
 from fretc.audit.evidence.writer import text
@@ -18,7 +18,7 @@ from fretc.audit.store.tables import runs_of
 from fretc.audit.store.writer import write_document
 from tests.fretc.audit.results import SHA, result
 
-SHARED = ("run", "health", "labels", "course")
+SHARED = ("run", "health", "labels")
 LARGE = 2**63
 
 # Values of every type of the schema, by its constraints ------------------------------------------
@@ -120,6 +120,7 @@ def documents(draw: st.DrawFn) -> Document:
     for one, like_the_last in zip(draw(st.lists(results, max_size=6)), alike, strict=False):
         if found and like_the_last:
             one = replace(one, **{name: getattr(found[-1], name) for name in SHARED})
+            one = replace(one, course=draw(st.sampled_from([UNSET, one.course])))
         found.append(one)
     return replace(decoded(draw(heads) | {"results": []}, Document), results=tuple(found))
 

@@ -22,10 +22,7 @@ def spans(lanes: Lanes | None, kind: str) -> list[tuple[str, float, float, int]]
 
 def test_lanes_have_what_the_evidence_has(tmp_path: Path) -> None:
     known = project(tmp_path, *TEXTS)
-    bad: dict[str, Any] = {
-        "violations": [violation(10, 12), violation(60, 60)],
-        "unknown": [[30, 33]],
-    }
+    bad: Any = {"violations": [violation(10, 12), violation(60, 60)], "unknown": [[30, 33]]}
     build = report_of(
         known,
         tmp_path,

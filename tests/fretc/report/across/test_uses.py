@@ -17,18 +17,7 @@ def threshold(comparison: Any, least: Any, greatest: Any, **changes: Any) -> Thr
     near = greatest if comparison == "true" else least
     bound = changes.pop("bound", 0.4)
     margin = abs(bound - near) if kept and near is not None else None
-    of: tuple[Any, ...] = (
-        "fast",
-        "vx",
-        "<=",
-        bound,
-        "m/s",
-        least,
-        greatest,
-        comparison,
-        margin,
-        None,
-    )
+    of: Any = ("fast", "vx", "<=", bound, "m/s", least, greatest, comparison, margin, None)
     return replace_record(Threshold(*of), **changes)
 
 

@@ -1,0 +1,205 @@
+"""The course of a run for the pictures of its report: the robot's way, and words over time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from heapq import heapify, heappop, heappush
+from itertools import count, pairwise
+from math import ceil, floor, log10
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, Course, Way, Words
+from fretc.logs.signals.propositions import history_of
+from fretc.logs.signals.samples import Gap, Numbers, Recording, Samples, Times
+from fretish.bindings.declarations import Declarations, Map, Signal
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+
+_PAUSE = 10**9
+"""Nanoseconds: places farther apart in time are not joined, where no signal has an age limit."""
+_HOLD = 10**8
+"""Nanoseconds."""
+_FAR = 1e9
+"""Metres; what is farther away is no place."""
+_DIGITS = 3
+"""Decimals of a metre."""
+_EXACT = 10.0**-_DIGITS
+_MOST_LINES = MOST_POINTS // 3
+
+
+def course(recording: Recording, declarations: Declarations) -> Course | None:
+    """The course of a run; None where there is nothing to draw."""
+    words = {
+        name: _words(signal, recording)
+        for name, signal in sorted(declarations.signals.items())
+        if signal.values and name in recording.samples
+    }
+    way = _way(declarations.map, recording) if declarations.map else None
+    return Course(way, words) if way or words else None
+
+
+def no_way(recording: Recording, declarations: Declarations) -> Iterator[Diagnostic]:
+    """F428 where the bindings declare a map, and a coordinate is never known."""
+    drawn = declarations.map
+    for signal in (drawn.x, drawn.y) if drawn else ():
+        samples = recording.beside.get(signal.name)
+        if samples is None or not np.isfinite(samples.values.astype(np.float64)).any():
+            yield Diagnostic(
+                Code.NO_WAY,
+                f"there is no map: nothing is known of `{signal.path}`",
+                signal.span,
+                "name a number of a topic that a requirement reads",
+                Severity.WARNING,
+            )
+            return
+
+
+# Words -----------------------------------------------------------------------------------------
+
+
+def _words(signal: Signal, recording: Recording) -> Words:
+    """The changes of a signal of words, as propositions see it."""
+    history = history_of({signal.name: signal}, recording)
+    values, times = history.numbers[signal.name], history.times
+    places = np.where(np.isnan(values), -1, values).astype(np.int64)
+    last = np.append(times[1:] != times[:-1], True) if len(times) else np.zeros(0, bool)
+    places, times = places[last], times[last]
+    changed = np.append(True, places[1:] != places[:-1]) if len(places) else np.zeros(0, bool)
+    places, times = places[changed], times[changed]
+    return Words(
+        tuple(times[:MOST_WORDS].tolist()),
+        tuple(None if place < 0 else signal.values[place] for place in places[:MOST_WORDS]),
+        max(0, len(places) - MOST_WORDS),
+    )
+
+
+# The way ---------------------------------------------------------------------------------------
+
+
+def _way(drawn: Map, recording: Recording) -> Way | None:
+    """The way as lines; each is thinned where that moves no place by much."""
+    if not {drawn.x.name, drawn.y.name} <= recording.beside.keys():
+        return None
+    limit = min(signal.max_age or _PAUSE for signal in (drawn.x, drawn.y))
+    x = recording.beside[drawn.x.name]
+    times = x.times
+    places = np.stack([x.base, _at(recording.beside[drawn.y.name], times, limit)], axis=1)
+    known: NDArray[np.bool_] = np.asarray((np.abs(places) < _FAR).all(axis=1))
+    lines = _lines(times, known, limit, recording.gaps)
+    kept = sorted(sorted(lines, key=lambda line: line[0] - line[-1])[:_MOST_LINES], key=_first)
+    if not kept:
+        return None
+    chosen, error = _thinned(times, places, kept, MOST_POINTS)
+    points = [point for line in chosen for point in line]
+    starts = np.cumsum([0, *map(len, chosen)])[:-1]
+    return Way(
+        tuple(times[points].tolist()),
+        tuple(np.round(places[points, 0], _DIGITS).tolist()),
+        tuple(np.round(places[points, 1], _DIGITS).tolist()),
+        tuple(starts.tolist()),
+        _above(error + _EXACT),
+        len(lines) - len(kept),
+    )
+
+
+_Line = NDArray[np.intp]
+"""The samples of a line, by their numbers."""
+
+
+def _first(line: _Line) -> int:
+    return int(line[0])
+
+
+def _at(samples: Samples, times: Times, limit: int) -> Numbers:
+    """The values in force at some times; NaN where there is none, or it is too old."""
+    if np.array_equal(samples.times, times):
+        return samples.base
+    last = np.searchsorted(samples.times, times, "right") - 1
+    if not len(samples.times):
+        return np.full(len(times), np.nan)
+    values = samples.base[last]
+    values[(last < 0) | (times - samples.times[last] > limit)] = np.nan
+    return values
+
+
+def _lines(times: Times, known: NDArray[np.bool_], limit: int, gaps: Sequence[Gap]) -> list[_Line]:
+    """Stretches of samples that are known, with no pause between them and no loss."""
+    (samples,) = np.nonzero(known)
+    if not len(samples):
+        return []
+    own = times[samples]
+    breaks = (np.diff(samples) > 1) | (np.diff(own) > limit)
+    for start, end in gaps:
+        breaks |= (own[:-1] <= end) & (own[1:] >= start)
+    return np.split(samples, np.nonzero(breaks)[0] + 1)
+
+
+def _thinned(
+    times: Times, places: Numbers, lines: Sequence[_Line], most: int
+) -> tuple[list[list[int]], float]:
+    """The ends of each line, and the samples that are farthest from it, one after the other.
+
+    Returns:
+        The samples of each line, and how far the farthest of the others is from where the line has
+        the robot at its time.
+    """
+    chosen = [{int(line[0]), int(line[-1])} for line in lines]
+    left = most - sum(map(len, chosen))
+    number = count()
+    heap = [_part(times, places, line, n, next(number)) for n, line in enumerate(lines)]
+    heapify(heap)
+    while left > 0 and heap and -heap[0][0] > _EXACT:
+        _, _, of, at, line = heappop(heap)
+        chosen[of].add(int(line[at]))
+        left -= 1
+        for part in (line[: at + 1], line[at:]):
+            heappush(heap, _part(times, places, part, of, next(number)))
+    return [sorted(each) for each in chosen], max((-one[0] for one in heap), default=0.0)
+
+
+def _part(
+    times: Times, places: Numbers, line: _Line, of: int, number: int
+) -> tuple[float, int, int, int, _Line]:
+    """A part of a line for the heap, that with the largest distance first."""
+    distance, at = _farthest(times, places, line)
+    return -distance, number, of, at, line
+
+
+def _farthest(times: Times, places: Numbers, line: _Line) -> tuple[float, int]:
+    """How far a sample is from the place between both ends at its time, and which one is."""
+    if len(line) < 3:
+        return 0.0, 0
+    span = times[line[-1]] - times[line[0]]
+    share = ((times[line] - times[line[0]]) / span if span else np.zeros(len(line)))[:, None]
+    start, end = places[line[0]], places[line[-1]]
+    distances = np.hypot(*(places[line] - (start + share * (end - start))).T)
+    at = int(np.argmax(distances[1:-1])) + 1
+    return float(distances[at]), at
+
+
+def _above(number: float) -> float:
+    """Rounded up, to two digits."""
+    digits = 1 - floor(log10(number))
+    return round(ceil(round(number * 10.0**digits, 6)) / 10.0**digits, digits)
+
+
+def place(way: Way, ns: int) -> tuple[float, float] | None:
+    """Where the robot was at a time, within the error of the way; None where that is unknown.
+
+    Up to `_HOLD` before the first and after the last sample it is where they are: ticks and samples
+    begin and end at different times.
+    """
+    if not way.times_ns:
+        return None
+    begin, until = way.times_ns[0], way.times_ns[-1]
+    if not way.lines_left_out and begin - _HOLD <= ns <= until + _HOLD:
+        ns = min(max(ns, begin), until)
+    for first, end in pairwise((*way.starts, len(way.times_ns))):
+        times = way.times_ns[first:end]
+        if times and times[0] <= ns <= times[-1]:
+            own = np.array([time - times[0] for time in times], np.float64)
+            at = float(ns - times[0])
+            x, y = (np.interp(at, own, line[first:end]) for line in (way.x, way.y))
+            return float(x), float(y)
+    return None

@@ -1,0 +1,124 @@
+"""A layout of Foxglove beside the annotations: states, messages, and the signals of requirements.
+
+On the left the states of all requirements and what changed; on the right a tab for each
+requirement, with its states and a plot of the numbers that it reads.
+
+Source: https://docs.foxglove.dev/docs/visualization/layouts and .../message-path-syntax; panels
+`StateTransitions`, `Plot`, `RosOut` (the Log panel) and `Tab`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from compiler.files.templating import to_json
+from compiler.formalization.formalized import Formalized
+from fretc.audit.evidence.schema import Result
+from fretc.audit.evidence.verdicts import severity
+from fretc.audit.outputs.annotations import VERDICTS, state_topic
+from fretish.bindings.declarations import Signal
+
+LAYOUT = "foxglove-layout.json"
+_PLAIN = re.compile(r"/?\w+(?:/\w+)*", re.ASCII)
+"""A topic that needs no quotes in a message path."""
+_MOST_PLOTTED = 8
+"""Signals in one plot."""
+
+
+def layout_file(
+    results: Sequence[Result], rules: Sequence[Formalized], folder: Path
+) -> dict[Path, bytes]:
+    """The file; nothing where no run could be read.
+
+    Args:
+        results: each of a run and a requirement.
+        rules: all requirements of the results.
+        folder: where the annotations go.
+    """
+    read = [result for result in results if result.start_ns is not None]
+    ids = dict.fromkeys(result.requirement for result in read)
+    if not ids:
+        return {}
+    worst = {id: min(severity(r.verdict) for r in read if r.requirement == id) for id in ids}
+    by_id = {rule.id: rule for rule in rules}
+    chosen = [by_id[id] for id in sorted(ids, key=lambda id: worst[id]) if id in by_id]
+    return {folder / LAYOUT: f"{to_json(layout(chosen))}\n".encode()}
+
+
+def layout(rules: Sequence[Formalized]) -> dict[str, Any]:
+    """The layout for some requirements, in their order."""
+    panels: dict[str, Any] = {
+        "StateTransitions!all": {"paths": list(map(_states, rules)), "isSynced": True},
+        "RosOut!verdicts": {"topicToRender": VERDICTS, "minLogLevel": 1, "searchTerms": []},
+    }
+    tabs = []
+    for number, rule in enumerate(rules, 1):
+        states, plot = f"StateTransitions!{number}", f"Plot!{number}"
+        panels[states] = {"paths": [_states(rule)], "isSynced": True}
+        whole: Any = states
+        plotted = _signals(rule)
+        if plotted:
+            panels[plot] = {
+                "title": rule.id,
+                "paths": list(map(_line, plotted)),
+                "xAxisVal": "timestamp",
+                "isSynced": True,
+                "showLegend": True,
+            }
+            whole = _split("column", states, plot, 25)
+        tabs.append({"title": rule.id, "layout": whole})
+    panels["Tab!requirements"] = {"activeTabIdx": 0, "tabs": tabs}
+    left = _split("column", "StateTransitions!all", "RosOut!verdicts", 60)
+    return {
+        "configById": panels,
+        "globalVariables": {},
+        "userNodes": {},
+        "playbackConfig": {"speed": 1},
+        "layout": _split("row", left, "Tab!requirements", 50),
+    }
+
+
+def _split(direction: str, first: Any, second: Any, share: int) -> dict[str, Any]:
+    return {"direction": direction, "first": first, "second": second, "splitPercentage": share}
+
+
+def _states(rule: Formalized) -> dict[str, Any]:
+    """The line of states of a requirement."""
+    title = f"{rule.requirement.title} ({rule.id})" if rule.requirement.title else rule.id
+    path = f"{_topic(state_topic(rule.id))}.state"
+    return {"value": path, "label": title, "timestampMethod": "receiveTime"}
+
+
+def _signals(rule: Formalized) -> list[Signal]:
+    """The numbers that the requirement reads: no words, and no arrays."""
+    declared = rule.declarations
+    if declared is None:
+        return []
+    names = dict.fromkeys(
+        signal
+        for name in rule.watched
+        if name in declared.propositions
+        for signal in declared.propositions[name].signals
+    )
+    signals = (declared.signals[name] for name in names if name in declared.signals)
+    return [each for each in signals if not each.values and not each.path.each][:_MOST_PLOTTED]
+
+
+def _line(signal: Signal) -> dict[str, Any]:
+    """The line of a signal in a plot, in the numbers of the messages."""
+    path = signal.path
+    index = "" if path.index is None else f"[{path.index}]"
+    value = f"{_topic(path.topic)}.{'.'.join(path.fields)}{index}"
+    unit = f" ({signal.unit_name})" if signal.unit_name else ""
+    label = f"{signal.name}{unit}"
+    return {"value": value, "label": label, "enabled": True, "timestampMethod": "receiveTime"}
+
+
+def _topic(name: str) -> str:
+    """As a message path writes it."""
+    if _PLAIN.fullmatch(name):
+        return name
+    return '"{}"'.format(name.replace("\\", "\\\\").replace('"', '\\"'))

@@ -1,0 +1,122 @@
+"""The map of a run: the robot's way, and where each violation began."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import dist
+
+from fretc.audit.evidence.courses import place
+from fretc.audit.evidence.schema import Result, Way
+from fretc.report.across.lanes import RunStretches
+from fretc.report.model import phrases
+from fretc.report.model.across import PlaceMark, RunMap
+
+MOST_MAPS = 12
+_NEAR = 0.02
+"""Violations nearer than this part of the map are one mark."""
+_NAMED = 3
+
+
+@dataclass(frozen=True, slots=True)
+class RunResult:
+    """A result of a run with a way, and what names it."""
+
+    of: RunStretches
+    result: Result | None
+    """None: it was not read, because it has no violation."""
+
+
+def run_map(way: Way, results: Sequence[RunResult]) -> RunMap | None:
+    """The map of a run; None where its way has no point.
+
+    Args:
+        way: of the run.
+        results: all of it.
+    """
+    lines = tuple(
+        tuple(zip(map(float, way.x[first:end]), map(float, way.y[first:end]), strict=True))
+        for first, end in pairwise((*way.starts, len(way.times_ns)))
+    )
+    points = [point for line in lines for point in line]
+    if not points:
+        return None
+    placed = [mark for one in results for mark in _marks(one, way)]
+    total = sum(one.of.count[0] for one in results)
+    marks = tuple(_worded(mark) for mark in _merged(placed, _NEAR * extent(points)))
+    first = results[0].of
+    worst = min((one.of.mark for one in results), key=lambda mark: mark.severity)
+    unplaced = total - len(placed)
+    text = _text(lines, way, total, unplaced)
+    return RunMap(first.run, first.label, first.file, worst, lines, marks, unplaced, text)
+
+
+def extent(points: Iterable[tuple[float, float]]) -> float:
+    """The longer side of the box around some points; a metre at least."""
+    xs, ys = zip(*points, strict=True)
+    return float(max(max(xs) - min(xs), max(ys) - min(ys), 1.0))
+
+
+def _marks(one: RunResult, way: Way) -> Iterable[PlaceMark]:
+    violations = one.result.violations if one.result else ()
+    for number, violation in enumerate(violations, 1):
+        at = place(way, violation.start_ns)
+        if at is not None:
+            yield PlaceMark(
+                *at,
+                count=1,
+                requirements=(one.of.requirement,),
+                anchor=one.of.anchor,
+                section=one.of.section,
+                number=number,
+                text=phrases.seconds(violation.start_s),
+            )
+
+
+def _merged(marks: Iterable[PlaceMark], near: float) -> list[PlaceMark]:
+    """Each mark with those that are near it; the first one names the place."""
+    merged: list[PlaceMark] = []
+    for mark in marks:
+        near_by = (n for n, m in enumerate(merged) if dist((m.x, m.y), (mark.x, mark.y)) < near)
+        found = next(near_by, None)
+        if found is None:
+            merged.append(mark)
+            continue
+        before = merged[found]
+        names = tuple(dict.fromkeys((*before.requirements, *mark.requirements)))
+        merged[found] = replace(before, count=before.count + 1, requirements=names)
+    return merged
+
+
+def _worded(mark: PlaceMark) -> PlaceMark:
+    names = phrases.some(mark.requirements, _NAMED)
+    what = "violated" if mark.count == 1 else f"{phrases.whole(mark.count)} violations"
+    since = "at" if mark.count == 1 else "the first at"
+    text = f"{names}: {what}, {since} {mark.text}"
+    return replace(mark, x=round(mark.x, 3), y=round(mark.y, 3), text=text)
+
+
+def _text(
+    lines: Sequence[Sequence[tuple[float, float]]], way: Way, violations: int, unplaced: int
+) -> str:
+    (x, y), (u, v) = lines[0][0], lines[-1][-1]
+    parts = [
+        f"The way of the robot from ({x:g}, {y:g}) to ({u:g}, {v:g}) in metres, within "
+        f"{phrases.value(float(way.error), 'm')}.",
+        f"It has {phrases.times(len(lines), 'part')}: between them the place is unknown."
+        if len(lines) > 1
+        else "",
+        f"{phrases.times(way.lines_left_out, 'short part')} left out."
+        if way.lines_left_out
+        else "",
+        f"{phrases.times(violations, 'violation')}, each marked where it began."
+        if violations and not unplaced
+        else "",
+        f"{phrases.times(violations, 'violation')}, of which {phrases.whole(unplaced)} began where "
+        "the place is unknown, and have no mark."
+        if unplaced
+        else "",
+        "No violation." if not violations else "",
+    ]
+    return " ".join(filter(None, parts))
