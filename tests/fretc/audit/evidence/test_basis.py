@@ -111,8 +111,6 @@ LOGS = ("logs/a.mcap", "logs/b.mcap")
 BY = ("--reviewer", "A", "--role", "b", "--comment", "c", "--date", "2026-01-02")
 ONE_PROCESS = ("--jobs", "1")
 """Two short logs are sooner read than a process is started for each."""
-AUDIT = ("audit", "logs", "-o", "build/evidence.json", *ONE_PROCESS)
-"""Into a file, which can be edited."""
 
 
 # What a requirement is made of ------------------------------------------------------------------
@@ -434,7 +432,7 @@ def reviewed(fretc: Fretc, _base: Path) -> Fretc:
             write(name, text)
         for path, values in zip(LOGS, ((0, 2, 3, 3, 1, 1, 0), (0, 2, 2, 2, 2, 1, 0)), strict=True):
             log(path, *values)
-        assert fretc(*AUDIT).status == 0
+        assert fretc("audit", "logs", *ONE_PROCESS).status == 0
         assert fretc("lock", *BY).status == 0
         shutil.copytree(".", _base, dirs_exist_ok=True)
     shutil.copytree(_base, ".", dirs_exist_ok=True)
@@ -490,7 +488,7 @@ def test_a_change_reaches_what_is_made_of_it_and_nothing_else(reviewed: Fretc, n
     change.make()
     for audited in (False, True):
         if audited:
-            reviewed(*AUDIT)
+            reviewed("audit", "logs", *ONE_PROCESS)
         answers = asked(reviewed)
         assert answers.stale == dict.fromkeys(("check", "report"), change.stale(audited))
         assert answers.suspect == dict.fromkeys(
@@ -507,7 +505,7 @@ def test_there_are_more_changes_than_were_once_tried_by_hand() -> None:
 def test_evidence_of_what_has_come_back_is_still_of_something_else(reviewed: Fretc) -> None:
     before = Path(BINDINGS).read_text()
     put(BINDINGS, "x > 1 m", "x > 2 m")()
-    reviewed(*AUDIT)
+    reviewed("audit", "logs", *ONE_PROCESS)
     Path(BINDINGS).write_text(before)
     answers = asked(reviewed)
     assert list(answers.stale.values()) == [{"R1"}] * 2
@@ -526,7 +524,7 @@ def test_evidence_of_something_else_is_not_accepted(reviewed: Fretc) -> None:
     assert message in run.err
     assert Path("requirements/fretc.lock").read_text() == before
     assert reviewed("lock", "R2", *BY).status == 0, "of the others nothing is asked"
-    reviewed(*AUDIT)
+    reviewed("audit", "logs", *ONE_PROCESS)
     assert reviewed("lock", *BY, "--accept-violations").status == 0
     assert reviewed("diff").status == 0
 
@@ -543,7 +541,7 @@ def test_a_log_that_nothing_identifies_is_not_accepted(reviewed: Fretc) -> None:
 def test_a_log_that_is_gone_is_told(reviewed: Fretc, audited: bool) -> None:
     Path(LOGS[1]).unlink()
     if audited:
-        reviewed(*AUDIT)
+        reviewed("audit", "logs", *ONE_PROCESS)
         content = json.loads(reviewed("diff", "--format", "json").out)
         assert {one["requirement"] for one in content if one["suspect_links"]} == set(IDS)
     else:
@@ -596,7 +594,7 @@ def test_what_was_claimed_and_is_not_any_more_is_never_lost(
     make_it, ids = WITHDRAWN[name]
     make_it()
     if audited:
-        reviewed(*AUDIT)
+        reviewed("audit", "logs", *ONE_PROCESS)
     diff = json.loads(reviewed("diff", "--format", "json").out)
     suspects = {
         one["requirement"] for one in diff if one["suspect_links"] or one["state"] == "gone"
@@ -630,7 +628,7 @@ def test_who_accepts_that_something_is_claimed_no_more_hears_of_it_no_more(
     make_it, ids = WITHDRAWN[name]
     make_it()
     if name != "all retired":
-        reviewed(*AUDIT)
+        reviewed("audit", "logs", *ONE_PROCESS)
         assert reviewed("lock", "R1", *BY).status == 0
         assert reviewed("report", "--strict").status == 1, "R3 is still to be accepted"
         assert reviewed("lock", *sorted(ids), *BY).status == 0

@@ -69,7 +69,7 @@ def test_what_python_cannot_read_as_json_is_no_traceback(tmp_path: Path, text: s
     assert wrong(tmp_path, text).span is not None
 
 
-def test_a_directory_that_is_no_store_is_an_error(tmp_path: Path) -> None:
+def test_a_folder_that_is_no_store_is_an_error(tmp_path: Path) -> None:
     outcome = make(project(tmp_path), str(tmp_path))
     assert outcome.html is None
     assert [d.code for d in outcome.diagnostics] == [Code.BAD_STORE]
