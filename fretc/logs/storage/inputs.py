@@ -139,6 +139,7 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         return copy if (copy.size, copy.sha256()) == (size, sha256()) else None
 
     file, size = stream.fileno(), before.st_size
+    sha256: Callable[[], str]
     same = f"/proc/self/fd/{file}"
     if content is not None:
         held = cast("io.BufferedReader", io.BytesIO(content))

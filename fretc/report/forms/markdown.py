@@ -88,7 +88,7 @@ def _list(heading: str, things: Sequence[T], line: Callable[[T], str], most: int
 
 
 def _claim(details: Details, view: RequirementView) -> str:
-    """Verdict, title, run and cause: `✘ violated **No contact (R14)** in runs/06.mcap: ...`."""
+    """Verdict, title, run and cause: `violated **No contact (R14)** in runs/06.mcap: ...`."""
     where, why = _worst(details, view)
     waived = f" ({_plain(view.waiver.reason)})" if view.waiver else ""
     return f"{_verdict(view.mark)} **{_plain(view.name)}**{waived}{where}: {_plain(why)}"

@@ -104,7 +104,7 @@ def causes(violation: Violation, result: Result, rule: Formalized | None) -> tup
     """
     if rule is None or rule.declarations is None or _is_indirect(rule):
         return ()
-    if not isinstance(rule.sentence.timing, _DIRECT):
+    if not _is_direct(rule.sentence.timing):
         return ()
     at = _Tick(violation, result, rule.declarations)
     wanted = not isinstance(rule.sentence.timing, s.Never)
@@ -112,8 +112,15 @@ def causes(violation: Violation, result: Result, rule: Formalized | None) -> tup
     return tuple(dict.fromkeys(found or ()))
 
 
-_DIRECT = (s.Within, s.Always, s.For, s.Immediately, s.Never)
-"""Of these timings a broken tick says what the response was."""
+def _is_direct(timing: s.Timing) -> bool:
+    """Whether a broken tick says what the response was."""
+    match timing:
+        case s.Within() | s.Always() | s.For() | s.Immediately() | s.Never():
+            return True
+        case s.Next() | s.Finally() | s.Eventually() | s.After() | s.Until() | s.Before():
+            return False
+        case _:
+            assert_never(timing)
 
 
 def in_words(found: Sequence[Cause]) -> str:
