@@ -104,21 +104,23 @@ def causes(violation: Violation, result: Result, rule: Formalized | None) -> tup
     """
     if rule is None or rule.declarations is None or _is_indirect(rule):
         return ()
-    if not _is_direct(rule.sentence.timing):
+    wanted = _wanted(rule.sentence.timing)
+    if wanted is None:
         return ()
     at = _Tick(violation, result, rule.declarations)
-    wanted = not isinstance(rule.sentence.timing, s.Never)
     found = _against(rule.sentence.response, wanted=wanted, at=at)
     return tuple(dict.fromkeys(found or ()))
 
 
-def _is_direct(timing: s.Timing) -> bool:
-    """Whether a broken tick says what the response was."""
+def _wanted(timing: s.Timing) -> bool | None:
+    """What the response had to be at a broken tick; None: the tick does not say that."""
     match timing:
-        case s.Within() | s.Always() | s.For() | s.Immediately() | s.Never():
+        case s.Within() | s.Always() | s.For() | s.Immediately():
             return True
-        case s.Next() | s.Finally() | s.Eventually() | s.After() | s.Until() | s.Before():
+        case s.Never():
             return False
+        case s.Next() | s.Finally() | s.Eventually() | s.After() | s.Until() | s.Before():
+            return None
         case _:
             assert_never(timing)
 
