@@ -69,7 +69,7 @@ def decoded(
         MisshapenError: it is none of this kind.
     """
     with _parquet(data, file, types) as parquet:
-        return parquet.read(columns=None if columns is None else list(columns))
+        return parquet.read(None if columns is None else list(columns), use_threads=False)
 
 
 @contextmanager
@@ -110,7 +110,7 @@ class Rows:
             for number, start, end in _spans(parquet):
                 low, high = np.searchsorted(wanted, (start, end))
                 if low < high:
-                    of_group = parquet.read_row_group(number)
+                    of_group = parquet.read_row_group(number, use_threads=False)
                     parts.append(of_group.take(pa.array(wanted[low:high] - start)))
         return pa.concat_tables(parts)
 
@@ -118,7 +118,7 @@ class Rows:
         """All rows, some at a time."""
         with _parquet(self.data, self.file, self.types) as parquet:
             for number in range(parquet.num_row_groups):
-                yield parquet.read_row_group(number)
+                yield parquet.read_row_group(number, use_threads=False)
 
 
 def _spans(parquet: ParquetFile) -> Iterator[tuple[int, int, int]]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import accumulate
 from typing import Any, Final, Literal, Protocol
 
@@ -167,6 +168,7 @@ TABLES: Mapping[TableName, tuple[Field, ...]] = {
 """Table → its columns."""
 
 
+@cache
 def schema(table: TableName) -> pa.Schema:
     """The types of a table."""
     return pa.schema([pa.field(each.name, each.column.type) for each in TABLES[table]])
