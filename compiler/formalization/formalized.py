@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from compiler.formalization.obligation import obligation
 from compiler.formalization.past import Watch
@@ -22,7 +23,7 @@ from fretish.printer import sentence as printed
 from fretish.syntax import Sentence
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Formalized:
     """A requirement, formalized: one meaning in three formulas, and as signals to watch."""
 
@@ -57,7 +58,7 @@ class Formalized:
         """The requirement's id."""
         return self.requirement.id
 
-    @property
+    @cached_property
     def propositions(self) -> tuple[str, ...]:
         """The atoms of the sentence, in the order of the future-time formula.
 
@@ -66,7 +67,7 @@ class Formalized:
         formulas = (self.ft_infinite, self.ft_finite, self.pt, *self.watch.signals)
         return tuple(dict.fromkeys(name for formula in formulas for name in atoms(formula)))
 
-    @property
+    @cached_property
     def watched(self) -> tuple[str, ...]:
         """The propositions that a monitor needs: predicates that look back are none of them.
 
@@ -90,7 +91,7 @@ class Formalized:
         ]
         return tuple(dict.fromkeys(name.id for name in sorted(found, key=_place)))
 
-    @property
+    @cached_property
     def fingerprint(self) -> str:
         """SHA-256 of the canonical sentence: white space and wording of key words do not count.
 

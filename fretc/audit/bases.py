@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 from compiler.project.folder import Project
 from fretc.audit.evidence.basis import Basis, basis
@@ -20,17 +21,22 @@ def audited_topics(project: Project) -> frozenset[str]:
     return frozenset(signal.path.topic for signal in used.signals.values())
 
 
-def bases(project: Project, topics: frozenset[str] | None = None) -> Mapping[int, Basis]:
+def bases(
+    project: Project,
+    topics: frozenset[str] | None = None,
+    monitors: Mapping[int, str] = MappingProxyType({}),
+) -> Mapping[int, Basis]:
     """What a verdict on each requirement rests on, by its `id()`: those in force and all others.
 
     Args:
         project: with or without errors.
         topics: its `audited_topics`, where they are known.
+        monitors: the SHA-256 of those that are known, by the same `id()`.
     """
     declarations = project.declarations
     topics = audited_topics(project) if topics is None else topics
     rules = {id(rule.requirement): rule for rule in project.rules}
     return {
-        id(each): basis(each, rules.get(id(each)), declarations, topics)
+        id(each): basis(each, rules.get(id(each)), declarations, topics, monitors.get(id(each)))
         for each in project.requirements
     }

@@ -42,6 +42,7 @@ def basis(
     rule: Formalized | None,
     declarations: Declarations | None,
     topics: Iterable[str],
+    monitor_sha256: str | None = None,
 ) -> Basis:
     """What a verdict on a requirement would rest on now.
 
@@ -50,6 +51,7 @@ def basis(
         rule: None where it cannot be formalized: its wording stands for its sentence.
         declarations: None where there are no bindings; what they say is then an empty text.
         topics: which an audit of the project reads; its ticks begin with their messages.
+        monitor_sha256: of the monitor of the rule, where it is known.
     """
     wording = " ".join(requirement.wording.text.split())
     return {
@@ -58,7 +60,7 @@ def basis(
         CLOCK: digest(clock(declarations.clock)) if declarations else "",
         TOPICS: digest(sorted(set(topics))) if declarations else "",
         BINDINGS: of_bindings(rule, declarations),
-        MONITOR: sha256(monitor.text(rule) if rule else ""),
+        MONITOR: monitor_sha256 or sha256(monitor.text(rule) if rule else ""),
     }
 
 

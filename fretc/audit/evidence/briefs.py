@@ -201,22 +201,29 @@ _Pools = dict[type, dict[Any, Any]]
 
 def _sharing(brief: Brief, pools: _Pools) -> Brief:
     """The same with values that are there already."""
-    known = [_shared(each, pools) for each in _prints(brief.fingerprints)]
-    values: list[Any] = [_shared(each, pools) for each in _values(brief)]
-    values[_AT] = Hashes(**dict(zip(_PRINTS, known, strict=True)))
+    values, share = [*_values(brief)], pools[str].setdefault
+    for at, kind in _COMMON:
+        value = values[at]
+        if value:  # 0.0 and -0.0 are equal, and are two
+            values[at] = pools[kind].setdefault(value, value)
+    prints = [each and share(each, each) for each in _prints(brief.fingerprints)]
+    values[_AT] = Hashes(**dict(zip(_PRINTS, prints, strict=True)))
     return Brief(*values)
-
-
-def _shared(value: Any, pools: _Pools) -> Any:
-    pool = pools.get(type(value))
-    if pool is None or value == 0:  # 0.0 and -0.0 are equal, and are two
-        return value
-    return pool.setdefault(value, value)
 
 
 _PRINTS = Hashes.__struct_fields__
 _FIELDS = tuple(each.name for each in fields(Brief))
 _AT = _FIELDS.index("fingerprints")
+_COMMON = tuple(
+    (_FIELDS.index(name), kind)
+    for kind, names in (
+        (str, "run requirement verdict reason judgement"),
+        (int, "ticks start_ns end_ns"),
+        (float, "latency_median_s latency_max_s"),
+    )
+    for name in names.split()
+)
+"""Fields that many briefs have the same value of, and its type; small counts are there once."""
 _prints, _values = attrgetter(*_PRINTS), attrgetter(*_FIELDS)
 
 

@@ -6,9 +6,12 @@ import errno
 import hashlib
 import os
 import stat
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
 from pyarrow.parquet import ParquetFile, write_table
 
@@ -17,6 +20,8 @@ from fretc.audit.store.manifest import Table
 
 LARGEST = 2**30
 """Bytes of a table, as a file and in memory."""
+ROWS = 2048
+"""Rows of a group: what is in memory at once of a table that is read row by row."""
 MOST_VALUES = 2**27
 """Values of a column of a table, with all that is nested."""
 
@@ -25,7 +30,7 @@ def encoded(table: pa.Table) -> tuple[bytes, Table]:
     """The file of a table, and what a manifest says of it."""
     stream = pa.BufferOutputStream()
     whole = table.combine_chunks()  # how it was put together must not show
-    write_table(whole, stream, compression="zstd", row_group_size=max(1, len(whole)))
+    write_table(whole, stream, compression="zstd", row_group_size=ROWS)
     data = stream.getvalue().to_pybytes()
     return data, Table(hashlib.sha256(data).hexdigest(), len(data), len(whole))
 
@@ -68,12 +73,66 @@ def decoded(
     Raises:
         MisshapenError: it is none of this kind.
     """
+    with _parquet(data, file, types) as parquet:
+        return parquet.read(None if columns is None else list(columns), use_threads=False)
+
+
+@contextmanager
+def _parquet(data: bytes, file: Table, types: pa.Schema) -> Iterator[ParquetFile]:
     try:
         with ParquetFile(pa.BufferReader(data)) as parquet:
             _check(parquet, file, types)
-            return parquet.read(columns=None if columns is None else list(columns))
+            yield parquet
     except (pa.ArrowException, OSError) as error:
         raise MisshapenError(f"a table is damaged: {str(error).splitlines()[0]}") from None
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """A table that stays encoded: what is asked for is decoded, a group of rows after the other.
+
+    The methods raise `MisshapenError` where it is none of its kind.
+    """
+
+    data: bytes
+    file: Table
+    types: pa.Schema
+
+    @property
+    def num_rows(self) -> int:
+        """As a table of Arrow says it."""
+        return self.file.rows
+
+    def __getitem__(self, column: str) -> pa.ChunkedArray:
+        """One column of all rows."""
+        return decoded(self.data, self.file, self.types, (column,))[column]
+
+    def take(self, rows: pa.Array) -> pa.Table:
+        """Some rows, which rise."""
+        wanted = rows.to_numpy()
+        parts = [self.types.empty_table()]
+        with _parquet(self.data, self.file, self.types) as parquet:
+            for number, start, end in _spans(parquet):
+                low, high = np.searchsorted(wanted, (start, end))
+                if low < high:
+                    of_group = parquet.read_row_group(number, use_threads=False)
+                    parts.append(of_group.take(pa.array(wanted[low:high] - start)))
+        return pa.concat_tables(parts)
+
+    def groups(self) -> Iterator[pa.Table]:
+        """All rows, some at a time."""
+        with _parquet(self.data, self.file, self.types) as parquet:
+            for number in range(parquet.num_row_groups):
+                yield parquet.read_row_group(number, use_threads=False)
+
+
+def _spans(parquet: ParquetFile) -> Iterator[tuple[int, int, int]]:
+    """Each group of rows with its first row, and the first behind it."""
+    start = 0
+    for number in range(parquet.num_row_groups):
+        end = start + parquet.metadata.row_group(number).num_rows
+        yield number, start, end
+        start = end
 
 
 def _check(parquet: ParquetFile, file: Table, types: pa.Schema) -> None:

@@ -146,11 +146,11 @@ class Store:
                 yield from self._details(part, start, rows)
 
     def _details(self, part: Part, start: int, rows: Sequence[int]) -> Iterator[tuple[int, Result]]:
-        of_part = {name: self._table(part, name) for name in TABLES}
+        of_part = {name: self._rows(part, name) for name in TABLES}
         for at in range(0, len(rows), _BATCH):
             some = rows[at : at + _BATCH]
-            counted = of_part[RESULTS].take(pa.array(some, pa.int64()))
             try:
+                counted = of_part[RESULTS].take(pa.array(some, pa.int64()))
                 found = tables.results(of_part, some)
                 if tables.briefs(counted) != [*map(brief, found)]:
                     raise MisshapenError("`results` does not count what is in the other tables")
@@ -224,9 +224,12 @@ class Store:
         starts = accumulate((part.results for part in parts), initial=0)
         return zip(starts, parts, strict=False)
 
-    def _read(self, part: Part, name: TableName, read: Callable[[pa.Table], list[T]]) -> list[T]:
+    def _read(
+        self, part: Part, name: TableName, read: Callable[[pa.Table], list[T]]
+    ) -> Iterator[T]:
         try:
-            return read(self._table(part, name))
+            for some in self._rows(part, name).groups():
+                yield from read(some)
         except MisshapenError as error:
             raise self._error(f"cannot be read: {error}") from None
 
@@ -236,6 +239,10 @@ class Store:
             return files.decoded(data, part.tables[name], tables.schema(name), columns)
         except MisshapenError as error:
             raise self._error(f"cannot be read: {error}") from None
+
+    def _rows(self, part: Part, name: TableName) -> files.Rows:
+        file = part.tables[name]
+        return files.Rows(self._content(name, file), file, tables.schema(name))
 
     def _content(self, name: str, file: Table) -> bytes:
         path = Path(self.file, place(name, file))

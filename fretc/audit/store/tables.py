@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import accumulate
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, Protocol
 
 import numpy as np
 import pyarrow as pa
@@ -43,6 +44,23 @@ RUNS: Final = "runs"
 TableName = Literal["results", "events", "violations", "samples", "runs"]
 EXACT = "exact"
 Tables = Mapping[TableName, pa.Table]
+
+
+class Taken(Protocol):
+    """What is read of a table: one of Arrow, or one that stays encoded."""
+
+    @property
+    def num_rows(self) -> int:
+        """How many."""
+
+    def __getitem__(self, column: str) -> Any:
+        """One column of all rows."""
+
+    def take(self, rows: pa.Array) -> pa.Table:
+        """Some rows, which rise."""
+
+
+Source = Mapping[TableName, Taken]
 
 
 # Rows --------------------------------------------------------------------------------------------
@@ -152,6 +170,7 @@ TABLES: Mapping[TableName, tuple[Field, ...]] = {
 """Table → its columns."""
 
 
+@cache
 def schema(table: TableName) -> pa.Schema:
     """The types of a table."""
     return pa.schema([pa.field(each.name, each.column.type) for each in TABLES[table]])
@@ -242,11 +261,11 @@ def _shared(result: Result) -> tuple[object, ...]:
 # Read --------------------------------------------------------------------------------------------
 
 
-def results(tables: Tables, rows: Sequence[int] | None = None) -> list[Result]:
+def results(tables: Source, rows: Sequence[int] | None = None) -> list[Result]:
     """The results in some rows, or in all.
 
     Args:
-        tables: as `tabled` gives them.
+        tables: as `tabled` gives them, or encoded.
         rows: in rising order.
 
     Raises:
@@ -258,7 +277,7 @@ def results(tables: Tables, rows: Sequence[int] | None = None) -> list[Result]:
         raise MisshapenError(f"{error}") from None
 
 
-def _results(tables: Tables, rows: Sequence[int] | None) -> list[Result]:
+def _results(tables: Source, rows: Sequence[int] | None) -> list[Result]:
     main = tables[RESULTS]
     if main.num_rows != tables[EVENTS].num_rows:
         raise MisshapenError("`events` does not have the rows of `results`")
@@ -271,7 +290,7 @@ def _results(tables: Tables, rows: Sequence[int] | None) -> list[Result]:
     return [found[n] for n in rows]
 
 
-def _held(tables: Tables, rows: Sequence[int]) -> list[Result]:
+def _held(tables: Source, rows: Sequence[int]) -> list[Result]:
     """The results in some rows that columns hold as they are."""
     main, events = (_taken(tables[name], rows) for name in (RESULTS, EVENTS))
     main_rows = tables[RESULTS]["run_row"]
@@ -332,7 +351,7 @@ def _whole(table: pa.Table, name: str) -> pa.Array:
     return column if isinstance(column, pa.Array) else pa.concat_arrays(column.chunks)
 
 
-def _of_runs(table: pa.Table, run_rows: Sequence[int]) -> dict[int, dict[str, Any]]:
+def _of_runs(table: Taken, run_rows: Sequence[int]) -> dict[int, dict[str, Any]]:
     """Run → what its results share."""
     known = sorted({row for row in run_rows if row is not None and 0 <= row < table.num_rows})
     if len(known) != len({*run_rows}):
@@ -347,7 +366,7 @@ def _of_runs(table: pa.Table, run_rows: Sequence[int]) -> dict[int, dict[str, An
     }
 
 
-def _violations(tables: Tables, rows: Sequence[int]) -> list[list[Any]]:
+def _violations(tables: Source, rows: Sequence[int]) -> list[list[Any]]:
     """The violations of each of these rows of results."""
     table = tables[VIOLATIONS]
     places = _chosen(table, "result_row", rows, tables[RESULTS].num_rows)
@@ -360,7 +379,7 @@ def _violations(tables: Tables, rows: Sequence[int]) -> list[list[Any]]:
     return [of_row[row] for row in rows]
 
 
-def _windows(tables: Tables, rows: Sequence[int]) -> Iterator[tuple[int, Any]]:
+def _windows(tables: Source, rows: Sequence[int]) -> Iterator[tuple[int, Any]]:
     """The samples around each of these rows of violations."""
     table = tables[SAMPLES]
     places = _chosen(table, "violation_row", rows, tables[VIOLATIONS].num_rows)
@@ -368,7 +387,7 @@ def _windows(tables: Tables, rows: Sequence[int]) -> Iterator[tuple[int, Any]]:
     return zip(some["violation_row"].to_pylist(), _objects(some, _WINDOW), strict=True)
 
 
-def _chosen(table: pa.Table, key: str, rows: Sequence[int], count: int) -> list[int]:
+def _chosen(table: Taken, key: str, rows: Sequence[int], count: int) -> list[int]:
     """The rows that belong to these of another table, which has so many."""
     column = table[key]
     if column.null_count:

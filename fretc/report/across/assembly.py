@@ -25,9 +25,9 @@ from fretc.report.model.across import Across, RequirementAcross, RunMap
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.audits import SingleAudit
 from fretc.report.model.pictures import WordLane
+from fretc.report.model.views import result_anchor
 from fretc.report.pictures.histograms import is_answered, seconds_allowed
 from fretc.report.sections.details import Details, Thresholds
-from fretc.report.sections.results import result_anchor
 from fretc.report.sections.runs import run_key
 
 _ROWS, _MARKS = 180, 1_500
@@ -187,7 +187,7 @@ def _results(
             phrases.place(audit.result.run),
             assessment.id,
             assessment.anchor,
-            result_anchor(assessment, number),
+            result_anchor(assessment.anchor, number),
             audit.mark,
             audit.place,
             audit.result.ticks > 0,

@@ -178,8 +178,8 @@ def assessments(
     rules = {id(rule.requirement): rule for rule in project.rules}
     diagnostics = {id(each.requirement): each.diagnostic for each in project.failed}
     results = briefs.by_requirement if briefs else {}
-    basis_of = bases(project)
     products_of = {id: products(rule) for id, rule in rules.items()}
+    basis_of = bases(project, monitors=_monitors(products_of))
     standing_of_each = standings(chains(project, briefs, products_of, proofs, basis_of), lock)
     audited_by = briefs.source.fretc if briefs else ""
     anchors: list[str] = []
@@ -208,6 +208,16 @@ def assessments(
             )
         )
     return tuple(assessed)
+
+
+def _monitors(products_of: Mapping[int, Sequence[Product]]) -> Mapping[int, str]:
+    """The SHA-256 of each monitor that can be made."""
+    return {
+        id: product.sha256
+        for id, some in products_of.items()
+        for product in some
+        if product.target == monitor.TARGET.name and product.sha256
+    }
 
 
 def _probability(

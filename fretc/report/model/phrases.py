@@ -74,6 +74,8 @@ def thing(node: Node) -> str:
 
 def visible(text: str) -> str:
     """The text with escapes for control and direction characters, which hide or turn text."""
+    if text.isprintable():
+        return text
     return "".join(c if _is_plain(c) else _escape(c) for c in text)
 
 

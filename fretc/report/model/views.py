@@ -354,7 +354,6 @@ class ResultRow:
     """Among those of its requirement, from 1."""
     requirement: str
     """The anchor of its requirement."""
-    anchor: str
     run: str
     run_label: str
     run_file: str
@@ -369,6 +368,16 @@ class ResultRow:
     violations_total: int
     latency_median_s: float | None
     latency_max_s: float | None
+
+    @property
+    def anchor(self) -> str:
+        """Its own."""
+        return result_anchor(self.requirement, self.number)
+
+
+def result_anchor(requirement: str, number: int) -> str:
+    """The anchor of a result of a requirement, by the anchor of that; numbered from 1."""
+    return f"{requirement.replace('req-', 'result-', 1)}.{number}"
 
 
 @dataclass(frozen=True, slots=True)

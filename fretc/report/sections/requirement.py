@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 from compiler.explanation.diagram import diagram, words
@@ -201,10 +202,17 @@ def _proposition(name: str, declared: Declarations | None) -> PropositionView:
 
 def _expression(declared: Declarations, bound: Proposition) -> str:
     """The expression, as the bindings write it; what only a sentence states, in their language."""
-    written: Mapping[str, Any] = tomllib.loads(declared.source.text).get("proposition", {})
+    written = _written(declared.source.text)
     if bound.name not in written:
         return printed(bound.expression)
     return str(written[bound.name]["expr"])
+
+
+@lru_cache(maxsize=1)
+def _written(bindings: str) -> Mapping[str, Any]:
+    """The propositions of bindings, as they are written."""
+    written: Mapping[str, Any] = tomllib.loads(bindings).get("proposition", {})
+    return written
 
 
 def _properties(bound: Proposition) -> str:

@@ -61,7 +61,6 @@ def _row(audit: SingleAudit, assessment: Assessment, number: int, run: Run) -> R
         place=audit.place,
         number=number,
         requirement=assessment.anchor,
-        anchor=result_anchor(assessment, number),
         run=run.anchor,
         run_label=run.label,
         run_file=phrases.place(result.run),
@@ -76,11 +75,6 @@ def _row(audit: SingleAudit, assessment: Assessment, number: int, run: Run) -> R
         latency_median_s=result.latency_median_s,
         latency_max_s=result.latency_max_s,
     )
-
-
-def result_anchor(assessment: Assessment, number: int) -> str:
-    """The anchor of a result of a requirement; results are numbered from 1."""
-    return f"{assessment.anchor.replace('req-', 'result-', 1)}.{number}"
 
 
 def result_view(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from dataclasses import replace as changed
+from functools import cached_property
 
 from compiler.files.records import replace
 from compiler.project.folder import Project
@@ -22,7 +23,7 @@ _DAMAGED = sign_mark("damaged", signs.BAD)
 _UNREAD = sign_mark("not readable", signs.UNKNOWN)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Run:
     """One audited file."""
 
@@ -33,12 +34,12 @@ class Run:
     first: int = 0
     """The place of its first result in the evidence: that one has the course of the run."""
 
-    @property
+    @cached_property
     def anchor(self) -> str:
-        """The anchor of its section."""
+        """The anchor of its section; one text for all its results."""
         return f"run-{self.number}"
 
-    @property
+    @cached_property
     def label(self) -> str:
         """`Run 1`."""
         return f"Run {self.number}"
