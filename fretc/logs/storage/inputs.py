@@ -141,6 +141,7 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
     file, size = stream.fileno(), before.st_size
     sha256: Callable[[], str]
     same = f"/proc/self/fd/{file}"
+    sha256: Callable[[], str]
     if content is not None:
         held = cast("io.BufferedReader", io.BytesIO(content))
         size, sha256 = len(content), partial(_sha256, content)
