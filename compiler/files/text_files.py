@@ -9,6 +9,7 @@ import secrets
 import stat
 import time
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
@@ -141,7 +142,8 @@ def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | Non
         )
     finally:
         for temporary, _ in waiting:
-            temporary.unlink(missing_ok=True)
+            with suppress(OSError):  # the disk is read-only: it was never made
+                temporary.unlink()
     return None
 
 

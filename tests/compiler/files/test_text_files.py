@@ -1,5 +1,6 @@
 """Where outputs go: no link that lies in the present folder leads one elsewhere."""
 
+import errno
 import os
 import secrets
 import stat
@@ -7,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from compiler.files import text_files
 from compiler.files.text_files import read, write
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
@@ -119,3 +121,14 @@ def test_a_link_that_leads_nowhere_is_named_as_one(tmp_path: Path) -> None:
     assert isinstance(wrong, Diagnostic)
     assert wrong.help is not None
     assert "`../gone.fret`" in wrong.help
+
+
+def test_a_read_only_disk_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def read_only(*_: object, **__: object) -> None:
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(text_files, "_fill", read_only)
+    monkeypatch.setattr(Path, "unlink", read_only)
+    found = write({tmp_path / "x": "y"})
+    assert found is not None
+    assert f"`{tmp_path / 'x'}` cannot be written: Read-only" in found.message
