@@ -85,10 +85,8 @@ def _results(
     for column, run in enumerate(runs):
         mark = choose(number, column)
         if mark is not None:
-            anchor = f"result-R{number}.{column + 1}"
-            results.append(
-                replace(like, anchor=anchor, run=run.anchor, run_file=run.name, mark=mark)
-            )
+            place = {"requirement": f"req-R{number}", "number": column + 1}
+            results.append(replace(like, **place, run=run.anchor, run_file=run.name, mark=mark))
     return results
 
 
