@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +23,7 @@ from fretc.terminal.options import (
     verification_option,
 )
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say_briefly, stop
-from fretish.diagnostics.diagnostic import Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
 
 if TYPE_CHECKING:
     from fretc.report.model.views import Report
@@ -106,6 +108,7 @@ def report(
     from compiler.project.folder import whole
     from compiler.project.paths import beside, companions, requirement_files
     from fretc.attestation.signatures import SIGNERS
+    from fretc.audit.evidence.reader import not_audited
     from fretc.report.make import make
     from fretc.verification.ajpf_results import written as results
     from fretc.verification.reader import written
@@ -115,6 +118,8 @@ def report(
         absent = kind.missing()
         if absent is not None:
             stop(absent)
+    if is_given("evidence") and not os.path.lexists(evidence):
+        stop(replace(not_audited(evidence), severity=Severity.ERROR))
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)

@@ -131,7 +131,7 @@ def read(path: str) -> Evidence | Diagnostic:
     """Read and check an evidence file; a note, not an error, where there is none yet."""
     source = read_text(path)
     if isinstance(source, Diagnostic):
-        return _not_audited(path) if source.code is Code.NO_SUCH_FILE else source
+        return not_audited(path) if source.code is Code.NO_SUCH_FILE else source
     return _parsed(source)
 
 
@@ -157,7 +157,7 @@ def required(path: str) -> Evidence | Diagnostic:
     )
 
 
-def _not_audited(path: str) -> Diagnostic:
+def not_audited(path: str) -> Diagnostic:
     """F901 as a note: a report before the first audit has no results."""
     return Diagnostic(
         Code.NO_SUCH_FILE,

@@ -139,7 +139,6 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         return copy if (copy.size, copy.sha256()) == (size, sha256()) else None
 
     file, size = stream.fileno(), before.st_size
-    sha256: Callable[[], str]
     same = f"/proc/self/fd/{file}"
     sha256: Callable[[], str]
     if content is not None:

@@ -44,3 +44,10 @@ def test_one_output_is_the_page_and_others_may_stand_beside_it(project: Fretc) -
     assert not Path("build/report.html").exists()
     same = project("report", "-o", "one", "--csv", "./one")
     assert (same.status, Path("one").exists()) == (2, False)
+
+
+def test_evidence_that_is_named_and_is_not_there_is_an_error(fretc: Fretc) -> None:
+    write("requirements/r1.fret", "the robot shall always satisfy stopped\n")
+    run = fretc("report", "--evidence", "build/evidense.json")
+    assert (run.status, run.err.startswith("F901 ")) == (2, True)
+    assert not Path("build/report.html").exists()

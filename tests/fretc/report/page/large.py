@@ -85,8 +85,8 @@ def _results(
     for column, run in enumerate(runs):
         mark = choose(number, column)
         if mark is not None:
-            place = {"requirement": f"req-R{number}", "number": column + 1}
-            results.append(replace(like, **place, run=run.anchor, run_file=run.name, mark=mark))
+            own = replace(like, requirement=f"req-R{number}", number=column + 1)
+            results.append(replace(own, run=run.anchor, run_file=run.name, mark=mark))
     return results
 
 
