@@ -85,8 +85,12 @@ def _results(
     for column, run in enumerate(runs):
         mark = choose(number, column)
         if mark is not None:
-            place = {"requirement": f"req-R{number}", "number": column + 1}
-            results.append(replace(like, **place, run=run.anchor, run_file=run.name, mark=mark))
+            results.append(
+                replace(
+                    like, requirement=f"req-R{number}", number=column + 1,
+                    run=run.anchor, run_file=run.name, mark=mark,
+                )
+            )  # fmt: skip
     return results
 
 
@@ -98,7 +102,8 @@ def page(
     assert build.details is not None
     report = enlarged(build.report, requirements, groups, choose)
     (one,) = build.details.assessments.values()
-    assessments = {view.anchor: one for view in report.requirements}
+    many = replace(one, audits=one.audits * sum(count for _, count in groups))
+    assessments = {view.anchor: many for view in report.requirements}
     return html(report, replace(build.details, assessments=assessments))
 
 
