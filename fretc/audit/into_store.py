@@ -179,6 +179,10 @@ class Earlier:
             if alike:
                 self._parts[tuple(entry.log for entry in of_part)] = (store, part)
 
+    def missing(self, logs: Sequence[str]) -> int:
+        """How many logs that are known are not among these."""
+        return len({*self._logs, *self._some}.difference(logs))
+
     def find(self, log: str) -> _Known | None:
         """What is known of a log that is as it was."""
         if log not in self._logs:
@@ -283,6 +287,8 @@ class Session:
         self._draft_of = {log: draft for draft in self._drafts for log in draft.logs}
         self.known = {log: one for log in logs if (one := self.earlier.find(log)) is not None}
         self.new = [log for log in logs if log not in self.known]
+        self.missing = self.earlier.missing(logs)
+        """How many logs of the store are not among those of this audit."""
         self.kept = 0
         """Logs that were audited by this session and that an audit after it takes over."""
         self._diagnostics: dict[Diagnostic, Diagnostic] = {}

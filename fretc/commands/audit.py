@@ -258,6 +258,8 @@ def audit(
             if parquet is not None:
                 made[Path(parquet)] = outputs.table(result)
             _deliver(result, target, made, inputs)
+        elif os.path.lexists(target.path):
+            say_line(visible(f"no log could be read: `{target.path}` stays as it was"))
         source, not_judged = result.source, {one.id for one in plan.refused}
         marks = Marks.of((each for _, each in source.briefs()), result.estimates, not_judged)
         is_bad = plan.refused or has_errors((*project.diagnostics, *diagnostics))

@@ -44,6 +44,10 @@ def audit_into(session: Session, engine: Engine) -> StoredAudit:
         )
     elif session.earlier.stale:
         say_line("requirements, bindings or fretc have changed: all logs are audited again")
+    if session.missing:
+        what = "log of the store is" if session.missing == 1 else "logs of the store are"
+        whose = "its" if session.missing == 1 else "their"
+        say_line(f"{session.missing} {what} not named this time: {whose} results leave it")
     if session.earlier.foreign:
         say_line(f"`{session.folder}` was not written by you in this place: nothing of it is used")
     try:

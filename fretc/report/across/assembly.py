@@ -183,7 +183,7 @@ def _results(
     return [
         RunStretches(
             run.anchor,
-            run.label,
+            run.name,
             phrases.place(audit.result.run),
             assessment.id,
             assessment.anchor,

@@ -62,7 +62,7 @@ def _row(audit: SingleAudit, assessment: Assessment, number: int, run: Run) -> R
         number=number,
         requirement=assessment.anchor,
         run=run.anchor,
-        run_label=run.label,
+        run_label=run.name,
         run_file=phrases.place(result.run),
         mark=audit.mark,
         suspicions=audit.suspicions,
@@ -335,7 +335,7 @@ def _probability_reason(probability: ProbabilityAudit) -> str:
 
 def _run_reason(audit: SingleAudit, runs: Mapping[RunKey, Run]) -> str:
     result = audit.result
-    label = runs[run_key(result)].label
+    label = runs[run_key(result)].name
     return f"{label}: {audit.verdict}, {result.reason}{_because(audit.suspicions)}"
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from dataclasses import replace as changed
 from functools import cached_property
+from itertools import takewhile
 
 from compiler.files.records import replace
 from compiler.project.folder import Project
@@ -33,16 +36,13 @@ class Run:
     has_topics: bool
     first: int = 0
     """The place of its first result in the evidence: that one has the course of the run."""
+    name: str = ""
+    """What tells it from the other runs: that of its file, as far as it is needed."""
 
     @cached_property
     def anchor(self) -> str:
         """The anchor of its section; one text for all its results."""
         return f"run-{self.number}"
-
-    @cached_property
-    def label(self) -> str:
-        """`Run 1`."""
-        return f"Run {self.number}"
 
 
 RunKey = tuple[str, str]
@@ -61,7 +61,59 @@ def runs(briefs: Briefs | None) -> dict[RunKey, Run]:
         first = briefs.firsts.get(run_key(facts), 0) if briefs else 0
         run = Run(len(numbered) + 1, bare, bool(facts.health.topics), first)
         numbered.setdefault(run_key(facts), run)
-    return numbered
+    names = run_names([run.facts.run for run in numbered.values()])
+    return {
+        key: changed(run, name=name)
+        for (key, run), name in zip(numbered.items(), names, strict=True)
+    }
+
+
+# Names -----------------------------------------------------------------------------------------
+
+_SEPARATOR = re.compile(r"[/\\]+")
+_LONGEST = 60
+"""Characters of a name."""
+
+
+def run_names(logs: Sequence[str]) -> list[str]:
+    """A name for each run, all different: `safety-off-2`; alike ones have a number behind them."""
+    names = file_names(inner_paths(logs))
+    counts = Counter(names)
+    return [
+        name if name and counts[name] == 1 else f"{name} (run {number})".lstrip()
+        for number, name in enumerate(names, 1)
+    ]
+
+
+def inner_paths(logs: Sequence[str]) -> list[list[str]]:
+    """The paths without the folders that all of them share: no place of one machine is said."""
+    paths = [_SEPARATOR.split(log) for log in logs]
+    shared = alike([path[:-1] for path in paths])
+    return [path[shared:] for path in paths]
+
+
+def alike(sequences: Sequence[Sequence[str]]) -> int:
+    """With how many of the same elements all of them begin."""
+    return sum(1 for _ in takewhile(lambda same: len({*same}) == 1, zip(*sequences, strict=False)))
+
+
+def file_names(paths: Sequence[Sequence[str]]) -> list[str]:
+    """The name of each file, without an ending that all share; with its folder where needed."""
+    endings = {path[-1].rpartition(".")[1:] for path in paths}
+    cut = sum(map(len, next(iter(endings)))) if len(endings) == 1 else 0
+    cut = cut if all(len(path[-1]) > cut for path in paths) else 0
+    files = [path[-1][: len(path[-1]) - cut] for path in paths]
+    if len({*files}) != len(files):
+        files = ["/".join((*path[:-1], file)) for path, file in zip(paths, files, strict=True)]
+    return [_short(file) for file in files]
+
+
+def _short(name: str) -> str:
+    half = _LONGEST // 2
+    return name if len(name) <= _LONGEST else f"{name[:half]}…{name[1 - half :]}"
+
+
+# Views -----------------------------------------------------------------------------------------
 
 
 def run_summaries(runs: Iterable[Run], project: Project) -> tuple[RunSummary, ...]:
@@ -86,7 +138,7 @@ def _summary(run: Run, project: Project) -> RunSummary:
     health = facts.health
     return RunSummary(
         anchor=run.anchor,
-        label=run.label,
+        label=run.name,
         file=phrases.place(facts.run),
         sha256=facts.log,
         size=phrases.size(health.size),
@@ -197,7 +249,7 @@ def _rate(topic: Topic) -> str:
 def _named(run: Run) -> str:
     """`Run 2`, with the codes of its errors."""
     codes = ", ".join(_errors(run))
-    return f"{run.label} ({codes})" if codes else run.label
+    return f"{run.name} ({codes})" if codes else run.name
 
 
 def _is_open(run: Run, project: Project) -> bool:
@@ -209,7 +261,7 @@ def trust(runs: Sequence[Run], project: Project) -> str:
     """The condition of the runs, in one sentence; empty where there is no run."""
     damaged = [_named(run) for run in runs if not run.facts.health.intact]
     wrong = [_named(run) for run in runs if run.facts.health.intact and _errors(run)]
-    with_findings = [run.label for run in runs if _is_open(run, project)]
+    with_findings = [run.name for run in runs if _is_open(run, project)]
     if not runs:
         return ""
     if damaged or wrong:

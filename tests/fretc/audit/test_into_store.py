@@ -181,6 +181,8 @@ def test_the_command_says_what_is_known_and_shows_all(fretc: Fretc) -> None:
     again = fretc("audit", *LOGS)
     assert (again.status, untimed(again.out)) == (whole.status, untimed(whole.out))
     assert again.err == f"3 of 3 logs are unchanged: their results are known\n{whole.err}"
+    fewer = fretc("audit", *LOGS[:2])
+    assert "\n1 log of the store is not named this time: its results leave it\n" in fewer.err
 
 
 # What is known -----------------------------------------------------------------------------------
@@ -471,6 +473,7 @@ def test_a_mistyped_name_does_not_cost_the_evidence_of_the_last_audit(fretc: Fre
     before = {**tables(), "": (STORE / "manifest.json").read_bytes()}
     run = fretc("audit", "no.mcap", "none.mcap", "-o", str(STORE))
     assert run.status == 2
+    assert f"no log could be read: `{STORE}` stays as it was\n" in run.err
     assert before == {**tables(), "": (STORE / "manifest.json").read_bytes()}
     assert fretc("audit", "no.mcap", "none.mcap", "-o", "new").status == 2
     assert not Path("new").exists()

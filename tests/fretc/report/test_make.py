@@ -118,8 +118,8 @@ def test_the_worst_run_decides_and_every_reason_is_reported(tmp_path: Path) -> N
     )
     assert words(content["requirements"]) == ["inconclusive"]
     assert content["not_shown"][0]["reasons"] == [
-        "Run 3: inconclusive, reason of R1",
-        "Run 2: vacuous, reason of R1",
+        "c: inconclusive, reason of R1",
+        "b: vacuous, reason of R1",
     ]
     assert [(c["mark"]["word"], c["requirements"], c["results"]) for c in content["counts"]] == [
         ("violated", 0, 0),
@@ -254,7 +254,7 @@ def test_a_damaged_log_never_shows_that_something_held(tmp_path: Path) -> None:
         report_of(known, tmp_path, result(known, "satisfied", health={"intact": False}))
     )
     assert words(content["requirements"]) == ["satisfied, suspect"]
-    assert content["overall"]["sentences"][-1] == "Run 1 is damaged or could not be read."
+    assert content["overall"]["sentences"][-1] == "a is damaged or could not be read."
 
 
 @pytest.mark.parametrize(
@@ -425,7 +425,7 @@ def test_a_response_without_a_bound_is_shown_with_a_reservation(tmp_path: Path) 
         "waits": ["1 s to 3.5 s: 2 triggers, the first waited 2.5 s"],
         "median_s": 2.4,
     }
-    line = f"The longest answer of {NAME} took 2.5 s, after the trigger at 1 s, in Run 1."
+    line = f"The longest answer of {NAME} took 2.5 s, after the trigger at 1 s, in a."
     assert content["reservations"] == [UNVIOLABLE, line]
     assert content["overall"]["sentences"][1:3] == [UNVIOLABLE, line]
 
@@ -438,7 +438,7 @@ def test_where_the_end_of_a_log_violates_the_reservation_is_the_missing_bound(
     content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
     assert content["reservations"] == [
         f"{NAME} sets no bound on its response. The longest answer of {NAME} took 2.5 s, after the "
-        "trigger at 1 s, in Run 1."
+        "trigger at 1 s, in a."
     ]
 
 
@@ -565,7 +565,7 @@ def test_a_run_is_shown_with_its_health(tmp_path: Path) -> None:
     (run,) = as_json(report_of(known, tmp_path, result(known, "no data", health=health)))["runs"]
     assert run == {
         "anchor": "run-1",
-        "label": "Run 1",
+        "label": "a",
         "file": "logs/a.mcap",
         "sha256": "ab" * 32,
         "size": "1.23 MB (1\u202f234\u202f567 bytes)",

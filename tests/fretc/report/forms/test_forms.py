@@ -264,7 +264,7 @@ def test_two_runs_of_one_name_are_two_suites(fretc: Fretc) -> None:
     write("build/evidence.json", json.dumps(evidence(known, *results)))
     assert fretc("report", "--junit", "out.junit").status == 0
     suites = [one.attrib["name"] for one in ElementTree.parse("out.junit").getroot()]
-    assert suites == ["requirements", "a.mcap (Run 1)", "a.mcap (Run 2)"]
+    assert suites == ["requirements", "a.mcap (one/a)", "a.mcap (two/a)"]
 
 
 def test_a_waiver_covers_what_its_runs_show(fretc: Fretc) -> None:
@@ -415,7 +415,7 @@ def test_gsn_claims_no_more_than_is_shown(reported: Fretc) -> None:
     defeated = [id for id, element in elements.items() if element.get("defeated")]
     assert defeated == ["G_req_2d_R2"]
     assert elements["CSn_req_2d_R2"] == {
-        "text": "R2 is violated in 1 of 1 audited run: Run 1, logs/a.mcap: reason of R2",
+        "text": "R2 is violated in 1 of 1 audited run: logs/a.mcap: reason of R2",
         "challenges": "G_req_2d_R2",
     }
     assert elements["J_req_2d_R3"]["text"].startswith("Waived until 2099-01-01 by A, B")

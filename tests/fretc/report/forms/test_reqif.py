@@ -182,7 +182,7 @@ def test_each_object_has_what_is_known_of_it(exported: Callable[[], str]) -> Non
         "Coverage": "exercised, fail",
         "Verdict": "violated",
         "Currency": "current",
-        "Reasons": "Run 2: violated, reason of R2",
+        "Reasons": "b: violated, reason of R2",
         "Runs": "violated in 1 run; satisfied in 1 run\n"
         "logs/b.mcap: violated: reason of R2\n"
         "logs/a.mcap: satisfied: reason of R2",

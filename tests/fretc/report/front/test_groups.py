@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -5,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.report.front.groups import run_groups
-from fretc.report.sections.runs import Run
+from fretc.report.sections.runs import Run, run_names
 
 
 @dataclass
@@ -14,13 +15,19 @@ class Facts:
     labels: dict[str, str]
 
 
+def named(paths: Sequence[str], labels: Sequence[dict[str, str]]) -> list[Run]:
+    return [
+        Run(n, cast(Any, Facts(path, label)), False, name=name)
+        for n, (path, label, name) in enumerate(
+            zip(paths, labels, run_names(paths), strict=True), 1
+        )
+    ]
+
+
 def grouped(*paths: str, scenarios: list[str] | None = None) -> dict[str, list[str]]:
     """The short names of the runs of each group."""
     labels = [{"scenario": s} for s in scenarios] if scenarios else [{}] * len(paths)
-    runs = [
-        Run(n, cast(Any, Facts(path, label)), False)
-        for n, (path, label) in enumerate(zip(paths, labels, strict=True), 1)
-    ]
+    runs = named(paths, labels)
     return {group.name: [run.short for run in group.runs] for group in run_groups(runs)}
 
 
@@ -57,7 +64,7 @@ def test_runs_of_one_name_are_told_apart() -> None:
 
 @given(st.lists(st.text(alphabet="ab1/-. \\", max_size=8), max_size=8))
 def test_each_run_has_one_column_and_a_name_of_its_own(paths: list[str]) -> None:
-    runs = [Run(n, cast(Any, Facts(path, {})), False) for n, path in enumerate(paths, 1)]
+    runs = named(paths, [{}] * len(paths))
     columns = [run for group in run_groups(runs) for run in group.runs]
     assert sorted(run.anchor for run in columns) == sorted(run.anchor for run in runs)
     assert len({run.name for run in columns}) == len(runs)

@@ -92,7 +92,7 @@ def test_red_stays_red_where_the_sentence_cannot_be_read_any_more(tmp_path: Path
     assert content["overall"]["headline"] == (
         f"{NAME} was violated, and the sentence cannot be formalized now."
     )
-    assert content["requirements"][0]["reasons"][0].startswith("Run 1: violated, ")
+    assert content["requirements"][0]["reasons"][0].startswith("a: violated, ")
     assert content["requirements"][0]["reasons"][1].startswith("F107: ")
 
 
@@ -102,8 +102,8 @@ def test_one_current_violation_is_enough_for_a_current_verdict(tmp_path: Path) -
     content = as_json(report_of(known, tmp_path, old, red(known, "R1", run="new.mcap")))
     assert content["overall"]["headline"] == f"{NAME} is violated."
     assert [reason.split(",")[0] for reason in content["requirements"][0]["reasons"]] == [
-        "Run 2: violated",
-        "Run 1: violated",
+        "new: violated",
+        "old: violated",
     ]
 
 
@@ -132,8 +132,7 @@ def test_runs_with_errors_come_first_and_are_named(tmp_path: Path) -> None:
         "F401",
     ]
     assert (
-        "Run 2 (F405) has an error: read them before the verdicts."
-        in (content["overall"]["sentences"])
+        "b (F405) has an error: read them before the verdicts." in (content["overall"]["sentences"])
     )
 
 

@@ -77,7 +77,7 @@ def test_a_violated_goal_is_challenged_by_the_runs_that_violate_it_the_worst_fir
     assert (goal.defeated, goal.undeveloped, goal.supported_by) == (True, True, ())
     assert against.challenges == goal.id
     assert against.text == (
-        "R1 is violated in 2 of 3 audited runs: Run 3, 3.mcap: five times; Run 2, 2.mcap: once"
+        "R1 is violated in 2 of 3 audited runs: 3.mcap: five times; 2.mcap: once"
     )
 
 
@@ -97,7 +97,7 @@ def test_counter_evidence_of_an_older_text_challenges_and_does_not_defeat(tmp_pa
     assert by_id["CSn_req_2d_R1_older"].challenges == "G_req_2d_R1"
     assert by_id["CSn_req_2d_R1_older"].text == (
         "R1 is violated in 1 of 1 audited run, before a change (the bindings have changed since "
-        "the audit): Run 1, 1.mcap: once"
+        "the audit): 1.mcap: once"
     )
 
 
