@@ -42,14 +42,17 @@ def headline(views: Sequence[RequirementView], runs: int) -> str:
     )
     words = " or ".join(dict.fromkeys(view.mark.word for view in views))
     broken = len(frozenset[str]().union(*map(broken_runs, views)))
-    where = f", in {_of(broken, runs)}" if broken else ""
+    where = _where(broken, runs, several=count > 1) if broken else ""
     return capital(f"{who} {'is' if count == 1 else 'are'} {words}{where}.")
 
 
-def _of(count: int, total: int) -> str:
-    if count == total:
-        return "the one run" if total == 1 else f"every one of {number(total)} runs"
-    return f"{number(count)} of {number(total)} runs"
+def _where(broken: int, runs: int, *, several: bool) -> str:
+    """Of several requirements a run need not violate each."""
+    if broken < runs:
+        return f", in {number(broken)} of {number(runs)} runs"
+    if runs == 1:
+        return ", in the one run"
+    return f": none of {number(runs)} runs keeps {'all of them' if several else 'it'}"
 
 
 def sentences(views: Sequence[RequirementView], groups: Sequence[RunGroup]) -> Iterator[str]:

@@ -137,7 +137,7 @@ RUNS = ("walk-1", "walk-2", "stop-1", "stop-2")
         ),
         (
             {"R1": "vvvv", "R2": "vsvs", "R5": "vvvs"},
-            "Three requirements are violated, in every one of four runs.",
+            "Three requirements are violated: none of four runs keeps all of them.",
             [
                 "Title of R1 (R1) fails in every run.",
                 "Title of R2 (R2) fails in 2 of 4 runs: walk-1 and stop-1.",
