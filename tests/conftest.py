@@ -1,4 +1,4 @@
-"""Golden files, and how hard hypothesis tries.
+"""Golden files, a browser, and how hard hypothesis tries.
 
 `--hypothesis-profile=full`, or `HYPOTHESIS_PROFILE=full`: many more examples.
 """
@@ -7,8 +7,9 @@ import os
 import signal
 import sys
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 # Bytecode is kept, whatever the shell says: each worker, and each process that a test starts, would
 # compile the same text again, pytest's own forms of the assertions and of hypothesis among it.
@@ -24,6 +25,9 @@ with warnings.catch_warnings():
     import spot  # noqa: F401
 
 from tests.command import Fretc, runner  # noqa: E402
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell starts what runs in its background so, and every process that a test starts would
@@ -64,3 +68,20 @@ def fretc(
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
     monkeypatch.chdir(tmp_path)
     return runner(monkeypatch, capsys)
+
+
+CHROMIUM = "/usr/bin/chromium"
+
+
+@pytest.fixture(scope="session")
+def browser() -> "Iterator[Browser]":
+    """One browser for all tests of pages; they are skipped where there is none."""
+    playwright: Any = pytest.importorskip(
+        "playwright.sync_api", reason="needs Playwright: pip install -e '.[dev]'"
+    )
+    if not Path(CHROMIUM).exists():
+        pytest.skip(f"needs {CHROMIUM}: apt-get install chromium")
+    with playwright.sync_playwright() as started:
+        chromium = started.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield chromium
+        chromium.close()

@@ -162,6 +162,6 @@ def test_no_file_makes_a_store_be_opened(robot: Fretc, monkeypatch: pytest.Monke
     assert robot("audit", "s3://fleet/night/").status == 1
     shutil.rmtree("local")
     monkeypatch.delenv("AWS_ENDPOINT_URL")  # nothing could be reached now
-    checked = robot("verify-evidence", "build/evidence.json")
+    checked = robot("verify-evidence", "build/evidence")
     assert checked.status == 3
     assert "F921" in checked.err

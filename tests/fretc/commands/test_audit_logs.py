@@ -5,10 +5,12 @@ import os
 import shutil
 import stat
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
+from fretc.audit import many_logs
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -91,17 +93,24 @@ def test_a_sample_is_reported_as_one(robot: Fretc) -> None:
     )
 
 
-def test_a_log_for_which_there_is_no_time_is_no_data(robot: Fretc) -> None:
-    run = robot("audit", "runs/0.mcap", "runs/2.mcap", "--log-time", "1ns")
+def test_a_log_for_which_there_is_no_time_is_no_data(
+    robot: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(many_logs, "read", lambda *_: time.sleep(3600))
+    run = robot("audit", "runs/0.mcap", "runs/2.mcap", "--log-time", "100ms")
     assert run.status == 3
     assert run.err.count("F440 warning: the audit of `runs/") == 2
     assert run.out.splitlines()[-1].count("2 no data") == 1
     assert not Path("build/evidence").exists()  # no log was read: that of before would stay
 
 
-def test_a_log_for_which_there_was_no_time_is_audited_when_there_is(robot: Fretc) -> None:
+def test_a_log_for_which_there_was_no_time_is_audited_when_there_is(
+    robot: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
     robot("audit", "runs/0.mcap", "-o", "build/evidence")
-    run = robot("audit", "runs", "--log-time", "1ns")
+    with monkeypatch.context() as patch:
+        patch.setattr(many_logs, "read", lambda *_: time.sleep(3600))
+        run = robot("audit", "runs", "--log-time", "100ms")
     assert run.status == 3
     assert "1 of 3 logs are unchanged" in run.err
     assert [one["verdict"] for one in evidence()["results"]] == [  # type: ignore[attr-defined]

@@ -10,7 +10,7 @@ import pytest
 
 from compiler.project.folder import whole
 from fretc.audit.evidence.briefs import Briefs
-from fretc.audit.evidence.reader import read as read_evidence
+from fretc.audit.store.anywhere import read as read_evidence
 from fretc.report.traceability.chain import Node, chains
 from fretc.report.traceability.comparison import Difference, differences
 from fretc.report.traceability.lock import Lock, accepted, read, standings, text
@@ -31,7 +31,7 @@ from tests.fretc.audit.evidence.test_basis import (
     put,
 )
 
-LOCK, EVIDENCE = "requirements/fretc.lock", "build/evidence.json"
+LOCK, EVIDENCE = "requirements/fretc.lock", "build/evidence"
 ALL = ("R1", "R2", "R3")
 SENTENCE = "whenever p the sw shall within 300 milliseconds satisfy q"
 Expected = tuple[str, str, str]
@@ -174,7 +174,7 @@ def reviewed(fretc: Fretc, _base: Path) -> Fretc:
             write(name, content)
         for path, values in zip(LOGS, ((0, 2, 3, 3, 1, 1, 0), (0, 2, 2, 2, 2, 1, 0)), strict=True):
             log(path, *values)
-        assert fretc("audit", "logs", "-o", EVIDENCE, *ONE_PROCESS).status == 0
+        assert fretc("audit", "logs", *ONE_PROCESS).status == 0
         assert fretc("lock", *BY).status == 0
         shutil.copytree(".", _base, dirs_exist_ok=True)
     shutil.copytree(_base, ".", dirs_exist_ok=True)
@@ -272,7 +272,7 @@ def test_what_became_of_verdicts_is_counted_and_new_violations_are_named_first(
     assert compared()["R3"].consequences == ("2 verdicts are of before the change: audit again",)
     log("logs/c.mcap", 0, 2, 3, 3, 1, 1, 0)
     log("logs/d.mcap", 0, 0, 0, 0)
-    reviewed("audit", "logs", "-o", EVIDENCE, *ONE_PROCESS)
+    reviewed("audit", "logs", *ONE_PROCESS)
     r3 = compared()["R3"]
     assert r3.consequences == (
         "1 verdict became violated",
@@ -287,7 +287,7 @@ def test_what_became_of_verdicts_is_counted_and_new_violations_are_named_first(
 
 def test_a_run_that_is_gone_is_told_with_its_verdict(reviewed: Fretc) -> None:
     Path(LOGS[1]).unlink()
-    reviewed("audit", "logs", "-o", EVIDENCE, *ONE_PROCESS)
+    reviewed("audit", "logs", *ONE_PROCESS)
     for each in compared().values():
         assert each.consequences == ("1 run is gone: 1 satisfied",)
         assert [one.text for one in each.changes] == ["verdict of logs/b.mcap: satisfied → none"]
@@ -295,7 +295,7 @@ def test_a_run_that_is_gone_is_told_with_its_verdict(reviewed: Fretc) -> None:
 
 def test_another_log_of_the_same_name_is_told_by_its_hash(reviewed: Fretc) -> None:
     log(LOGS[0], 0, 2, 3, 3, 2, 1, 0)
-    reviewed("audit", "logs", "-o", EVIDENCE, *ONE_PROCESS)
+    reviewed("audit", "logs", *ONE_PROCESS)
     found = compared()
     assert found.keys() == {*ALL}
     for each in found.values():
@@ -341,7 +341,7 @@ def test_a_lock_without_texts_is_read_and_says_that_it_does_not_know(reviewed: F
     ]
     run = reviewed("diff")
     assert (run.status, "not in the lock" in run.out) == (3, True)
-    reviewed("audit", "logs", "-o", EVIDENCE, *ONE_PROCESS)
+    reviewed("audit", "logs", *ONE_PROCESS)
     assert reviewed("lock", "R1", *BY).status == 0
     assert compared()["R2"].changes, "the reviews of the others stay as they were"
     assert "R1" not in compared()
