@@ -73,9 +73,12 @@ def fretc(
 CHROMIUM = "/usr/bin/chromium"
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser() -> "Iterator[Browser]":
-    """One browser for all tests of pages; they are skipped where there is none."""
+    """A browser for the tests of a module; they are skipped where there is none.
+
+    It ends with the module: its event loop would be in the way of other tests.
+    """
     playwright: Any = pytest.importorskip(
         "playwright.sync_api", reason="needs Playwright: pip install -e '.[dev]'"
     )

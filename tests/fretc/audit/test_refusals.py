@@ -123,7 +123,7 @@ def test_no_form_of_the_audit_and_of_the_report_loses_it(fretc: Fretc, kind: str
     assert "R2" in fretc("audit", "t.parquet", "--summary").out
     run = fretc("report", "--junit", "j.xml", "--sarif", "s.sarif", "--csv", "c.csv", "--strict")
     assert run.status in (2, 3)
-    cases = ElementTree.parse("j.xml").getroot()[0]
+    cases = next(each for each in ElementTree.parse("j.xml").getroot() if len(each))
     assert [(case.get("name"), [child.tag for child in case]) for case in cases] == [
         ("R1", []),
         ("R2", ["error"]),

@@ -287,7 +287,7 @@ def test_what_became_of_verdicts_is_counted_and_new_violations_are_named_first(
 
 def test_a_run_that_is_gone_is_told_with_its_verdict(reviewed: Fretc) -> None:
     Path(LOGS[1]).unlink()
-    reviewed("audit", "logs", *ONE_PROCESS)
+    reviewed("audit", "logs", "-o", EVIDENCE, *ONE_PROCESS)
     for each in compared().values():
         assert each.consequences == ("1 run is gone: 1 satisfied",)
         assert [one.text for one in each.changes] == ["verdict of logs/b.mcap: satisfied → none"]
