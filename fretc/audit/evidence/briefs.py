@@ -121,6 +121,55 @@ class Stretches:
     """The triggers whose demand is open at the end."""
 
 
+class Head(Protocol):
+    """What evidence says of its audit as a whole, in a file or in the manifest of a store."""
+
+    @property
+    def fretc(self) -> str: ...
+    @property
+    def bindings(self) -> Bindings: ...
+    @property
+    def requirements(self) -> Sequence[Requirement]: ...
+    @property
+    def probabilities(self) -> Sequence[Estimated] | UnsetType: ...
+    @property
+    def selection(self) -> Selection | UnsetType: ...
+
+
+class Headed:
+    """The part of an `EvidenceSource` that its head gives."""
+
+    @property
+    def head(self) -> Head:
+        """What it says of the audit as a whole."""
+        raise NotImplementedError
+
+    @property
+    def fretc(self) -> str:
+        """Version of the tool that audited."""
+        return self.head.fretc
+
+    @property
+    def bindings(self) -> Bindings:
+        """Those that the logs were read by."""
+        return self.head.bindings
+
+    @property
+    def requirements(self) -> Sequence[Requirement]:
+        """Of the audit."""
+        return self.head.requirements
+
+    @property
+    def probabilities(self) -> Sequence[Estimated]:
+        """What all runs say of each requirement with a probability."""
+        return self.head.probabilities or ()
+
+    @property
+    def selection(self) -> Selection | None:
+        """Which of the named logs were audited; None: all."""
+        return self.head.selection or None
+
+
 class EvidenceSource(Protocol):
     """Evidence in a file or in a store. The place of a result is its number in it, from 0."""
 

@@ -15,14 +15,10 @@ from compiler.files.checked_json import MisshapenError, parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, RunFacts, brief, run_facts
-from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.briefs import Brief, Headed, RunFacts, brief, run_facts
 from fretc.audit.evidence.schema import (
-    Bindings,
     Document,
-    Requirement,
     Result,
-    Selection,
     Threshold,
 )
 from fretc.audit.measurements.confidence_intervals import REFUTED
@@ -41,7 +37,7 @@ VERDICTS = (
 
 
 @dataclass(frozen=True)
-class Evidence:
+class Evidence(Headed):
     """A file of evidence, with its name and its SHA-256: a source of evidence, all in memory."""
 
     file: str
@@ -49,29 +45,9 @@ class Evidence:
     document: Document
 
     @property
-    def fretc(self) -> str:
-        """Version of the tool that audited."""
-        return self.document.fretc
-
-    @property
-    def bindings(self) -> Bindings:
-        """Those that the logs were read by."""
-        return self.document.bindings
-
-    @property
-    def requirements(self) -> Sequence[Requirement]:
-        """Of the audit."""
-        return self.document.requirements
-
-    @property
-    def probabilities(self) -> Sequence[Estimated]:
-        """What all runs say of each requirement with a probability."""
-        return self.document.probabilities or ()
-
-    @property
-    def selection(self) -> Selection | None:
-        """Which of the named logs were audited; None: all."""
-        return self.document.selection or None
+    def head(self) -> Document:
+        """What it says of the audit as a whole."""
+        return self.document
 
     @property
     def results(self) -> tuple[Result, ...]:

@@ -20,16 +20,12 @@ from compiler.files.checked_json import plain as parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from fretc.audit.evidence.briefs import Brief, RunFacts, brief
-from fretc.audit.evidence.probabilities import Estimated
+from fretc.audit.evidence.briefs import Brief, Headed, RunFacts, brief
 from fretc.audit.evidence.reader import Evidence
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import (
-    Bindings,
     Document,
-    Requirement,
     Result,
-    Selection,
     Threshold,
 )
 from fretc.audit.measurements.tallies import Tally
@@ -82,7 +78,7 @@ def manifest(folder: Path, name: str) -> Manifest | None:
 
 
 @dataclass(frozen=True)
-class Store:
+class Store(Headed):
     """An `EvidenceSource`. The methods that read tables raise `StoreError`."""
 
     file: str
@@ -90,29 +86,9 @@ class Store:
     manifest: Manifest
 
     @property
-    def fretc(self) -> str:
-        """Version of the tool that audited."""
-        return self.manifest.fretc
-
-    @property
-    def bindings(self) -> Bindings:
-        """Those that the logs were read by."""
-        return self.manifest.bindings
-
-    @property
-    def requirements(self) -> Sequence[Requirement]:
-        """Of the audit."""
-        return self.manifest.requirements
-
-    @property
-    def probabilities(self) -> Sequence[Estimated]:
-        """What all runs say of each requirement with a probability."""
-        return self.manifest.probabilities or ()
-
-    @property
-    def selection(self) -> Selection | None:
-        """Which of the named logs were audited; None: all."""
-        return self.manifest.selection or None
+    def head(self) -> Manifest:
+        """What it says of the audit as a whole."""
+        return self.manifest
 
     def check(self) -> None:
         """Hold every table against the manifest: its bytes, and how many rows there are."""

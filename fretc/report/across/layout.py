@@ -11,7 +11,7 @@ from fretc.report.model import phrases
 from fretc.report.model.across import LaneMark, Lanes, PlaceMark, RunMap, Use, UseRow, Uses
 from fretc.report.model.marks import Mark
 from fretc.report.model.phrases import decimal
-from fretc.report.pictures.plots import WIDTH, places
+from fretc.report.pictures.plots import WIDTH, fitting, places
 
 _LEFT, _RIGHT = 196, 24
 _TOP, _AXIS, _ROW, _WORDS = 20, 26, 20, 15
@@ -109,7 +109,7 @@ def drawn_lanes(content: Lanes, id: str, anchors: Collection[str]) -> DrawnLanes
     def x(seconds: float) -> float:
         return round(_LEFT + min(max(seconds, 0.0), content.end) * scale, 1)
 
-    names = _short([run.file for run in content.lanes])
+    names = [_short(run.label) for run in content.lanes]
     runs: list[DrawnRun] = []
     y = _TOP
     for run, name in zip(content.lanes, names, strict=True):
@@ -118,7 +118,9 @@ def drawn_lanes(content: Lanes, id: str, anchors: Collection[str]) -> DrawnLanes
                 lane.signal,
                 y + _ROW + _WORDS * row,
                 tuple(
-                    DrawnWord(x(start), wide, word or "", _fitting(word or "unknown", wide))
+                    DrawnWord(
+                        x(start), wide, word or "", fitting(word or "unknown", wide - 4, _LETTER)
+                    )
                     for start, end, word in lane.words
                     for wide in [round(max(_THINNEST, x(end) - x(start)), 1)]
                 ),
@@ -158,17 +160,9 @@ def _mark(mark: LaneMark, y: int, x: _Place, anchors: Collection[str]) -> DrawnM
     return DrawnMark(mark.kind, start, y + below, width, height, link, mark.text)
 
 
-def _short(files: Sequence[str]) -> list[str]:
-    """As much of each name as fits: its end, where the names begin alike."""
-    stems = [file.removesuffix(".mcap").removesuffix(".bag") for file in files]
-    folders = {stem.rpartition("/")[0] for stem in stems}
-    own = [stem.rpartition("/")[2] for stem in stems] if len(folders) == 1 else stems
-    return [name if len(name) <= _NAME else f"…{name[1 - _NAME :]}" for name in own]
-
-
-def _fitting(word: str, width: float) -> str:
-    most = int((width - 4) / _LETTER)
-    return word if len(word) <= most else f"{word[: most - 1]}…" if most > 3 else ""
+def _short(name: str) -> str:
+    """As much of a name as fits: its end, where names begin alike."""
+    return name if len(name) <= _NAME else f"…{name[1 - _NAME :]}"
 
 
 # Shares of bounds ------------------------------------------------------------------------------
@@ -224,7 +218,7 @@ class DrawnUses:
 
 def drawn_uses(content: Uses, id: str, anchors: Collection[str]) -> DrawnUses:
     """The layout of a ranking; arguments as of `drawn_lanes`."""
-    names = _short([row.file for row in content.rows])
+    names = [_short(row.label) for row in content.rows]
     axis = _TOP + _ROW * len(content.rows) + 2
     return DrawnUses(
         id=id,
@@ -272,7 +266,7 @@ def _row(row: UseRow, name: str, y: int, anchors: Collection[str]) -> DrawnRow:
         end=end,
         is_crossed=first.is_crossed,
         dots=dots,
-        label=_fitting(first.text, (WIDTH - _SHARES - 14) * 1.05),
+        label=fitting(first.text, (WIDTH - _SHARES - 14) * 1.05 - 4, _LETTER),
     )
 
 

@@ -5,16 +5,10 @@ from __future__ import annotations
 from datetime import UTC, date, datetime
 
 from fretc.report.model import phrases
-from fretc.report.model.views import RequirementView
 
 _WORDS = "no one two three four five six seven eight nine ten eleven twelve".split()
 _DATED = 946_684_800
 """1 January 2000, in seconds: a clock that begins at 0 gives no date."""
-
-
-def named(view: RequirementView) -> str:
-    """`No contact (R14)`: the title before the id."""
-    return f"{view.title} ({view.id})" if view.title else view.id
 
 
 def number(count: int) -> str:

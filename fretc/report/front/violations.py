@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from fretc.audit.evidence.verdicts import BROKEN
-from fretc.report.front.speech import capital, named, number
+from fretc.report.front.speech import capital, number
 from fretc.report.model import phrases
 from fretc.report.model.front import RunGroup
 from fretc.report.model.views import RequirementView
@@ -36,7 +36,7 @@ def headline(views: Sequence[RequirementView], runs: int) -> str:
     """
     count = len(views)
     who = (
-        phrases.joined([named(view) for view in views])
+        phrases.joined([view.name for view in views])
         if count <= _NAMED
         else f"{number(count)} requirements"
     )
@@ -65,7 +65,8 @@ def sentences(views: Sequence[RequirementView], groups: Sequence[RunGroup]) -> I
     for broken, those in ordered[:_SENTENCES]:
         verb = "fails" if len(those) == 1 else "fail"
         unknown = _unknown(those, broken, groups)
-        yield f"{phrases.some([*map(named, those)], 4)} {verb} {where(broken, groups)}{unknown}."
+        names = phrases.some([view.name for view in those], 4)
+        yield f"{names} {verb} {where(broken, groups)}{unknown}."
     rest = sum(len(those) for _, those in ordered[_SENTENCES:])
     if rest:
         verb = "fails" if rest == 1 else "fail"

@@ -25,11 +25,11 @@ _NAMED = 3
 
 
 def step(least: float) -> float:
-    """1, 2 or 5 times a power of ten, not below `least`."""
+    """1, 2 or 5 times a power of ten, not below `least` nor below a thousand-millionth."""
     if least <= 0:
         return 1.0
     power = 10.0 ** len(str(int(least))) if least >= 1 else 1.0
-    while power / 10 >= least and power > 1e-9:
+    while power / 10 >= least and power > 1.5e-8:
         power /= 10
     return next((power / 10 * n for n in (1, 2, 5) if power / 10 * n >= least), power)
 

@@ -197,16 +197,16 @@ def _lane(lane: Lane, y: int, scale: _Scale) -> DrawnLane:
 
 def _words(lane: WordLane, y: int, scale: _Scale) -> DrawnWords:
     bars = tuple(
-        (bar, word or "", _fitting(word or "unknown", bar.width))
+        (bar, word or "", fitting(word or "unknown", bar.width - 6))
         for start, end, word in lane.words
         for bar in [scale.bar(start, end)]
     )
     return DrawnWords(lane.signal, y, bars)
 
 
-def _fitting(word: str, width: float) -> str:
-    """As much of a word as fits into a bar; nothing, where that says nothing."""
-    most = int((width - 6) / _LETTER)
+def fitting(word: str, width: float, letter: float = _LETTER) -> str:
+    """As much of a word as fits; nothing, where that says nothing."""
+    most = int(width / letter)
     return word if len(word) <= most else f"{word[: most - 1]}…" if most > 3 else ""
 
 

@@ -419,6 +419,20 @@ CHANGES = {
 # What is said -----------------------------------------------------------------------------------
 
 
+def with_review(fretc: Fretc, base: Path) -> Fretc:
+    """The present folder gets the project, audited and reviewed; `base` keeps it from then on."""
+    if not any(base.iterdir()):
+        for name, content in FILES.items():
+            write(name, content)
+        for path, values in zip(LOGS, ((0, 2, 3, 3, 1, 1, 0), (0, 2, 2, 2, 2, 1, 0)), strict=True):
+            log(path, *values)
+        assert fretc("audit", "logs", *ONE_PROCESS).status == 0
+        assert fretc("lock", *BY).status == 0
+        shutil.copytree(".", base, dirs_exist_ok=True)
+    shutil.copytree(base, ".", dirs_exist_ok=True)
+    return fretc
+
+
 @pytest.fixture(scope="module")
 def _base(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("base")
@@ -427,16 +441,7 @@ def _base(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def reviewed(fretc: Fretc, _base: Path) -> Fretc:
     """The project in the present folder: audited, and reviewed."""
-    if not any(_base.iterdir()):
-        for name, text in FILES.items():
-            write(name, text)
-        for path, values in zip(LOGS, ((0, 2, 3, 3, 1, 1, 0), (0, 2, 2, 2, 2, 1, 0)), strict=True):
-            log(path, *values)
-        assert fretc("audit", "logs", *ONE_PROCESS).status == 0
-        assert fretc("lock", *BY).status == 0
-        shutil.copytree(".", _base, dirs_exist_ok=True)
-    shutil.copytree(_base, ".", dirs_exist_ok=True)
-    return fretc
+    return with_review(fretc, _base)
 
 
 @dataclass(frozen=True)

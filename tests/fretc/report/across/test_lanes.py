@@ -73,7 +73,9 @@ def test_each_stretch_is_in_exactly_one_mark_at_its_time(
 ) -> None:
     picture = lanes(drawn, most, marks)
     if picture is None:
-        assert not any(end for _, own in drawn for _, _, end in expected(own))
+        runs = {each.run for each, _ in drawn}
+        ends = [end for _, own in drawn for _, _, end in expected(own)]
+        assert len(runs) > most or not any(ends)  # the worst may be runs without a tick
         return
     for lane in picture.lanes:
         mine = [pair for pair in drawn if pair[0].run == lane.anchor]

@@ -1,8 +1,11 @@
 import re
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
 from compiler.files.templating import render
 from fretc.report.model.pictures import Bin, Histogram
@@ -123,6 +126,17 @@ def test_without_a_bound_none_is_marked(tmp_path: Path) -> None:
     late = view(tmp_path, {"latencies_s": [0.1, 0.3]}, text=text)["histograms"][0]
     assert late["bound"] is None
     assert "no bound in seconds" in late["text"]
+
+
+@example([0.0, 1e-10])
+@settings(deadline=None, max_examples=15)
+@given(st.lists(st.floats(0, 1e9) | st.floats(0, 1e-8), min_size=2, max_size=5))
+def test_any_margins_are_all_counted_in_bars_with_a_width(margins: list[float]) -> None:
+    with TemporaryDirectory() as folder:
+        runs = [{"thresholds": margin(each), "latencies_s": []} for each in margins]
+        bins = view(Path(folder), *runs)["histograms"][0]["bins"]
+    assert sum(each["count"] for each in bins) == len(margins)
+    assert all(each["low"] < each["high"] for each in bins)
 
 
 def test_the_least_margin_of_each_run_is_counted_and_crossed_ones_apart(tmp_path: Path) -> None:

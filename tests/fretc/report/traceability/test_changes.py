@@ -1,7 +1,6 @@
 """Each change since a review by itself, with what the files said before and what they say now."""
 
 import re
-import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -22,13 +21,13 @@ from tests.fretc.audit.evidence.test_basis import (
     BINDINGS,
     BY,
     CHANGES,
-    FILES,
     LOGS,
     ONE_PROCESS,
     R1,
     R3,
     log,
     put,
+    with_review,
 )
 
 LOCK, EVIDENCE = "requirements/fretc.lock", "build/evidence"
@@ -169,16 +168,7 @@ def _base(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def reviewed(fretc: Fretc, _base: Path) -> Fretc:
     """The project in the present folder: audited, and reviewed."""
-    if not any(_base.iterdir()):
-        for name, content in FILES.items():
-            write(name, content)
-        for path, values in zip(LOGS, ((0, 2, 3, 3, 1, 1, 0), (0, 2, 2, 2, 2, 1, 0)), strict=True):
-            log(path, *values)
-        assert fretc("audit", "logs", *ONE_PROCESS).status == 0
-        assert fretc("lock", *BY).status == 0
-        shutil.copytree(".", _base, dirs_exist_ok=True)
-    shutil.copytree(_base, ".", dirs_exist_ok=True)
-    return fretc
+    return with_review(fretc, _base)
 
 
 def locked() -> Lock:
