@@ -125,15 +125,24 @@ class Head(Protocol):
     """What evidence says of its audit as a whole, in a file or in the manifest of a store."""
 
     @property
-    def fretc(self) -> str: ...
+    def fretc(self) -> str:
+        """Version of the tool that audited."""
+
     @property
-    def bindings(self) -> Bindings: ...
+    def bindings(self) -> Bindings:
+        """Those that the logs were read by."""
+
     @property
-    def requirements(self) -> Sequence[Requirement]: ...
+    def requirements(self) -> Sequence[Requirement]:
+        """Of the audit."""
+
     @property
-    def probabilities(self) -> Sequence[Estimated] | UnsetType: ...
+    def probabilities(self) -> Sequence[Estimated] | UnsetType:
+        """Of all runs; unset without such a requirement."""
+
     @property
-    def selection(self) -> Selection | UnsetType: ...
+    def selection(self) -> Selection | UnsetType:
+        """Of logs; unset: all."""
 
 
 class Headed:
