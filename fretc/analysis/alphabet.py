@@ -1,0 +1,63 @@
+"""The letters of a game: what can be true at one tick, and who decides it.
+
+The arena asks for the atoms of its requirements one by one, and an alphabet answers with functions
+of the variables of its letters. The environment sets the `inputs` first, where `legal` holds; then
+the system the `outputs`, so that `reachable` holds. With numbers the environment's bits name a cell
+of the input space, and `reachable` says which truth patterns the system can bring about in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import count
+from typing import Protocol
+
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.findings import Tick
+
+
+class Alphabet(Protocol):
+    """Letters; its variables are complete once every atom has been asked for."""
+
+    @property
+    def inputs(self) -> Sequence[int]:
+        """The variables that the environment sets."""
+
+    @property
+    def outputs(self) -> Sequence[int]:
+        """The variables that the system sets."""
+
+    @property
+    def legal(self) -> Function:
+        """Over inputs: which values can occur together. Never false."""
+
+    @property
+    def reachable(self) -> Function:
+        """Over inputs and outputs: what the system can do. For all legal inputs it can do some."""
+
+    def atom(self, name: str) -> Function:
+        """When an atom is true, over inputs and outputs.
+
+        Raises:
+            BeyondError: the alphabet has no such atom.
+        """
+
+    def values(self, letter: Mapping[int, bool]) -> Tick:
+        """Values of the user's variables that make up a letter.
+
+        Args:
+            letter: a value of each of inputs and outputs, legal and reachable.
+        """
+
+
+class BeyondError(Exception):
+    """Something that the analysis has no model of; the message says what, in words."""
+
+
+Numbers = Iterator[int]
+"""Variables that nothing has yet, in their order: whoever needs one takes the next."""
+
+
+def numbers() -> Numbers:
+    """All of them."""
+    return count()
