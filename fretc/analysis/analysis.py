@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from compiler.formalization.formalized import Formalized
+from fretc.analysis.arena.roles import Roles
 from fretc.analysis.findings import Analysis
-from fretc.analysis.roles import Roles
 
 
 @dataclass(frozen=True, slots=True)

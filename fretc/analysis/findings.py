@@ -11,13 +11,10 @@ from enum import StrEnum
 from typing import Annotated, Any, Final, Literal
 
 from compiler.files.records import Count, Name, Record, about, json_schema
+from fretc.analysis.arena.alphabet import Tick
 from fretish.bindings.declarations import Role
 
 SCHEMA: Final = "fretc-analysis-1"
-Value = bool | int | float | str
-"""Of a variable at one tick: a truth value, a number, a word of an enumerated signal."""
-Tick = dict[str, Value]
-"""The value of each variable at one tick."""
 
 
 class Verdict(StrEnum):

@@ -13,7 +13,12 @@ from itertools import count
 from typing import Protocol
 
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.findings import Tick
+from fretish.bindings.declarations import Role
+
+Value = bool | int | float | str
+"""Of a variable at one tick: a truth value, a number, a word of an enumerated signal."""
+Tick = dict[str, Value]
+"""The value of each variable at one tick."""
 
 
 class Alphabet(Protocol):
@@ -34,6 +39,14 @@ class Alphabet(Protocol):
     @property
     def reachable(self) -> Function:
         """Over inputs and outputs: what the system can do. For all legal inputs it can do some."""
+
+    @property
+    def doubts(self) -> Mapping[Role, str]:
+        """Why its letters are more than there can be, of inputs or of outputs; none: they are not.
+
+        Where inputs have too many letters, what the environment can force is not certain; where
+        outputs have too many, what the system can keep is not.
+        """
 
     def atom(self, name: str) -> Function:
         """When an atom is true, over inputs and outputs.

@@ -1,0 +1,88 @@
+"""Runs that keep requirements, whoever chooses what: reachability, and what can last for ever.
+
+Source: Emerson, Lei, Efficient model checking in fragments of the propositional mu-calculus, LICS
+1986 (runs that are fair).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.alphabet import Alphabet
+from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.transition import Transition
+from fretc.analysis.games.budget import Budget
+
+
+class Runs:
+    """The runs that keep some counters; others may be watched along with them."""
+
+    def __init__(
+        self,
+        alphabet: Alphabet,
+        kept: Sequence[Counter],
+        budget: Budget,
+        watched: Sequence[Counter] = (),
+    ) -> None:
+        self._kept, self._budget = kept, budget
+        self.transition = Transition([*kept, *watched])
+        self._letters = bdd.cube([*alphabet.inputs, *alphabet.outputs])
+        self.safe = alphabet.legal & alphabet.reachable
+        for counter in kept:
+            self.safe = self.safe & counter.safe
+        self._fair = [each.fair for each in kept if each.fair is not None]
+
+    def going_on(self, states: Function) -> Function:
+        """Ticks that break nothing and lead to one of the states."""
+        return self.safe & self.transition.moved(states)
+
+    def before(self, ticks: Function) -> Function:
+        """The states from which such a tick can come."""
+        return bdd.some(ticks, self._letters)
+
+    def lasting(self, within: Function | None = None) -> Function:
+        """The states from which all that is kept can be kept for ever.
+
+        Args:
+            within: states that such a run never leaves; None: all.
+        """
+        states = bdd.true() if within is None else within
+        while True:
+            self._budget.check()
+            left = states & self.before(self.going_on(states))
+            for fair in self._fair:
+                left = left & self._leading(fair & left, left)
+            if left == states:
+                return states
+            states = left
+
+    def _leading(self, target: Function, through: Function) -> Function:
+        """The states from which a run comes to a target, and nowhere but `through` before it."""
+        found = bdd.false()
+        while True:
+            self._budget.check()
+            more = found | (through & self.before(self.going_on(target | found)))
+            if more == found:
+                return found
+            found = more
+
+    def can_reach(self, ticks: Function, lasting: Function) -> bool:
+        """Whether a run that can be kept for ever has such a tick.
+
+        Args:
+            ticks: over a state and a letter.
+            lasting: of these runs.
+        """
+        on = self.going_on(lasting)
+        initial = self.transition.initial
+        found = self.before(on & ticks)
+        while True:
+            self._budget.check()
+            if (initial & found) != bdd.false():
+                return True
+            more = found | self.before(on & self.transition.moved(found))
+            if more == found:
+                return False
+            found = more
