@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from compiler.formalization.formalized import Formalized
-from fretc.analysis.arena.alphabet import numbers
+from compiler.formalization.letters import atoms_of
+from fretc.analysis.arena.alphabet import Tick, numbers
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
@@ -14,6 +15,7 @@ from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about
 from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.game import Game
+from fretc.analysis.games.plays import Letter
 from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
 
@@ -43,6 +45,14 @@ class Stage:
         """The runs that keep some counters, and all assumptions."""
         counters = [*kept, *self.arena.assumptions]
         return Runs(self.arena.alphabet, counters, budget, watched)
+
+    def ticks(self, ids: Iterable[str], letters: Iterable[Letter]) -> tuple[Tick, ...]:
+        """Letters as values of the variables of some requirements and of the assumptions."""
+        wanted = set(ids)
+        rules = [*(rule for rule in self.rules if rule.id in wanted), *self.assumptions]
+        names = {name for rule in rules for name in (*rule.variables, *atoms_of(rule.sentence))}
+        each = map(self.arena.alphabet.values, letters)
+        return tuple({name: tick[name] for name in sorted(tick) if name in names} for tick in each)
 
     @property
     def of_inputs(self) -> str | None:

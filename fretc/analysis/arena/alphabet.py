@@ -55,6 +55,10 @@ class Alphabet(Protocol):
             BeyondError: the alphabet has no such atom.
         """
 
+    @property
+    def labels(self) -> Mapping[int, str]:
+        """The atom of each variable that stands for one."""
+
     def values(self, letter: Mapping[int, bool]) -> Tick:
         """Values of the user's variables that make up a letter.
 

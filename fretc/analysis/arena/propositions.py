@@ -95,6 +95,11 @@ class Propositions:
                 found = found - bdd.point({self._numbers[name]: value for name, value in each})
         return found
 
+    @property
+    def labels(self) -> Mapping[int, str]:
+        """The atom of each bit."""
+        return {number: name for name, number in self._numbers.items()}
+
     def values(self, letter: Mapping[int, bool]) -> Tick:
         """Each atom by the name that formulas have for it."""
         return {name: letter[number] for name, number in self._numbers.items() if number in letter}

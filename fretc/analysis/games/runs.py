@@ -6,7 +6,7 @@ Source: Emerson, Lei, Efficient model checking in fragments of the propositional
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
@@ -68,6 +68,10 @@ class Runs:
                 return found
             found = more
 
+    def is_possible(self) -> bool:
+        """Whether there is a run that keeps all, for ever."""
+        return bool((self.transition.initial & self.lasting()) != bdd.false())
+
     def can_reach(self, ticks: Function, lasting: Function) -> bool:
         """Whether a run that can be kept for ever has such a tick.
 
@@ -86,3 +90,44 @@ class Runs:
             if more == found:
                 return False
             found = more
+
+    def can_break(self, counter: Counter, lasting: Function) -> bool:
+        """Whether a run that can be kept for ever breaks a counter that is watched, or fails it.
+
+        Args:
+            counter: one of those that are watched.
+            lasting: of these runs.
+        """
+        if self.can_reach(-counter.safe, lasting):
+            return True
+        if counter.fair is None:
+            return False
+        starving = self.lasting(lasting - counter.fair)
+        return self.can_reach(self.transition.moved(starving), lasting)
+
+    def path(self, goal: Function, step: Function) -> tuple[dict[int, bool], ...] | None:
+        """The letters of a shortest run into a goal; None: there is none.
+
+        Args:
+            goal: states.
+            step: the ticks that such a run may have.
+        """
+        levels = [goal]
+        while (self.transition.initial & levels[-1]) == bdd.false():
+            self._budget.check()
+            more = levels[-1] | self.before(step & self.transition.moved(levels[-1]))
+            if more == levels[-1]:
+                return None
+            levels.append(more)
+        return tuple(self._letters_down(levels, step))
+
+    def _letters_down(
+        self, levels: Sequence[Function], step: Function
+    ) -> Iterator[dict[int, bool]]:
+        state = self.transition.start
+        for level in reversed(levels[:-1]):
+            known = bdd.point(state)
+            ticks = bdd.at(step, known) & self.transition.moved_from(level, known)
+            letter = {**dict.fromkeys(bdd.support(self._letters), False), **bdd.witness(ticks)}
+            yield letter
+            state = self.transition.next(bdd.point({**state, **letter}))
