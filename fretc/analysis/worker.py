@@ -14,6 +14,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from multiprocessing.context import ForkProcess
 
+from compiler.files.processes import reply
 from fretc.analysis.analysis import Finding, Job
 from fretc.analysis.games.budget import guard
 from fretish.reading.recursion import deep
@@ -44,9 +45,13 @@ def findings(jobs: Sequence[Job], progress: Callable[[str], None]) -> Iterator[F
         try:
             while True:
                 try:
-                    finding: Finding | None = answers.recv()
+                    finding: Finding | Exception | None = answers.recv()
                 except EOFError:
                     break
+                if isinstance(finding, MemoryError):
+                    break
+                if isinstance(finding, Exception):
+                    raise finding
                 if finding is not None:
                     found.append(finding)
                     yield finding
@@ -78,20 +83,26 @@ def _started(jobs: Sequence[Job], found: Sequence[Finding]) -> tuple[ForkProcess
     return process, ours
 
 
-@deep
 def _answer(connection: Connection, jobs: Sequence[Job], found: Sequence[Finding]) -> None:
-    """Send each finding, and None at the end of each job."""
+    """Send each finding, None at the end of each job, and a mistake of ours where there is one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to both; the parent decides
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     guard()
-    known = list(found)
     with suppress(OSError):
-        for job in jobs:
-            for finding in job.ask(known):
-                known.append(finding)
-                connection.send(finding)
-            connection.send(None)
+        is_complete, error = reply(_answer_all, connection, jobs, found)
+        if not is_complete:
+            connection.send(error)
+
+
+@deep
+def _answer_all(connection: Connection, jobs: Sequence[Job], found: Sequence[Finding]) -> None:
+    known = list(found)
+    for job in jobs:
+        for finding in job.ask(known):
+            known.append(finding)
+            connection.send(finding)
+        connection.send(None)
 
 
 def _ending(status: int) -> str:
