@@ -13,6 +13,7 @@ from fretc.analysis.arena.counters import Counter
 from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vacuity
 from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import minimal
+from fretc.analysis.reasons import listed
 from fretc.analysis.stage import Stage
 
 MOST_TRIPLES = 500
@@ -47,7 +48,7 @@ class Removable:
 def consistency(setting: Stage, seconds: float) -> Iterator[Consistency | OpenQuestion]:
     """Whether any run keeps all requirements."""
     ids = tuple(rule.id for rule in setting.rules)
-    question = f"whether any run keeps {_listed(ids)}"
+    question = f"whether any run keeps {listed(ids)}"
     try:
         runs = setting.runs(setting.arena.counters, Budget(seconds))
         is_possible = runs.is_possible()
@@ -92,7 +93,7 @@ def redundancies(setting: Stage, seconds: float) -> Iterator[Redundancy | Remova
     try:
         yield Removable(_removable(setting, found, Budget(seconds)))
     except OutOfTimeError as error:
-        yield OpenQuestion(f"which of {_listed(found)} may go together", str(error))
+        yield OpenQuestion(f"which of {listed(found)} may go together", str(error))
 
 
 def _removable(setting: Stage, redundant: Sequence[str], budget: Budget) -> tuple[str, ...]:
@@ -172,7 +173,9 @@ def inconsistencies(setting: Stage, seconds: float) -> Iterator[Inconsistency | 
     """
     doubt = setting.of_inputs or setting.of_outputs
     counters = setting.arena.counters
-    question = f"whether a run can lead to where {_listed([c.id for c in counters])} clash"
+    question = (
+        f"whether a run can lead to where {listed([rule.id for rule in setting.rules])} clash"
+    )
     if doubt is not None:
         yield OpenQuestion(question, doubt)
         return
@@ -228,7 +231,3 @@ def _inconsistency(
         return None
     ids = sorted(each.id for each in members)
     return Inconsistency(tuple(ids), setting.ticks(ids, letters))
-
-
-def _listed(ids: Sequence[str]) -> str:
-    return ids[0] if len(ids) == 1 else f"{', '.join(ids[:-1])} and {ids[-1]}"

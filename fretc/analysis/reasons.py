@@ -40,7 +40,7 @@ def because(
     if not parts or len(rules) == 1:
         id = rules[0].id
         return f"at tick {last} no output keeps {id}{begun[id]}, whatever was done before"
-    return f"at tick {last} {_listed(parts)}"
+    return f"at tick {last} {listed(parts)}"
 
 
 def _known(game: Game, play: Play) -> Function:
@@ -77,11 +77,12 @@ def _for_ever(rules: Sequence[Formalized], game: Game, play: Play, begun: dict[s
     assert play.loop is not None
     lost = broken(rules, game.alphabet, play)
     others = [rule.id for rule in rules if rule.id not in lost]
-    open_ = _listed([f"{id}{begun[id]}" for id in lost])
+    open_ = listed([f"{id}{begun[id]}" for id in lost])
     last = len(play.letters) - 1
     again = f"tick {last}" if play.loop == last else f"ticks {play.loop} to {last}"
-    keeping = f", as long as {_listed(others)} {'is' if len(others) == 1 else 'are'} kept"
-    return f"{open_} is never met{keeping if others else ''}: {again} can come again for ever"
+    verb = "is" if len(others) == 1 else "are"
+    keeping = f", as long as {listed(others)} {verb} kept" if others else ""
+    return f"{open_} is never met{keeping}: {again} can come again for ever"
 
 
 def _words(asked: Function, game: Game) -> str:
@@ -111,5 +112,6 @@ def _term(values: dict[int, bool], alphabet: Alphabet) -> str:
     return " and ".join(named) or "other outputs"
 
 
-def _listed(parts: Sequence[str]) -> str:
-    return parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
+def listed(names: Sequence[str]) -> str:
+    """`R1, R2 and R3`."""
+    return " and ".join(part for part in (", ".join(names[:-1]), *names[-1:]) if part)

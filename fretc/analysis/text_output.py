@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 
 from fretc.analysis.findings import Analysis, Component, Conflict, Inconsistency, Verdict
+from fretc.analysis.reasons import listed
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import signs
 from fretish.diagnostics.signs import Sign
@@ -75,7 +76,7 @@ def _conflict(
 ) -> Iterator[Line]:
     ids = conflict.requirements
     what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"
-    yield f"{signs.BAD.glyph} conflict {number}: {_listed(ids)} {what}", signs.BAD.colour
+    yield f"{signs.BAD.glyph} conflict {number}: {listed(ids)} {what}", signs.BAD.colour
     yield f"  {conflict.because}", None
     width = max(map(len, ids))
     for id in ids:
@@ -89,7 +90,7 @@ def _conflict(
 def _inconsistency(clash: Inconsistency, analysis: Analysis) -> Iterator[Line]:
     sign = signs.OPEN
     where = "from the start" if not clash.play else "after this run, which breaks none of them"
-    ids = _listed(clash.requirements)
+    ids = listed(clash.requirements)
     yield f"{sign.glyph} {ids} can no longer be kept together {where}", sign.colour
     for row in drawn(clash.play, analysis.roles):
         yield f"    {row}", None
@@ -141,17 +142,17 @@ def _remarks(analysis: Analysis) -> Iterator[Line]:
         yield f"{empty.glyph} every run keeps {id}: it says nothing", empty.colour
     for vacuity in analysis.vacuous:
         never = "is never triggered" if vacuity.what == "trigger" else "has a scope that never is"
-        by = f" as long as {_listed(vacuity.by)} is kept" if len(vacuity.by) == 1 else ""
-        by = f" as long as {_listed(vacuity.by)} are kept" if len(vacuity.by) > 1 else by
+        by = f" as long as {listed(vacuity.by)} is kept" if len(vacuity.by) == 1 else ""
+        by = f" as long as {listed(vacuity.by)} are kept" if len(vacuity.by) > 1 else by
         yield f"{empty.glyph} {vacuity.requirement} {never}{by}", empty.colour
     for each in analysis.redundant:
         if each.by:
             verb = "implies" if len(each.by) == 1 else "imply"
-            text = f"{each.requirement} is redundant: {_listed(each.by)} {verb} it"
+            text = f"{each.requirement} is redundant: {listed(each.by)} {verb} it"
             yield f"{empty.glyph} {text}", empty.colour
     gone = [id for id in analysis.removable if id not in analysis.always]
     if len([each for each in analysis.redundant if each.by]) > 1 and gone:
-        yield f"  {_listed(gone)} can go together: the others say the same", None
+        yield f"  {listed(gone)} can go together: the others say the same", None
 
 
 def _rest(analysis: Analysis) -> Iterator[Line]:
@@ -166,7 +167,3 @@ def _rest(analysis: Analysis) -> Iterator[Line]:
         yield f"{role}s: {', '.join(names) or 'none'}", None
     for term in analysis.terms:
         yield f"taken for granted: {term}", None
-
-
-def _listed(ids: Sequence[str]) -> str:
-    return ids[0] if len(ids) == 1 else f"{', '.join(ids[:-1])} and {ids[-1]}"
