@@ -10,7 +10,7 @@ from typing import TypeVar
 from compiler.files.edition import __version__
 from compiler.files.records import replace
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.letters import temporal_predicate
+from compiler.formalization.letters import comparisons, temporal_predicate
 from fretc.analysis import implications as of_runs
 from fretc.analysis.arena.alphabet import BeyondError
 from fretc.analysis.arena.roles import Roles
@@ -296,3 +296,5 @@ def _terms(rules: Sequence[Formalized], options: Options) -> Iterator[str]:
         yield "`eventually` may take as long as it likes, but not for ever"
     if any(temporal_predicate(rule.sentence) for rule in rules):
         yield "before the first tick nothing was true; `preBool` states its own first value"
+    if any(comparisons(rule) for rule in rules):
+        yield "numbers are exact: whole or real, without bounds; floats round, which is not seen"

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.letters import atoms_of
-from fretc.analysis.arena.alphabet import Tick, numbers
+from compiler.formalization.letters import atoms_of, comparisons
+from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, numbers
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
@@ -84,7 +85,16 @@ def stage(
     """
     near = about(rules, assumptions, roles)
     fresh = numbers()
-    alphabet = Propositions([*rules, *near], roles, fresh)
+    alphabet = _alphabet([*rules, *near], roles, fresh)
     return Stage(
         tuple(rules), near, arena(rules, near, alphabet, fresh, as_fret=as_fret), roles, as_fret
     )
+
+
+def _alphabet(rules: Sequence[Formalized], roles: Roles, fresh: Numbers) -> Alphabet:
+    """With the numbers that comparisons are about, where z3 is installed."""
+    if not any(comparisons(rule) or rule.declarations for rule in rules) or not find_spec("z3"):
+        return Propositions(rules, roles, fresh)
+    from fretc.analysis.arithmetic.alphabet import Cells
+
+    return Cells(rules, roles, fresh)

@@ -27,10 +27,26 @@ from fretish.bindings.types import kind as kind_of
 
 
 class Propositions:
-    """An `Alphabet` in which each atom is a bit."""
+    """An `Alphabet` in which each atom is a bit.
 
-    def __init__(self, rules: Sequence[Formalized], roles: Roles, fresh: Numbers) -> None:
+    Args:
+        rules: whose atoms it has.
+        roles: of their variables.
+        fresh: variables for its bits.
+        elsewhere: atoms that another alphabet has.
+        refused: why that has no others of those that compare numbers.
+    """
+
+    def __init__(
+        self,
+        rules: Sequence[Formalized],
+        roles: Roles,
+        fresh: Numbers,
+        elsewhere: frozenset[str] = frozenset(),
+        refused: Mapping[str, str] | None = None,
+    ) -> None:
         self._fresh = fresh
+        self._elsewhere, self._refused = elsewhere, refused or {}
         self._roles = roles
         self._parts = dict(chain.from_iterable(candidates(rule.sentence) for rule in rules))
         self._read = {name: _read(name, part, rules) for name, part in self._parts.items()}
@@ -62,7 +78,8 @@ class Propositions:
             raise BeyondError(f"it calls `{called.name}`")
         found = {self._roles[each.id] for each in e.names(part)}
         if len(found) > 1:
-            raise BeyondError(f"`{name}` compares what the environment and the system choose")
+            both = f"`{name}` compares what the environment and the system choose"
+            raise BeyondError(self._refused.get(name, both))
         return found.pop() if found else Role.INPUT
 
     @property
@@ -112,6 +129,8 @@ class Propositions:
                 readers[each].append(name)
         glossary = {name: each for rule in rules for name, each in rule.glossary.items()}
         for name, atoms in readers.items():
+            if self._elsewhere.issuperset(atoms):
+                continue
             whole = name in glossary and kind_of(glossary[name].type) in (Kind.WHOLE, Kind.NATURAL)
             plain = all(_is_plain(self._compared.get(each), whole=whole) for each in atoms)
             if (len(atoms) > 1 or not isinstance(self._parts[atoms[0]], e.Name)) and not plain:
@@ -123,6 +142,8 @@ class Propositions:
         if len(atoms) > 1:
             both = " and ".join(f"`{each}`" for each in atoms[:2])
             shown = f"{both} read the same numbers, and are taken as independent"
+        refused = next((self._refused[atom] for atom in atoms if atom in self._refused), None)
+        shown = shown if refused is None else f"{refused}: {shown}"
         for atom in atoms:
             with suppress(BeyondError):
                 yield self.role(atom), shown

@@ -246,16 +246,17 @@ def test_comparisons_that_exclude_each_other_are_not_free() -> None:
     assert conflicts(found) == [("R1", "R2")]
 
 
-def test_numbers_that_order_does_not_tell_apart_give_no_wrong_verdict() -> None:
-    """`2 * t > 50` and `t < 20` exclude each other, which order alone does not tell."""
+def test_numbers_that_are_not_linear_give_no_wrong_verdict() -> None:
+    """`t * t > 625` and `t = 0` exclude each other, which nothing here tells."""
     sentences = (
-        "whenever 2 * t > 50 the sw shall immediately satisfy x",
-        "whenever t < 20 the sw shall immediately satisfy !x",
+        "whenever t * t > 625 the sw shall immediately satisfy x",
+        "whenever t = 0 the sw shall immediately satisfy !x",
     )
     found = analyzed(*sentences, roles=roles(["t"], ["x"]))
     assert found.verdict is NOT_CHECKED
     assert found.why == (
-        "`((2 * t) > 50)` and `(t < 20)` read the same numbers, and are taken as independent"
+        "`((t * t) > 625)` is not linear: `((t * t) > 625)` and `(t = 0)` read the same numbers, "
+        "and are taken as independent"
     )
 
 
