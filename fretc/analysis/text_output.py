@@ -56,7 +56,10 @@ def _headline(analysis: Analysis) -> str:
     bad = sum(each.verdict is Verdict.UNREALIZABLE for each in analysis.components)
     match analysis.verdict:
         case Verdict.REALIZABLE:
-            return "realizable: a system can keep all requirements, whatever the inputs are"
+            how = (
+                "while the assumptions hold" if analysis.assumptions else "whatever the inputs are"
+            )
+            return f"realizable: a system can keep all requirements, {how}"
         case Verdict.UNREALIZABLE if count == 1:
             return "unrealizable: no system can keep all requirements"
         case Verdict.UNREALIZABLE:

@@ -131,6 +131,7 @@ class _Reader(Fields):
             self.mistakes,
             self._map(),
             self._labels(),
+            loop.sentences(),
         )
 
     def _map(self) -> Map | None:
