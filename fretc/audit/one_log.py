@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from statistics import median
 
 import numpy as np
@@ -175,7 +175,7 @@ def _evidence(
         engine=engine,
     )
     outcome = judgement.outcome
-    at = partial(_moment, truths.timeline)
+    at = cache(partial(_moment, truths.timeline))  # a tick may be a trigger, an answer and more
     signals = signals_of(declarations, requirement.propositions)
     answers = tuple((at(t), at(k)) for t, k in outcome.answers)
     evidence = Evidence(
