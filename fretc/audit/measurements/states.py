@@ -28,7 +28,8 @@ def states(outcome: Outcome) -> tuple[tuple[int, str], ...]:
         for first, last in _union(runs):
             edges[first] ^= state
             edges[last + 1] ^= state
-    now, changes = 0, []
+    changes: list[tuple[int, str]] = []
+    now = 0
     for tick in sorted(tick for tick in edges if tick < outcome.ticks):
         now ^= edges[tick]
         if not changes or changes[-1][1] != _STATES[now]:
