@@ -38,13 +38,13 @@ class Listing(Sequence[T]):
         return self._tuple[place]
 
     def __eq__(self, other: object) -> bool:
-        return tuple(self).__eq__(_plain(other))
+        return tuple(self).__eq__(_as_tuple(other))
 
     def __lt__(self, other: Any) -> bool:
-        return tuple(self).__lt__(_plain(other))
+        return tuple(self).__lt__(_as_tuple(other))
 
     def __add__(self, other: Any) -> tuple[Any, ...]:
-        return tuple(self).__add__(_plain(other))
+        return tuple(self).__add__(_as_tuple(other))
 
     def __radd__(self, other: tuple[Any, ...]) -> tuple[Any, ...]:
         return other + tuple(self)
@@ -64,7 +64,7 @@ class Listing(Sequence[T]):
         return tuple, (tuple(self),)
 
 
-def _plain(value: Any) -> Any:
+def _as_tuple(value: Any) -> Any:
     return tuple(value) if isinstance(value, Listing) else value
 
 
