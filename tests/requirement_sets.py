@@ -66,26 +66,49 @@ TIMINGS = ("immediately", "at the next timepoint", "eventually", "always", "neve
            "finally")  # fmt: skip
 
 
-def sentence(choose: random.Random, most: int = 2) -> str:
+def sentence(
+    choose: random.Random,
+    most: int = 2,
+    every: Sequence[str] = (*INPUTS, *OUTPUTS),
+    answers: Sequence[str] = OUTPUTS,
+) -> str:
     """Any scope, condition and timing, with a bound of so many ticks at most."""
 
     def literal(names: Sequence[str]) -> str:
         return choose.choice(["", "!"]) + choose.choice(names)
 
-    every = (*INPUTS, *OUTPUTS)
     scope = choose.choice(["", choose.choice(SCOPES).format(literal(every))])
     condition = choose.choice(
         ["", f"when {literal(every)}", f"whenever {literal(every)}", f"upon {literal(INPUTS)}"]
     )
     timing = choose.choice(TIMINGS).format(n=choose.randint(0, most), stop=literal(every))
     other = choose.choice(["", f" | {literal(every)}"])
-    return f"{scope} {condition} the sw shall {timing} satisfy {literal(OUTPUTS)}{other}".strip()
+    return f"{scope} {condition} the sw shall {timing} satisfy {literal(answers)}{other}".strip()
 
 
 def drawn(seed: object, most: int = 3) -> tuple[str, ...]:
     """A few sentences."""
     choose = random.Random(repr(seed))
     return tuple(sentence(choose) for _ in range(choose.randint(1, most)))
+
+
+def terse(seed: object, most: int = 3) -> tuple[str, ...]:
+    """A few sentences that get into each other's way."""
+    choose = random.Random(repr(seed))
+
+    def one() -> str:
+        timing = choose.choice(
+            ["immediately", "always", "never", "eventually", "within 2 ticks", "for 1 tick"]
+        )
+        condition = choose.choice(["", "whenever a", "whenever !x", "upon y", "whenever x"])
+        return f"{condition} the sw shall {timing} satisfy {choose.choice(['x', '!x', 'y', '!a'])}"
+
+    return tuple(one() for _ in range(choose.randint(1, most)))
+
+
+def assumed(seed: object) -> str:
+    """A sentence about inputs alone."""
+    return sentence(random.Random(repr(seed)), every=INPUTS, answers=INPUTS)
 
 
 def named(tick: Mapping[str, object]) -> frozenset[str]:

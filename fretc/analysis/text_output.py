@@ -56,7 +56,10 @@ def _headline(analysis: Analysis) -> str:
     bad = sum(each.verdict is Verdict.UNREALIZABLE for each in analysis.components)
     match analysis.verdict:
         case Verdict.REALIZABLE:
-            return "realizable: a system can keep all requirements, whatever the inputs are"
+            how = (
+                "while the assumptions hold" if analysis.assumptions else "whatever the inputs are"
+            )
+            return f"realizable: a system can keep all requirements, {how}"
         case Verdict.UNREALIZABLE if count == 1:
             return "unrealizable: no system can keep all requirements"
         case Verdict.UNREALIZABLE:
@@ -158,7 +161,7 @@ def _remarks(analysis: Analysis) -> Iterator[Line]:
 def _rest(analysis: Analysis) -> Iterator[Line]:
     """What it rests on, and what is open."""
     for each in analysis.open:
-        text = f"{signs.UNKNOWN.glyph} open: {each.question} {each.why}"
+        text = f"{signs.UNKNOWN.glyph} open: {each.question}: {each.why}"
         yield text, signs.UNKNOWN.colour
     for assumption in analysis.assumptions:
         yield f"assumed {assumption.id}: {assumption.text or assumption.sentence}", None

@@ -112,6 +112,7 @@ def _conflict(setting: Stage, counters: Sequence[Counter]) -> Conflict:
     alphabet = setting.arena.alphabet
     lost = broken(rules, alphabet, play, as_fret=setting.as_fret)
     assert lost, f"the play of {', '.join(ids)} breaks none of them"
+    assert not broken(setting.assumptions, alphabet, play), "the environment keeps its word"
     return Conflict(
         tuple(ids),
         setting.ticks(ids, play.letters),

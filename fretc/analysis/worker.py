@@ -7,6 +7,7 @@ process is forked, so it has everything; what it finds comes back finding by fin
 from __future__ import annotations
 
 import multiprocessing
+import os
 import resource
 import signal
 from collections.abc import Callable, Iterator, Sequence
@@ -86,6 +87,7 @@ def _started(jobs: Sequence[Job], found: Sequence[Finding]) -> tuple[ForkProcess
 def _answer(connection: Connection, jobs: Sequence[Job], found: Sequence[Finding]) -> None:
     """Send each finding, None at the end of each job, and a mistake of ours where there is one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to both; the parent decides
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # BuDDy's last words
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     guard()

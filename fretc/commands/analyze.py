@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.formalization.formalized import Formalized
+    from compiler.project.folder import Project
     from fretc.analysis.findings import Analysis
 
 
@@ -64,26 +65,32 @@ def analyze(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from fretc.analysis.analysis import Options, assembled, jobs
+    from fretc.analysis.analysis import Finding, Options, assembled, jobs
     from fretc.analysis.arena.roles import roles
+    from fretc.analysis.assumptions import assumptions
     from fretc.analysis.text_output import lines
     from fretc.analysis.worker import Stopped, findings
     from fretc.terminal.progress import at_work
     from fretish.printer import sentence as printed
 
-    rules = _rules(files, requirements, bindings, component)
-    chosen = roles(rules)
+    project, first = _project(files, requirements, bindings)
+    rules = _rules(project, component)
+    assumed, remarks = assumptions(rules, project.declarations)
+    say_briefly(remarks, first)
+    if has_errors(remarks):
+        raise SystemExit(BAD)
+    chosen = roles([*rules, *assumed])
     if isinstance(chosen, tuple):
         stop(*chosen)
     options = Options(seconds, as_fret)
-    found = []
+    found: list[Finding] = []
     stopped = False
     try:
-        for finding in findings(jobs(rules, chosen, (), options), at_work):
+        for finding in findings(jobs(rules, chosen, assumed, options), at_work):
             found.append(finding)
     except Stopped:
         stopped = True
-    analysis = assembled(rules, chosen, (), options, found)
+    analysis = assembled(rules, chosen, assumed, options, found)
     if form == "json":
         click.echo(to_json(plain(analysis)))
     else:
@@ -92,10 +99,8 @@ def analyze(
     raise SystemExit(INTERRUPTED if stopped else _status(analysis))
 
 
-def _rules(
-    files: Sequence[str], requirements: str, bindings: str | None, component: str | None
-) -> tuple[Formalized, ...]:
-    """The rules that are asked about; a mistake stops the command."""
+def _project(files: Sequence[str], requirements: str, bindings: str | None) -> tuple[Project, str]:
+    """The project, and where it is; a mistake in it stops the command."""
     from compiler.project.folder import load
     from compiler.project.paths import listed, requirement_files
 
@@ -107,6 +112,11 @@ def _rules(
     say_briefly(project.diagnostics, first)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
+    return project, first
+
+
+def _rules(project: Project, component: str | None) -> tuple[Formalized, ...]:
+    """The rules that are asked about: those that are in force."""
     rules = tuple(rule for rule in project.rules if rule.requirement.status != "retired")
     if component is not None:
         rules = _of_component(rules, component)

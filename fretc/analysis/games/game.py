@@ -20,14 +20,20 @@ from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.runs import Runs
 
+Chain = tuple[tuple[Function, Function], ...]
+"""Of each link what is left, and an escape: from states of a trap that are not left the environment
+can see to it that none of the escape comes next. So it comes, link by link, to where its promise is
+kept, or into an earlier trap."""
+
 
 @dataclass(frozen=True, slots=True)
 class Trap:
-    """States that the environment holds: it can see to it that none of `escape` comes next."""
+    """States from which the environment wins."""
 
     left: Function
     """The states that are left to the system once those of the trap are taken away."""
-    escape: Function
+    chains: tuple[Chain, ...]
+    """One, or one for each promise of the environment, which it keeps in turn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,9 +141,9 @@ class _Search:
     def _holds(self, states: Function) -> bool:
         return bool((self._initial - states) == bdd.false())
 
-    def _trapped(self, left: Function, escape: Function) -> None:
+    def _trapped(self, left: Function, *chains: Chain) -> None:
         if self._keeps:
-            self._traps.append(Trap(left, escape))
+            self._traps.append(Trap(left, chains))
 
     def _safe(self) -> Function:
         """The states from which the system can go on for ever, or where the initial one is lost."""
@@ -147,7 +153,7 @@ class _Search:
             left = states & self._game.forced(states)
             if left == states:
                 return states
-            self._trapped(left, states)
+            self._trapped(left, ((left, states),))
             states = left
             if not self._holds(states):
                 return states
@@ -165,7 +171,10 @@ class _Search:
                 break
             near = states_of
             layers.append(Layer(near, layer.stays))
-        self._trapped(states & near, target | near)
+        if self._keeps:
+            left, escape = states & near, target | near
+            kept = [self._chain(escape, promise) for promise in promises]
+            self._trapped(left, *(kept or [((left, escape),)]))
         return Goal(target, tuple(layers) or (Layer(bdd.false(), ()),))
 
     def _layer(self, near: Function, promises: Sequence[Function]) -> Layer:
@@ -179,10 +188,18 @@ class _Search:
         return Layer(found, stays)
 
     def _staying(self, near: Function, promise: Function) -> Function:
+        chain = self._chain(near, promise)
+        return chain[-1][0] if chain else bdd.true()
+
+    def _chain(self, near: Function, promise: Function) -> Chain:
+        """How the states are left, round by round, in which the promise stays unkept."""
         states = bdd.true()
+        links: list[tuple[Function, Function]] = []
         while True:
             self._budget.check()
-            left = self._game.forced(near | (states - promise))
+            escape = near | (states - promise)
+            left = self._game.forced(escape)
             if left == states:
-                return states
+                return tuple(links)
+            links.append((left, escape))
             states = left

@@ -36,14 +36,15 @@ class Counterstrategy:
     def play(self) -> Play:
         """From the initial state to a breach, or round and round without what must come."""
         state: State = self._game.transition.start
+        promise = 0
         letters: list[Letter] = []
-        seen: dict[tuple[bool, ...], int] = {}
+        seen: dict[tuple[object, ...], int] = {}
         while True:
-            key = tuple(state.values())
+            key = (promise, *state.values())
             if key in seen:
                 return Play(tuple(letters), seen[key])
             seen[key] = len(letters)
-            inputs = self.inputs(state)
+            inputs = self.inputs(state, promise)
             options = self._options(state, inputs)
             if options == bdd.false():
                 letters.append(inputs | self._breach(state, inputs))
@@ -51,12 +52,27 @@ class Counterstrategy:
             letter = inputs | self._resistance(options, state, inputs)
             letters.append(letter)
             state = self._game.transition.next(bdd.point({**state, **letter}))
+            promise = self.following(state, promise)
 
-    def inputs(self, state: State) -> dict[int, bool]:
-        """What the environment does in a state that it holds."""
+    def following(self, state: State, promise: int) -> int:
+        """The promise that the environment keeps next, once it is in a state."""
+        promises = self._game.promises
+        if not promises or bdd.at(promises[promise], bdd.point(state)) == bdd.false():
+            return promise
+        return (promise + 1) % len(promises)
+
+    def inputs(self, state: State, promise: int = 0) -> dict[int, bool]:
+        """What the environment does in a state that it holds.
+
+        Args:
+            state: any that its inputs lead to.
+            promise: the number of the promise that it keeps next.
+        """
         game, known = self._game, bdd.point(state)
-        trap = self._traps[self._number(known)]
-        moved = game.transition.moved_from(trap.escape, known)
+        chains = self._traps[self._number(known)].chains
+        chain = chains[promise] if len(chains) > 1 else chains[0]
+        escape = next(e for left, e in chain if bdd.at(left, known) == bdd.false())
+        moved = game.transition.moved_from(escape, known)
         free = (bdd.at(game.safe, known) & moved) | bdd.at(game.reachable - game.kept, known)
         answer = bdd.some(free, bdd.cube(game.alphabet.outputs))
         return _whole(bdd.at(game.legal, known) - answer, game.alphabet.inputs)

@@ -296,3 +296,24 @@ def test_a_promise_of_the_environment_may_be_waited_for() -> None:
     assert analyzed(duty, gate).verdict is UNREALIZABLE
     promise = "whenever a the operator shall eventually satisfy b"
     assert analyzed(duty, gate, assumed=[promise]).verdict is REALIZABLE
+
+
+def test_the_environment_keeps_its_promises_while_it_wins() -> None:
+    """Two promises in turn, and the response is withheld where neither is being kept."""
+    (conflict,) = analyzed(
+        "whenever a the sw shall eventually satisfy x",
+        "whenever a | b the sw shall immediately satisfy !x",
+        assumed=[
+            "upon y the operator shall eventually satisfy a",
+            "the operator shall eventually satisfy b",
+            "while b the operator shall always satisfy !a",
+            "whenever !a & !b the operator shall at the next timepoint satisfy a | b",
+            "whenever b the operator shall at the next timepoint satisfy a",
+            "whenever a the operator shall at the next timepoint satisfy b",
+        ],
+    ).conflicts
+    assert conflict.requirements == ("R1", "R2")
+    assert conflict.loop is not None
+    assert {"a", "b"} <= {
+        name for tick in conflict.play[conflict.loop :] for name in named_true(tick)
+    }

@@ -15,17 +15,26 @@ from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.plays import Counterstrategy, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches
 from fretc.analysis.stage import Stage
-from tests.requirement_sets import OUTPUTS, drawn, roles, staged
+from tests.requirement_sets import OUTPUTS, assumed, drawn, roles, rule, staged
 
 SETS = 5_000 if settings.default and settings.default.max_examples > 1_000 else 250
 """With `--hypothesis-profile=full` it takes two minutes."""
 ENDLESS = Budget(float("inf"))
 
 
-def synthesized(rules: Sequence[Formalized]) -> bool:
+def synthesized(rules: Sequence[Formalized], assumptions: Sequence[Formalized] = ()) -> bool:
     """What Spot says of the future-time formulas."""
-    formula = " & ".join(f"({printing.future(rule.ft_infinite)})" for rule in rules)
+    kept, given = (
+        " & ".join(f"({printing.future(rule.ft_infinite)})" for rule in some) or "1"
+        for some in (rules, assumptions)
+    )
+    formula = f"({given}) -> ({kept})"
     return bool(spot.solve_game(spot.ltl_to_game(formula, list(OUTPUTS))))
+
+
+def satisfiable(rules: Sequence[Formalized]) -> bool:
+    formulas = (f"({printing.future(rule.ft_infinite)})" for rule in rules)
+    return not spot.translate(" & ".join(formulas)).is_empty()
 
 
 def assert_lost(setting: Stage) -> None:
@@ -34,6 +43,7 @@ def assert_lost(setting: Stage) -> None:
     play = Counterstrategy(game, game.solution(traps=True)).play()
     alphabet, letters = setting.arena.alphabet, play.letters
     assert broken(setting.rules, alphabet, play), play
+    assert not broken(setting.assumptions, alphabet, play), play
     breaches = first_breaches(setting.rules, known(setting, letters), len(letters))
     earlier = {tick for tick in breaches.values() if tick is not None} - {len(letters) - 1}
     assert not earlier, "a play ends with the first breach"
@@ -64,8 +74,8 @@ def assert_won(setting: Stage, choose: random.Random) -> None:
     ticks = [alphabet.values(letter) for letter in letters]
     values = [{name: bool(value) for name, value in tick.items()} for tick in ticks]
     loop = begins[place]
-    for rule in setting.rules:
-        assert holds_on(rule.ft_infinite, values[:loop], values[loop:]), rule.requirement.wording
+    for each in setting.rules:
+        assert holds_on(each.ft_infinite, values[:loop], values[loop:]), each.requirement.wording
 
 
 @pytest.mark.slow
@@ -81,6 +91,23 @@ def test_the_game_is_spot_s_and_both_players_do_win() -> None:
             assert_lost(setting)
             lost += 1
     assert SETS / 8 < lost < SETS / 2, "both verdicts come often"
+
+
+@pytest.mark.slow
+def test_what_inputs_are_assumed_to_keep_is_an_implication_to_spot() -> None:
+    found = {True: 0, False: 0}
+    for seed in range(SETS // 2):
+        sentences, given = drawn(("given", seed), most=5), [assumed((seed, i)) for i in range(2)]
+        setting = staged(*sentences, assumed=given)
+        assumptions = [rule(f"A{i}", sentence) for i, sentence in enumerate(given, 1)]
+        if not satisfiable(assumptions):
+            continue  # nothing follows from assumptions that no run keeps
+        solution = setting.game(setting.arena.counters, ENDLESS).solution(traps=True)
+        assert solution.is_realizable is synthesized(setting.rules, assumptions), (sentences, given)
+        found[solution.is_realizable] += 1
+        if not solution.is_realizable:
+            assert_lost(setting)
+    assert min(found.values()) > SETS / 50
 
 
 @pytest.mark.parametrize(
