@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import z3
-from z3 import z3util
 
 from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
@@ -17,7 +16,6 @@ from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arithmetic.cells import (
     Cell,
-    Limit,
     Pattern,
     Point,
     cells,
@@ -25,7 +23,9 @@ from fretc.analysis.arithmetic.cells import (
     literals,
     patterns,
     point,
+    reads,
 )
+from fretc.analysis.arithmetic.projection import Limit
 from fretc.analysis.arithmetic.terms import Atoms, Term
 from fretish.bindings.declarations import Role
 
@@ -165,10 +165,8 @@ class _Group:
 
     def _is_of_cell(self, number: int) -> bool:
         """Whether a formula reads inputs alone, in a group of both players."""
-        if not self._choice.is_mixed:
-            return False
-        outputs = {str(each) for each in self._choice.variables[Role.OUTPUT]}
-        return not outputs & _read(self._choice.formulas[number])
+        outputs = self._choice.variables[Role.OUTPUT]
+        return self._choice.is_mixed and not reads(self._choice.formulas[number], outputs)
 
     def _formula(self, number: int) -> Function:
         if number in self._bits:
@@ -323,8 +321,3 @@ def _sorted_out(choice: _Choice) -> tuple[Sequence[Pattern], Sequence[Cell]] | s
 def _bare(formula: Term) -> Term:
     """The same of a formula and of its opposite."""
     return formula.arg(0) if z3.is_not(formula) else formula
-
-
-def _read(formula: Term) -> frozenset[str]:
-    """The variables of a formula."""
-    return frozenset(str(each) for each in z3util.get_vars(formula))

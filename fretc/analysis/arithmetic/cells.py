@@ -2,26 +2,26 @@
 
 A pattern is the truth of each comparison of a group, for some numbers. Where both players choose
 numbers of the group, two inputs are in one cell just where they leave the same patterns to the
-system; the region of inputs of a pattern is computed by quantifier elimination. So nothing is lost
-and nothing is added.
+system; the inputs of a pattern are found by elimination of the outputs. So nothing is lost and
+nothing is added.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
 import z3
+from z3 import z3util
 
 from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arithmetic.projection import Limit, projected
+from fretc.analysis.arithmetic.projection import model as next_model
 from fretc.analysis.arithmetic.terms import Term
 
 MOST = 4_096
 """Patterns, or cells, of a group; one with more is refused."""
-SECONDS = 10.0
-"""Of a processor, for a group."""
 Pattern = tuple[bool, ...]
 """The truth of each formula."""
 Point = dict[str, Fraction]
@@ -34,21 +34,6 @@ class Cell:
 
     region: Term
     patterns: frozenset[Pattern]
-
-
-@dataclass(frozen=True, slots=True)
-class Limit:
-    """Time for a group."""
-
-    start: float = field(default_factory=time.process_time)
-
-    @property
-    def milliseconds(self) -> int:
-        """What is left of it; at its end BeyondError."""
-        left = SECONDS - (time.process_time() - self.start)
-        if left <= 0:
-            raise BeyondError(f"are not sorted out within {SECONDS:g} s of a processor")
-        return max(1, int(1000 * left))
 
 
 def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Pattern, ...]:
@@ -64,7 +49,7 @@ def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Patt
     def follow(known: Pattern, model: z3.ModelRef | None) -> None:
         """Find those that begin so; a model of these spares a question."""
         if model is None:
-            model = _model(solver, limit)
+            model = next_model(solver, limit)
         if model is None:
             return
         if len(known) == len(formulas):
@@ -90,7 +75,7 @@ def cells(
     outputs: Sequence[Term],
     domains: tuple[Term, Term],
     limit: Limit,
-) -> list[Cell]:
+) -> tuple[Cell, ...]:
     """The cells of the inputs of a group.
 
     Args:
@@ -104,21 +89,54 @@ def cells(
         BeyondError: there are too many, or it takes too long.
     """
     of_inputs, of_outputs = domains
-    regions: dict[Term, set[Pattern]] = {}
+    free = [number for number, each in enumerate(formulas) if reads(each, outputs)]
+    given = [number for number in range(len(formulas)) if number not in free]
+    regions: dict[Pattern, Term] = {}
     for pattern in known:
-        region = _projected(z3.And(*literals(formulas, pattern), of_outputs), outputs, limit)
-        regions.setdefault(region, set()).add(pattern)
-    every = list(regions)
-    return [
-        Cell(
-            z3.And(of_inputs, *literals(every, signs)),
-            frozenset().union(*(regions[r] for r, on in zip(every, signs, strict=True) if on)),
+        part = _part(pattern, free)
+        if part not in regions:
+            kept = literals([formulas[number] for number in free], part)
+            regions[part] = projected(z3.And(*kept, of_outputs), outputs, limit)
+    marks = [*(formulas[number] for number in given), *regions.values()]
+    found = []
+    for signs in _seen(marks, of_inputs, limit):
+        inside = {part for part, on in zip(regions, signs[len(given) :], strict=True) if on}
+        left = frozenset(
+            pattern
+            for pattern in known
+            if _part(pattern, free) in inside and _part(pattern, given) == signs[: len(given)]
         )
-        for signs in patterns(every, of_inputs, limit)
-    ]
+        found.append(Cell(z3.And(of_inputs, *literals(marks, signs)), left))
+    return tuple(found)
 
 
-def literals(formulas: Sequence[Term], pattern: Pattern) -> list[Term]:
+def _part(pattern: Pattern, numbers: Sequence[int]) -> Pattern:
+    return tuple(pattern[number] for number in numbers)
+
+
+def _seen(formulas: Sequence[Term], domain: Term, limit: Limit) -> Iterator[Pattern]:
+    """The same as `patterns`, for many formulas that have few."""
+    solver = z3.Solver()
+    solver.add(domain)
+    names = [z3.Bool(f"mark!{number}") for number in range(len(formulas))]
+    solver.add([name == formula for name, formula in zip(names, formulas, strict=True)])
+    count = 0
+    while (found := next_model(solver, limit)) is not None:
+        signs = tuple(z3.is_true(found.eval(name, model_completion=True)) for name in names)
+        yield signs
+        count += 1
+        if count > MOST:
+            raise BeyondError(f"have more than {MOST} cells")
+        solver.add(z3.Not(z3.And(literals(names, signs))))
+
+
+def reads(formula: Term, variables: Sequence[Term]) -> bool:
+    """Whether a formula is about one of the variables."""
+    names = {str(each) for each in z3util.get_vars(formula)}
+    return any(str(each) in names for each in variables)
+
+
+def literals(formulas: Sequence[Term], pattern: Sequence[bool]) -> list[Term]:
     """The formulas, each as true or false as the pattern has it."""
     pairs = zip(formulas, pattern, strict=True)
     return [formula if value else z3.Not(formula) for formula, value in pairs]
@@ -154,39 +172,3 @@ def fixed(point_: Point, variables: Sequence[Term]) -> list[Term]:
         each == (z3.RealVal(str(point_[str(each)])) if each.is_real() else int(point_[str(each)]))
         for each in variables
     ]
-
-
-def _projected(formula: Term, variables: Sequence[Term], limit: Limit) -> Term:
-    """`formula` for some values of the variables, without them."""
-    goal = z3.Goal()
-    goal.add(z3.Exists(list(variables), formula))
-    try:
-        parts = z3.TryFor(z3.Then("simplify", "qe2", "simplify"), limit.milliseconds)(goal)
-    except z3.Z3Exception:
-        raise BeyondError("have regions of inputs that z3 does not find") from None
-    found = z3.simplify(z3.Or([z3.And(list(each)) for each in parts]))
-    if _has_quantifier(found):
-        raise BeyondError("have regions of inputs that z3 does not find")
-    return found
-
-
-def _has_quantifier(formula: Term) -> bool:
-    waiting, seen = [formula], set()
-    while waiting:
-        term = waiting.pop()
-        if term.get_id() in seen:
-            continue
-        seen.add(term.get_id())
-        if z3.is_quantifier(term):
-            return True
-        waiting.extend(term.children())
-    return False
-
-
-def _model(solver: z3.Solver, limit: Limit) -> z3.ModelRef | None:
-    """What keeps the constraints; None: nothing does."""
-    solver.set("timeout", limit.milliseconds)
-    answer = solver.check()
-    if answer == z3.unknown:
-        raise BeyondError("are more than z3 can sort out")
-    return solver.model() if answer == z3.sat else None

@@ -36,7 +36,7 @@ TIMINGS = (
     "at the next timepoint",
     "for 1 tick",
 )
-SETS = 60
+SETS = 30
 
 
 def whole(found: Formalized) -> Formalized:
@@ -59,7 +59,7 @@ def comparison(choose: random.Random) -> str:
 def drawn(seed: int) -> tuple[list[str], dict[str, str]]:
     """Sentences over atoms c0, c1, ..., and the comparison for which each of these stands."""
     choose = random.Random(seed)
-    meant = {f"c{k}": comparison(choose) for k in range(choose.randint(2, 5))}
+    meant = {f"c{k}": comparison(choose) for k in range(choose.randint(2, 3))}
 
     def literal() -> str:
         return choose.choice(["", "!"]) + choose.choice([*meant])
