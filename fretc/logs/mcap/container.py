@@ -9,7 +9,6 @@ Source: MCAP specification, https://mcap.dev/spec
 from __future__ import annotations
 
 import struct
-import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
@@ -20,6 +19,11 @@ import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, Schema, Statistics
+
+try:  # more than ten times as fast as that of `zlib`
+    from zlib_ng.zlib_ng import crc32
+except ImportError:  # an environment that is older than this dependency
+    from zlib import crc32 as crc32
 
 if TYPE_CHECKING:
     from zstandard import ZstdDecompressor
@@ -144,7 +148,7 @@ def unpacked(chunk: Chunk) -> bytes:
         raise BrokenError("a chunk does not decompress") from error
     if len(data) != size:
         raise BrokenError("a chunk has another size than it states")
-    if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
+    if chunk.uncompressed_crc and crc32(data) != chunk.uncompressed_crc:
         raise BrokenError("a chunk has another CRC than it states")
     return data
 
@@ -275,8 +279,8 @@ def _summary(stream: BufferedReader, at: int, footer: bytes) -> Summary:
         return damaged
     stream.seek(start)
     data = stream.read(at - start)
-    covered = zlib.crc32(HEAD.pack(Opcode.FOOTER, len(footer)), zlib.crc32(data))
-    if crc and crc != zlib.crc32(footer[: _FOOTER.size - 4], covered):
+    covered = crc32(HEAD.pack(Opcode.FOOTER, len(footer)), crc32(data))
+    if crc and crc != crc32(footer[: _FOOTER.size - 4], covered):
         return damaged
     result = Summary(start, sound=True, footer=at, after=after)
     try:

@@ -7,12 +7,11 @@ record is read: that shows damaged places and their times.
 from __future__ import annotations
 
 import hashlib
-import zlib
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 from io import BufferedReader
 
-from fretc.logs.mcap.container import BLOCK, HEAD, BrokenError, summary
+from fretc.logs.mcap.container import BLOCK, HEAD, BrokenError, crc32, summary
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.index import Index, indexed
 from fretc.logs.mcap.messages import Sink
@@ -122,6 +121,6 @@ def _crc32(stream: BufferedReader, size: int) -> int:
     stream.seek(0)
     crc = 0
     while size > 0 and (block := stream.read(min(size, BLOCK))):
-        crc = zlib.crc32(block, crc)
+        crc = crc32(block, crc)
         size -= len(block)
     return crc

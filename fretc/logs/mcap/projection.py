@@ -10,7 +10,6 @@ Source: MCAP specification, Message Index (op=0x07), Chunk Index (op=0x08).
 
 from __future__ import annotations
 
-import zlib
 from collections import Counter, defaultdict
 from collections.abc import Container
 from dataclasses import dataclass, field
@@ -29,11 +28,12 @@ from fretc.logs.mcap.container import (
     INDEX,
     BrokenError,
     Stream,
+    crc32,
     is_absurd,
 )
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.index import Index, is_known
-from fretc.logs.mcap.messages import Messages, Sink
+from fretc.logs.mcap.messages import FileTimes, Messages, Sink, record_heads
 from fretc.logs.mcap.payloads import Places
 from fretc.logs.signals.integrity import Checked
 
@@ -139,7 +139,7 @@ class Projection:
                 raise BrokenError("a message is cut off")
             needed = end
         if whole and crc:
-            if zlib.crc32(self._arena.target(needed)) != crc:
+            if crc32(self._arena.target(needed)) != crc:
                 raise BrokenError("a chunk has another CRC than it states")
             self._crc_checked += 1
         self._without_crc += not crc
@@ -322,34 +322,47 @@ class Projection:
         batch = self._batches[id]
         entries = np.concatenate(batch.entries)
         counts, *of_chunks = np.array(batch.limits, np.uint64).T
-        bases, limits, first, last = (
-            np.repeat(some, counts.astype(np.int64)) for some in of_chunks
-        )
+        bases, limits = (np.repeat(some, counts.astype(np.int64)) for some in of_chunks[:2])
         times, places = entries[::2], (entries[1::2] + bases).astype(np.int64)
+        if not _in_time(times, counts, *of_chunks[2:]):
+            raise BrokenError("the index of a chunk names other messages than are in it")
         if (places[1:] < places[:-1]).any():  # some writers sort the index by time
             order = np.argsort(places)
-            places, times = places[order], times[order]
-            limits, first, last = limits[order], first[order], last[order]
+            places, times, limits = places[order], times[order], limits[order]
         data = self._arena.data
-        lengths = np.ndarray((len(data) - 8,), "<u8", data.data, 1, (1,))[places]
-        contents = places + HEAD.size
+        heads = record_heads(data, places)
+        lengths, contents = heads["length"].astype(np.uint64), places + HEAD.size
         if (
-            (data[places] != Opcode.MESSAGE).any()
+            (heads["opcode"] != Opcode.MESSAGE).any()
             or (places[1:] == places[:-1]).any()
-            or (lengths > len(data)).any()
+            or lengths.max() > len(data)
             or (contents.astype(np.uint64) + lengths > limits).any()
-            or (lengths < Messages.HEAD).any()
+            or lengths.min() < Messages.HEAD
         ):
             raise BrokenError("the index of a chunk names what is no message")
-        messages = Messages.at(data, contents, contents + lengths.astype(np.int64))
-        if (
-            (messages.channels != id).any()
-            or (messages.logs != times).any()
-            or ((times < first) | (times > last) | (times >= LATEST)).any()
-        ):
+        messages = Messages.behind(heads, data, contents, contents + lengths.astype(np.int64))
+        if (messages.channels != id).any() or (messages.logs != times).any():
             raise BrokenError("the index of a chunk names other messages than are in it")
         self._counts[id] += len(messages)
         return messages
+
+
+def _in_time(times: FileTimes, counts: Entries, first: Entries, last: Entries) -> bool:
+    """Whether the messages of each chunk are within the times that it states, and before `LATEST`.
+
+    Args:
+        times: of all messages, chunk by chunk.
+        counts: how many are in each chunk: some.
+        first: time that each chunk states.
+        last: another one.
+    """
+    begins = (np.cumsum(counts) - counts).astype(np.intp)
+    latest = np.maximum.reduceat(times, begins)
+    return bool(
+        (np.minimum.reduceat(times, begins) >= first).all()
+        and (latest <= last).all()
+        and (latest < LATEST).all()
+    )
 
 
 def _share(chunk: ChunkIndex, size: int) -> int:

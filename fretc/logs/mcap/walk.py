@@ -7,7 +7,6 @@ place. Times are nanoseconds, log times.
 from __future__ import annotations
 
 import struct
-import zlib
 from bisect import bisect_right
 from collections import Counter
 from collections.abc import Callable, Collection
@@ -30,6 +29,7 @@ from fretc.logs.mcap.container import (
     PADDING,
     BrokenError,
     Stream,
+    crc32,
     frames,
     no_summary,
     parse,
@@ -195,7 +195,7 @@ class Walk:
     def _take(self, length: int) -> bytes:
         data = self._stream.read(length)
         if self._crc is not None:
-            self._crc = zlib.crc32(data, self._crc)
+            self._crc = crc32(data, self._crc)
         return data
 
     def _skip(self, length: int) -> None:

@@ -75,8 +75,9 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     if known is not None:
         return known[1]
     steps = _steps(proposition.expression, history_of(signals, recording))
-    in_time = steps.times <= max(recording.end_ns, recording.start_ns)
-    steps = Steps(steps.times[in_time], steps.states[in_time])
+    last = max(recording.end_ns, recording.start_ns)
+    count = int(np.searchsorted(steps.times, last, "right"))
+    steps = Steps(steps.times[:count], steps.states[:count])
     if len(steps.times) <= _KEPT:
         recording.derived[key] = proposition, steps  # what is kept keeps its identity
     return steps
@@ -198,8 +199,8 @@ def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
     return history
 
 
-_KEPT = 2**14
-"""Events: of so many it costs more to compute them again than to read them again."""
+_KEPT = 2**17
+"""Events: what would take more memory than this is computed again."""
 
 
 def _read(signals: Mapping[str, Signal]) -> tuple[object, ...]:
@@ -258,7 +259,7 @@ def _events(sources: Sequence[Times]) -> tuple[Times, list[NDArray[np.intp]]]:
     """
     times = np.concatenate(sources)
     ranks = np.concatenate([_ranks(source) for source in sources])
-    order = np.lexsort((ranks, times))
+    order = np.lexsort((ranks, times)) if ranks.any() else np.argsort(times, kind="stable")
     times, ranks = times[order], ranks[order]
     new = np.ones(len(times), bool)
     new[1:] = (times[1:] != times[:-1]) | (ranks[1:] != ranks[:-1])
@@ -269,8 +270,12 @@ def _events(sources: Sequence[Times]) -> tuple[Times, list[NDArray[np.intp]]]:
 
 
 def _ranks(times: Times) -> NDArray[np.intp]:
-    """How many equal times stand before each one."""
-    return np.arange(len(times)) - np.searchsorted(times, times, "left")
+    """How many equal times stand before each one; the times are in order."""
+    places = np.arange(len(times))
+    new = times[1:] != times[:-1]
+    if new.all():
+        return places * 0
+    return places - np.maximum.accumulate(places * np.append(True, new))
 
 
 def _values_at(
@@ -284,7 +289,9 @@ def _values_at(
     sample_times, values = samples.times, samples.values
     if not len(sample_times):
         return np.full(len(times), np.nan)
-    last = np.searchsorted(places, np.arange(len(times)), "right") - 1
+    here = np.zeros(len(times), np.intp)
+    here[places] = 1
+    last = np.cumsum(here) - 1
     sample_times, values = sample_times[last], values[last]
     unknown = last < 0
     if max_age is not None:
@@ -313,6 +320,8 @@ def with_persistences(
         part: _persistence(_steps(part.arg, history), part.duration)
         for part in _durations(expression)
     }
+    if not persistences:
+        return history, {}
     history = history.with_times([steps.times for steps in persistences.values()])
     return history, {part: _at(steps, history.times) for part, steps in persistences.items()}
 
