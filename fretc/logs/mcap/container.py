@@ -36,6 +36,8 @@ CHUNK = struct.Struct("<QQQII")
 """The head of a chunk: its times, its size, its CRC, the length of its compression's name."""
 _CHUNK_INDEX = struct.Struct("<QQQQI")
 """The head of a chunk index: times, place, length, and the bytes of its message indexes."""
+_INDEXES, _SIZES = struct.Struct("<QI"), struct.Struct("<QQ")
+"""In it: bytes of the message indexes, and of the name of the compression; then the sizes."""
 _PLACE = struct.Struct("<HQ")
 """A channel, and the byte at which its message index begins."""
 MAGIC = b"\x89MCAP0\r\n"
@@ -316,10 +318,10 @@ def _chunk_index(content: bytes) -> ChunkIndex:
         start, end, at, length, size = _CHUNK_INDEX.unpack_from(content)
         names = _CHUNK_INDEX.size + size
         places = dict(_PLACE.iter_unpack(content[_CHUNK_INDEX.size : names]))
-        index_length, name = struct.unpack_from("<QI", content, names)
-        sizes = names + 12 + name
-        compression = content[names + 12 : sizes].decode()
-        packed, unpacked = struct.unpack_from("<QQ", content, sizes)
+        index_length, name = _INDEXES.unpack_from(content, names)
+        sizes = names + _INDEXES.size + name
+        compression = content[names + _INDEXES.size : sizes].decode()
+        packed, unpacked = _SIZES.unpack_from(content, sizes)
     except (struct.error, UnicodeDecodeError) as error:
         raise BrokenError("a record cannot be read") from error
     return ChunkIndex(

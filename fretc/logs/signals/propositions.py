@@ -6,7 +6,7 @@ the rest decides. Times are nanoseconds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import reduce
@@ -20,6 +20,7 @@ from fretc.logs.signals.samples import Recording, Samples, Times, Values
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.bindings.expressions import ticks_back
+from fretish.reading.memory import remembered
 
 States = NDArray[np.int8]
 """One of `FALSE`, `UNKNOWN`, `TRUE` each: `and` is the least of them, `or` the greatest."""
@@ -291,7 +292,7 @@ def _values_at(
         return np.full(len(times), np.nan)
     here = np.zeros(len(times), np.intp)
     here[places] = 1
-    last = np.cumsum(here) - 1
+    last = here.cumsum() - 1
     sample_times, values = sample_times[last], values[last]
     unknown = last < 0
     if max_age is not None:
@@ -326,13 +327,12 @@ def with_persistences(
     return history, {part: _at(steps, history.times) for part, steps in persistences.items()}
 
 
-def _durations(expression: e.Expression) -> Iterator[e.Persistence]:
+@remembered
+def _durations(expression: e.Expression) -> tuple[e.Persistence, ...]:
     """The outermost `... for 200 ms` in it."""
     if isinstance(expression, e.Persistence):
-        yield expression
-        return
-    for part in e.children(expression):
-        yield from _durations(part)
+        return (expression,)
+    return tuple(found for part in e.children(expression) for found in _durations(part))
 
 
 def _at(steps: Steps, times: Times) -> States:
