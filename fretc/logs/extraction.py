@@ -1,8 +1,8 @@
 """Payloads of one stream → the numbers of its signals, many messages at once.
 
 Fields are read from their places in the payloads. The official decoder, slower and the reference,
-also decodes made-up messages and the first real ones; where it disagrees, it reads the whole
-stream.
+also decodes made-up messages, and of the first real ones some whose numbers are held against those
+that were read of all at once; where it disagrees, it reads the whole stream.
 """
 
 from __future__ import annotations
@@ -31,8 +31,9 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 _CHECKED = 8
 """Layouts of a stream that are compared with the official decoder on three messages."""
-_SHORT = 128
-"""Of fewer messages of a layout one is compared: decoding three would cost more than the rest."""
+_FEW_ROWS, _LARGE = 128, 1024
+"""Of fewer messages of a layout that have more bytes one is compared: decoding three would cost
+more than the rest."""
 _BLOCK = 2**17
 """Numbers of an array field in one block: the passes over them stay within the cache."""
 _FEW = 512
@@ -352,12 +353,13 @@ def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
 
 
 def _telling(rows: Places, payloads: Payloads) -> set[int]:
-    """The rows to compare: the first, the middle and the last; of few only the one that says most.
+    """The rows to compare: the first, the middle and the last.
 
-    Two places that hold the same byte are not told apart.
+    Of few large ones only that of the three which has most different bytes: two places that hold
+    the same byte are not told apart.
     """
     chosen = {int(rows[i]) for i in (0, (len(rows) - 1) // 2, -1)}
-    if len(rows) >= _SHORT:
+    if len(rows) >= _FEW_ROWS or payloads.sizes[rows[0]] <= _LARGE:
         return chosen
     return {max(sorted(chosen), key=lambda row: len(set(bytes(payloads.payload(row)))))}
 
