@@ -10,7 +10,6 @@ import json
 import sys
 from contextlib import suppress
 from functools import cache
-from importlib.resources import files
 from importlib.util import cache_from_source
 from json.encoder import encode_basestring_ascii
 from pathlib import Path
@@ -28,7 +27,7 @@ from fretish.diagnostics import signs
 
 def template_root() -> Path:
     """`compiler/templates` in an installed wheel, `templates` beside us in a checkout."""
-    package = Path(str(files("compiler")))
+    package = Path(__file__).parents[1]
     installed = package / "templates"
     return installed if installed.is_dir() else package.parent / "templates"
 
