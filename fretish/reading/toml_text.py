@@ -90,7 +90,8 @@ def _headers(text: str) -> Mapping[tuple[str, ...], _Header]:
     """The first header that has a path or begins with it; the empty path stands for the root."""
     begins = [match.span() for match in _HEADER.finditer(text)]
     ends = [start for start, _ in begins[1:]] + [len(text)]
-    found = {(): _Header((0, 0), (0, begins[0][0] if begins else len(text)))}
+    found: dict[tuple[str, ...], _Header] = {}
+    found[()] = _Header((0, 0), (0, begins[0][0] if begins else len(text)))
     for (_, begin), end in zip(begins, ends, strict=False):
         path: tuple[str, ...] = ()
         part = first = _PART.match(text, begin)
