@@ -6,11 +6,12 @@ log2 of the bound. Sources: `since` by the carry of an addition: Reynolds, in Wa
 Delight, 2013, section 2; windows by doubling: van Herk, Pattern Recognition Letters 13 (1992).
 """
 
+import itertools
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from monitors.kernel.verdicts import Truth, boolean
+from monitors.kernel.verdicts import T, Truth, boolean
 
 LARGE = 1 << 19
 """Ticks from which on a column is a block that the C library treats in another way."""
@@ -64,26 +65,99 @@ def code(value: Truth) -> int:
     return int(boolean(value))
 
 
-def columns_of(rows: Iterable[Sequence[Truth]], count: int) -> tuple[int, tuple[Column, ...]]:
-    """The length and the columns of a table with `count` truth values in each row, one row a tick.
+class Tape:
+    """A column that grows: bits in whole bytes, and the codes of up to seven ticks after them."""
+
+    __slots__ = ("rest", "true", "unknown")
+
+    def __init__(self) -> None:
+        self.true, self.unknown = bytearray(), bytearray()
+        self.rest = b""
+
+    def append(self, codes: bytes) -> None:
+        """Go on with one code a tick."""
+        codes = self.rest + codes
+        size = len(codes) // 8
+        true, unknown = column(codes[: 8 * size])
+        self.true += true.to_bytes(size, "little")
+        self.unknown += unknown.to_bytes(size, "little")
+        self.rest = codes[8 * size :]
+
+    def column(self) -> Column:
+        """All of it."""
+        ticks, last = 8 * len(self.true), column(self.rest)
+        return Column(
+            int.from_bytes(self.true, "little") | last.true << ticks,
+            int.from_bytes(self.unknown, "little") | last.unknown << ticks,
+        )
+
+
+class Piece(NamedTuple):
+    """Some ticks of a trace."""
+
+    ticks: int
+    codes: Sequence[bytes]
+    """Of each proposition, one a tick."""
+
+
+def pieces_of(rows: Iterable[Sequence[Truth]]) -> Iterator[Piece]:
+    """Truth values, one row a tick, in pieces.
 
     Raises:
         TypeError: a value is not True, False or None.
-        ValueError: a row has more or fewer values.
+        ValueError: a row has more or fewer values than others.
     """
-    codes = [bytearray() for _ in range(count)]
+    for some in batches(rows):
+        columns = zip(*some, strict=True)
+        yield Piece(len(some), [bytes(map(code, values)) for values in columns])
+
+
+def columns_of(pieces: Iterable[Piece], count: int) -> tuple[int, tuple[Column, ...]]:
+    """The length and the columns of a trace of `count` propositions.
+
+    Raises:
+        ValueError: a piece has more or fewer of them.
+    """
+    tapes = [Tape() for _ in range(count)]
     ticks = 0
-    for row in rows:
-        ticks += 1
-        for values, value in zip(codes, row, strict=True):
-            values.append(code(value))
-    return ticks, tuple(map(column, codes))
+    for piece in pieces:
+        ticks += piece.ticks
+        for tape, codes in zip(tapes, piece.codes, strict=True):
+            tape.append(codes)
+    return ticks, tuple(tape.column() for tape in tapes)
 
 
 def truths(column: Column, ticks: int) -> list[Truth]:
     """The truth value at each tick."""
-    true, unknown = set(ticks_of(column.true)), set(ticks_of(column.unknown))
-    return [None if tick in unknown else tick in true for tick in range(ticks)]
+    true, unknown = (f"{bits:0{ticks}b}"[::-1][:ticks] for bits in column)
+    if not column.unknown:
+        return [bit == "1" for bit in true]
+    return [None if doubt == "1" else bit == "1" for bit, doubt in zip(true, unknown, strict=True)]
+
+
+def rows_of(columns: Sequence[Column], ticks: int) -> Iterator[tuple[Truth, ...]]:
+    """The truth value of each column, tick by tick."""
+    if not columns:
+        yield from itertools.repeat((), ticks)
+        return
+    for first in range(0, ticks, _STRETCH):
+        few = min(_STRETCH, ticks - first)
+        every = (1 << few) - 1
+        parts = [
+            Column(true >> first & every, unknown >> first & every) for true, unknown in columns
+        ]
+        yield from zip(*(truths(part, few) for part in parts), strict=True)
+
+
+_STRETCH = 1 << 16
+"""Ticks whose truth values are in memory at once."""
+
+
+def batches(rows: Iterable[T]) -> Iterator[list[T]]:
+    """All rows, some thousand at a time."""
+    waiting = iter(rows)
+    while batch := list(itertools.islice(waiting, 4096)):
+        yield batch
 
 
 def ticks_of(column: int) -> Iterator[int]:
