@@ -79,8 +79,10 @@ class Tape:
         codes = self.rest + codes
         size = len(codes) // 8
         true, unknown = column(codes[: 8 * size])
+        if unknown:  # as long as all is known, that takes no memory
+            self.unknown += bytes(len(self.true) - len(self.unknown))
+            self.unknown += unknown.to_bytes(size, "little")
         self.true += true.to_bytes(size, "little")
-        self.unknown += unknown.to_bytes(size, "little")
         self.rest = codes[8 * size :]
 
     def column(self) -> Column:
@@ -140,23 +142,25 @@ def rows_of(columns: Sequence[Column], ticks: int) -> Iterator[tuple[Truth, ...]
     if not columns:
         yield from itertools.repeat((), ticks)
         return
-    for first in range(0, ticks, _STRETCH):
-        few = min(_STRETCH, ticks - first)
-        every = (1 << few) - 1
+    size = (ticks + 7) // 8
+    data = [[bits.to_bytes(size, "little") for bits in column] for column in columns]
+    for first in range(0, size, _STRETCH):
         parts = [
-            Column(true >> first & every, unknown >> first & every) for true, unknown in columns
+            Column(*(int.from_bytes(bits[first : first + _STRETCH], "little") for bits in column))
+            for column in data
         ]
+        few = min(8 * _STRETCH, ticks - 8 * first)
         yield from zip(*(truths(part, few) for part in parts), strict=True)
 
 
-_STRETCH = 1 << 16
-"""Ticks whose truth values are in memory at once."""
+_STRETCH = 64
+"""Bytes of a column whose truth values are in memory at once."""
 
 
 def batches(rows: Iterable[T]) -> Iterator[list[T]]:
-    """All rows, some thousand at a time."""
+    """All rows, some hundred at a time: there may be many values in a row."""
     waiting = iter(rows)
-    while batch := list(itertools.islice(waiting, 4096)):
+    while batch := list(itertools.islice(waiting, 512)):
         yield batch
 
 

@@ -125,7 +125,7 @@ def stepped(
     )
 
 
-_TICKS = 1024
+_TICKS = 512
 """Ticks over which the signals of one rail are gathered, and then those of the other."""
 
 

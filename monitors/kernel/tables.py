@@ -196,8 +196,8 @@ _WHOLE = re.compile(r"\s*-?[0-9]{1,18}\s*")
 
 # Whole pieces of CSV, where they leave no doubt ------------------------------------------------
 
-_CHARACTERS = 1 << 14
-"""Of the text of a piece; it ends with the line that they end in."""
+_CHARACTERS, _MOST_CHARACTERS = 1 << 12, 1 << 22
+"""Of the text of a piece for each column, and at most; it ends with the line that they end in."""
 
 
 class _Block(NamedTuple):
@@ -218,7 +218,8 @@ def _csv_pieces(
     and finds what is wrong, and where.
     """
     tick: int | None = None
-    while part := text.read(_CHARACTERS) + text.readline():
+    size = min(_CHARACTERS * len(header), _MOST_CHARACTERS)
+    while part := text.read(size) + text.readline():
         try:
             block = _block(part, header, names, tick)
         except (csv.Error, KeyError, ValueError):

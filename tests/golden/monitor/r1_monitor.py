@@ -181,8 +181,10 @@ class Tape:
         codes = self.rest + codes
         size = len(codes) // 8
         true, unknown = column(codes[: 8 * size])
+        if unknown:  # as long as all is known, that takes no memory
+            self.unknown += bytes(len(self.true) - len(self.unknown))
+            self.unknown += unknown.to_bytes(size, "little")
         self.true += true.to_bytes(size, "little")
-        self.unknown += unknown.to_bytes(size, "little")
         self.rest = codes[8 * size :]
 
     def column(self) -> Column:
@@ -242,23 +244,25 @@ def rows_of(columns: Sequence[Column], ticks: int) -> Iterator[tuple[Truth, ...]
     if not columns:
         yield from itertools.repeat((), ticks)
         return
-    for first in range(0, ticks, _STRETCH):
-        few = min(_STRETCH, ticks - first)
-        every = (1 << few) - 1
+    size = (ticks + 7) // 8
+    data = [[bits.to_bytes(size, "little") for bits in column] for column in columns]
+    for first in range(0, size, _STRETCH):
         parts = [
-            Column(true >> first & every, unknown >> first & every) for true, unknown in columns
+            Column(*(int.from_bytes(bits[first : first + _STRETCH], "little") for bits in column))
+            for column in data
         ]
+        few = min(8 * _STRETCH, ticks - 8 * first)
         yield from zip(*(truths(part, few) for part in parts), strict=True)
 
 
-_STRETCH = 1 << 16
-"""Ticks whose truth values are in memory at once."""
+_STRETCH = 64
+"""Bytes of a column whose truth values are in memory at once."""
 
 
 def batches(rows: Iterable[T]) -> Iterator[list[T]]:
-    """All rows, some thousand at a time."""
+    """All rows, some hundred at a time: there may be many values in a row."""
     waiting = iter(rows)
-    while batch := list(itertools.islice(waiting, 4096)):
+    while batch := list(itertools.islice(waiting, 512)):
         yield batch
 
 
@@ -772,7 +776,7 @@ def stepped(
     )
 
 
-_TICKS = 1024
+_TICKS = 512
 """Ticks over which the signals of one rail are gathered, and then those of the other."""
 
 
@@ -1072,8 +1076,8 @@ _WHOLE = re.compile(r"\s*-?[0-9]{1,18}\s*")
 
 # Whole pieces of CSV, where they leave no doubt ------------------------------------------------
 
-_CHARACTERS = 1 << 14
-"""Of the text of a piece; it ends with the line that they end in."""
+_CHARACTERS, _MOST_CHARACTERS = 1 << 12, 1 << 22
+"""Of the text of a piece for each column, and at most; it ends with the line that they end in."""
 
 
 class _Block(NamedTuple):
@@ -1094,7 +1098,8 @@ def _csv_pieces(
     and finds what is wrong, and where.
     """
     tick: int | None = None
-    while part := text.read(_CHARACTERS) + text.readline():
+    size = min(_CHARACTERS * len(header), _MOST_CHARACTERS)
+    while part := text.read(size) + text.readline():
         try:
             block = _block(part, header, names, tick)
         except (csv.Error, KeyError, ValueError):

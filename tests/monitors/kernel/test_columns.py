@@ -154,7 +154,7 @@ def test_a_tape_is_the_column_of_all_its_parts(parts: list[list[int]]) -> None:
 @given(st.lists(st.tuples(*(st.sampled_from([True, False, None]),) * 2), max_size=40))
 def test_rows_come_out_of_columns_in_stretches(rows: list[tuple[Truth, Truth]]) -> None:
     ticks, made = c.columns_of(c.pieces_of(rows), 2)
-    for stretch in (1, 7, 8, 64):
+    for stretch in (1, 2, 64):
         with mock.patch.object(c, "_STRETCH", stretch):
             assert list(c.rows_of(made, ticks)) == rows
 
