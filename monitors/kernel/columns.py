@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from monitors.kernel.verdicts import T, Truth, boolean
+from monitors.kernel.verdicts import Truth, boolean
 
 LARGE = 1 << 19
 """Ticks from which on a column is a block that the C library treats in another way."""
@@ -109,9 +109,14 @@ def pieces_of(rows: Iterable[Sequence[Truth]]) -> Iterator[Piece]:
         TypeError: a value is not True, False or None.
         ValueError: a row has more or fewer values than others.
     """
-    for some in batches(rows):
+    waiting = iter(rows)
+    while some := list(itertools.islice(waiting, _AT_ONCE)):
         columns = zip(*some, strict=True)
         yield Piece(len(some), [bytes(map(code, values)) for values in columns])
+
+
+_AT_ONCE = 512
+"""Rows of a piece: there may be thousands of values in each."""
 
 
 def columns_of(pieces: Iterable[Piece], count: int) -> tuple[int, tuple[Column, ...]]:
@@ -155,13 +160,6 @@ def rows_of(columns: Sequence[Column], ticks: int) -> Iterator[tuple[Truth, ...]
 
 _STRETCH = 64
 """Bytes of a column whose truth values are in memory at once."""
-
-
-def batches(rows: Iterable[T]) -> Iterator[list[T]]:
-    """All rows, some hundred at a time: there may be many values in a row."""
-    waiting = iter(rows)
-    while batch := list(itertools.islice(waiting, 512)):
-        yield batch
 
 
 def ticks_of(column: int) -> Iterator[int]:
