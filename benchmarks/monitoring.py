@@ -8,6 +8,7 @@ Prints tables of CPU time; no test asserts them. Peers are an extra: pip install
 from __future__ import annotations
 
 import argparse
+import gc
 import time
 import tracemalloc
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -269,6 +270,43 @@ def online() -> None:
     table(f"Single ticks, {STEPS:,} of them", head, rows)
 
 
+def windows() -> None:
+    """What a long window with both bounds costs, against one of 10: a call is two ticks."""
+    forms = {
+        "only ... after": "only in m mode whenever a sw shall after {n} ticks satisfy b",
+        "occurred": "sw shall always satisfy (a | occurred({half}, {n}, b))",
+    }
+    rows = []
+    for name, form in forms.items():
+        few, many = (_of_window(form.format(n=n, half=n // 2), n) for n in (10, 100_000))
+        rows += [
+            (name, what, f"{first:.2f}", f"{second:.2f}", f"{second / first:.1f}")
+            for what, first, second in zip(_CALLS, few, many, strict=True)
+        ]
+    table("Windows with both bounds, us", ("", "", "bound 10", "100 000", "x"), rows)
+
+
+_CALLS = ("run of two rows", "two steps", "first unknown")
+
+
+def _of_window(sentence: str, bound: int) -> tuple[float, ...]:
+    """Microseconds of `_CALLS`, after each proposition was true at every other tick for long."""
+    machine: Any = monitor(rule(sentence))
+    pair = [(value,) * len(machine.PROPOSITIONS) for value in (False, True)]
+    named = [dict.fromkeys(machine.PROPOSITIONS.values(), value) for value in (False, True, None)]
+    machine.run(pair * bound)
+    calls = [lambda: machine.run(pair), lambda: [machine.step(**row) for row in named[:2]]]
+    spent = [repeated(call) * 1e6 for call in calls]
+    state, first = machine.state(), []
+    for _ in range(5):
+        machine.restore(state)
+        gc.collect()  # restoring has made many objects
+        start = time.process_time()
+        machine.step(**named[2])
+        first.append((time.process_time() - start) * 1e6)
+    return (*spent, min(first))
+
+
 def peers_online() -> None:
     """The peers that can be stepped from Python, in microseconds a tick."""
     rows = []
@@ -362,6 +400,7 @@ def main() -> None:
             against_peers(ticks, ours)
     bounds(max(options.ticks))
     online()
+    windows()
     if not options.no_peers:
         peers_online()
     many()

@@ -10,8 +10,7 @@ logic).
 import hashlib
 import itertools
 import json
-from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, ClassVar, NamedTuple, Protocol
 
@@ -73,38 +72,120 @@ class Rail(Protocol):
         """What is remembered, for each requirement."""
 
 
-class Window:
-    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window."""
+class _Run:
+    """Ticks without a gap at which `right` of a window held, and the run after it."""
 
-    __slots__ = ("hi", "lo", "now", "runs")
+    __slots__ = ("end", "next", "start")
+
+    def __init__(self, start: int, end: int) -> None:
+        self.start, self.end = start, end
+        self.next: _Run | None = None
+
+
+class Window:
+    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window.
+
+    Copies share the runs that have ended, so a copy costs the same for any number of them: they are
+    linked from the oldest to the youngest, a window goes no further than its own last one, and what
+    a fork adds branches off. The run that may still grow is `start` and `end`.
+    """
+
+    __slots__ = ("branch", "end", "first", "hi", "last", "lo", "now", "start", "turn")
 
     def __init__(self, lo: int, hi: int) -> None:
         self.lo, self.hi = lo, hi
         self.now = -1
-        self.runs: deque[list[int]] = deque()
+        self._clear()
+
+    def _clear(self) -> None:
+        """No run."""
+        self.start = self.end = _NONE
+        self.first: _Run | None = None
+        self.last: _Run | None = None
+        self.turn: _Run | None = None
+        self.branch: _Run | None = None
 
     def step(self, left: bool, right: bool) -> bool:
         """Whether right held `lo..hi` ticks ago, and left ever since."""
         self.now += 1
+        now = self.now
         if not left:
-            self.runs.clear()
+            self._clear()
         if right:
-            if self.runs and self.runs[-1][1] == self.now - 1:
-                self.runs[-1][1] = self.now
-            else:
-                self.runs.append([self.now, self.now])
-        while self.runs and self.runs[0][1] < self.now - self.hi:
-            self.runs.popleft()
-        return bool(self.runs) and self.runs[0][0] <= self.now - self.lo
+            if self.end != now - 1:
+                if self.end != _NONE:
+                    self._add(_Run(self.start, self.end))
+                self.start = now
+            self.end = now
+        while self.first is not None and self.first.end < now - self.hi:
+            self._drop(self.first)
+        if self.first is not None:
+            return self.first.start <= now - self.lo
+        if self.end < now - self.hi:
+            self.start = self.end = _NONE
+        return 0 <= self.start <= now - self.lo
+
+    def _add(self, run: _Run) -> None:
+        """The run has ended."""
+        if self.last is None:
+            self.first = run
+        elif self.last is self.turn:
+            self.branch = run
+        else:
+            self.last.next = run
+        self.last = run
+
+    def _after(self, run: _Run) -> _Run | None:
+        if run is self.last:
+            return None
+        return self.branch if run is self.turn else run.next
+
+    def _drop(self, oldest: _Run) -> None:
+        self.first = self._after(oldest)
+        if self.first is None:
+            self.last = None
+        if oldest is self.turn:  # it leads to all runs of the other window
+            self.turn = self.branch = None
+
+    def copy(self) -> "Window":
+        """As it is now; only one of both can go on."""
+        other = Window(self.lo, self.hi)
+        for name in self.__slots__:
+            setattr(other, name, getattr(self, name))
+        return other
+
+    def fork(self) -> "Window":
+        """As it is now; both can go on. A fork has none of its own."""
+        assert self.turn is None
+        other = self.copy()
+        other.turn = self.last
+        return other
+
+    def _runs(self) -> Iterator[tuple[int, int]]:
+        """The oldest first."""
+        run = self.first
+        while run is not None:
+            yield run.start, run.end
+            run = self._after(run)
+        if self.end != _NONE:
+            yield self.start, self.end
 
     def state(self) -> tuple[tuple[int, int], ...]:
         """The runs, each as ages (oldest, youngest); ages above `hi` are all one."""
-        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self.runs)
+        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._runs())
 
     def restore(self, state: Sequence[Sequence[int]]) -> None:
         """Go back to a state."""
+        self._clear()
         self.now = self.hi
-        self.runs = deque([self.now - a, self.now - b] for a, b in state)
+        for oldest, youngest in state:
+            if self.end != _NONE:
+                self._add(_Run(self.start, self.end))
+            self.start, self.end = self.now - oldest, self.now - youngest
+
+
+_NONE = -2
+"""No tick, and none before one."""
 
 
 class Standing(NamedTuple):
@@ -197,7 +278,7 @@ class Monitor:
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
-            self.may = _copied(self.must, doubt=True)
+            self.may = _forked(self.must)
 
     def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
         """Step every row, in pieces of some thousand: one rail after the other.
@@ -230,15 +311,15 @@ class Monitor:
                 self.may.advance(block)
             self.must.advance(block)
         else:
-            before = _copied(self.must, doubt=True)
+            before = _forked(self.must)
             if not self.must.advance(block):
                 self.may = before
                 before.advance(block)
 
     def _copies(self) -> tuple[Rail, Rail]:
         """Both rails as they are now."""
-        must = _copied(self.must, doubt=False)
-        return must, must if self.may is self.must else _copied(self.may, doubt=True)
+        must = _copied(self.must)
+        return must, must if self.may is self.must else _copied(self.may)
 
     def _in_order(self, rows: list[Any]) -> list[Row]:
         """Rows by name as rows in the order of `PROPOSITIONS`."""
@@ -304,15 +385,22 @@ def literals_of(
     return found
 
 
-def _copied(rail: Rail, *, doubt: bool) -> Rail:
-    """A rail in the same state, on which an unknown counts as `doubt`."""
+def _copied(rail: Rail) -> Rail:
+    """A rail in the same state; only one of both can go on."""
+    return _with_windows(rail, rail.doubt, Window.copy)
+
+
+def _forked(rail: Rail) -> Rail:
+    """A rail in the same state, on which an unknown counts as true; both can go on."""
+    return _with_windows(rail, True, Window.fork)
+
+
+def _with_windows(rail: Rail, doubt: bool, made: Callable[[Window], Window]) -> Rail:
     copy = type(rail)(doubt=doubt)
     for name in rail.__slots__:
-        there, value = getattr(copy, name), getattr(rail, name)
-        if isinstance(there, Window):
-            there.restore(value.state())
-        elif name != "doubt":
-            setattr(copy, name, value)
+        if name != "doubt":
+            value = getattr(rail, name)
+            setattr(copy, name, made(value) if isinstance(value, Window) else value)
     return copy
 
 

@@ -10,10 +10,11 @@ import pytest
 
 from compiler.targets.python import monitor as target
 from fretish.clock import Clock
-from monitors.kernel import Monitor
+from monitors.kernel import Monitor, evaluate
+from monitors.kernel.outcomes import stepped as run_by_steps
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
-from tests.monitoring import emitted, monitor, rule, step
+from tests.monitoring import emitted, monitor, packed, rule, step
 
 WINDOW = "sw shall always satisfy (p | occurred(2, 5, q))"
 SENTENCES = (
@@ -52,6 +53,65 @@ def test_a_run_is_its_steps_however_it_is_cut(sentence: str, unknown: float) -> 
     for first in range(0, len(table), 1_700):
         pieces.advance(iter(table[first : first + 1_700]))
     assert outputs(whole) == outputs(single) == outputs(pieces)
+
+
+LONG = (
+    "only in m mode whenever p sw shall after 400 ticks satisfy q",
+    "sw shall always satisfy (p | occurred(300, 1000, q))",
+    "whenever occurred(2, 700, p) sw shall within 5 ticks satisfy persisted(3, 500, q)",
+)
+
+
+def of_runs(machine: Monitor, count: int, choose: random.Random) -> Rows:
+    """Values that stay for a while, and some unknown ones."""
+    columns = []
+    for _ in machine.PROPOSITIONS:
+        most, unknown = choose.choice((1, 3, 400)), choose.choice((0.0, 0.02))
+        column: list[Truth] = []
+        while len(column) < count:
+            value = None if choose.random() < unknown else bool(choose.randrange(2))
+            column += [value] * (1 if value is None else choose.randint(1, most))
+        columns.append(column[:count])
+    return list(zip(*columns, strict=True))
+
+
+def in_pieces(machine: Monitor, table: Rows, choose: random.Random) -> None:
+    """In single steps and batches, with batches that fail, and from saved states."""
+    bad: Any = (3,) * len(machine.PROPOSITIONS)
+    place = 0
+    while place < len(table):
+        rows = table[place : place + choose.choice((1, 2, 3, 50, 70, 300))]
+        match choose.randrange(4):
+            case 0:
+                single: Any = machine
+                for row in rows:
+                    single.step(**dict(zip(machine.PROPOSITIONS.values(), row, strict=True)))
+            case 1:
+                with pytest.raises(TypeError):
+                    machine.advance([*rows, bad])
+                continue
+            case 2:
+                machine.restore(json.loads(json.dumps(machine.state())))
+                machine.advance(rows)
+            case _:
+                machine.advance(rows)
+        place += len(rows)
+
+
+@pytest.mark.parametrize("sentence", [*SENTENCES, *LONG])
+@pytest.mark.parametrize("seed", range(4))
+def test_steps_batches_mistakes_saved_states_and_columns_tell_the_same(
+    sentence: str, seed: int
+) -> None:
+    choose = random.Random(seed)
+    whole, pieces = monitor(sentence), monitor(sentence)
+    table = of_runs(whole, choose.randint(1, 2_500), choose)
+    whole.advance(table)
+    in_pieces(pieces, table, choose)
+    assert outputs(whole) == outputs(pieces)
+    ticks, columns = packed(dict(zip(whole.PROPOSITIONS, zip(*table, strict=True), strict=True)))
+    assert evaluate(whole, columns, ticks) == run_by_steps(whole, columns, ticks)
+    assert outputs(whole) == outputs(pieces)
 
 
 def test_rows_may_be_given_by_name() -> None:
