@@ -307,6 +307,26 @@ def _of_window(sentence: str, bound: int) -> tuple[float, ...]:
     return (*spent, min(first))
 
 
+def wide() -> None:
+    """What each of many propositions costs, by name and by position, against one of ten."""
+    rows = []
+    for count in (10, 100, 2_000):
+        names = [f"p{i}" for i in range(count)]
+        machine: Any = monitor(rule(f"sw shall always satisfy {' | '.join(names)}"))
+        in_order = machine.rows_of(names[::-1])
+        named, row = dict.fromkeys(machine.PROPOSITIONS.values(), True), (True,) * count
+        calls = (
+            lambda m=machine, x=named: m.step(**x),
+            lambda m=machine, f=in_order, x=row: m.run(f([x])),
+            lambda m=machine, f=in_order, x=row: m.run(f([x] * 100)),
+        )
+        spent = [repeated(call) * 1e9 / count for call in calls]
+        spent[-1] /= 100
+        rows.append((f"{count:,}", *(f"{each:.0f}" for each in spent)))
+    head = ("propositions", "step", "run of a row in another order", "of a hundred")
+    table("Many propositions, ns each", head, rows)
+
+
 def peers_online() -> None:
     """The peers that can be stepped from Python, in microseconds a tick."""
     rows = []
@@ -401,6 +421,7 @@ def main() -> None:
     bounds(max(options.ticks))
     online()
     windows()
+    wide()
     if not options.no_peers:
         peers_online()
     many()

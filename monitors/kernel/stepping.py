@@ -223,6 +223,7 @@ class Monitor:
     every tick, and a keyword for each of `LITERALS`."""
 
     def __init__(self) -> None:
+        self._values = _picked(tuple(self.PROPOSITIONS.values()))
         self.reset()
 
     def reset(self) -> None:
@@ -325,10 +326,34 @@ class Monitor:
         """Rows by name as rows in the order of `PROPOSITIONS`."""
         if not isinstance(rows[0], Mapping):
             return rows
-        names = tuple(self.PROPOSITIONS)
-        if len(names) < 2:
-            return [tuple(row[name] for name in names) for row in rows]
-        return list(map(itemgetter(*names), rows))
+        return list(map(_picked(tuple(self.PROPOSITIONS)), rows))
+
+    def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Row]], Iterable[Row]]:
+        """What makes rows for `run` of rows whose values are in the order of `names`.
+
+        Raises:
+            ValueError: the names are not those of `PROPOSITIONS`, each once.
+        """
+        return rows_in_order(tuple(names), tuple(self.PROPOSITIONS))
+
+    def _row(self, arguments: Mapping[str, Truth]) -> Row:
+        """The arguments of a step that has too many parameters for Python to look for each.
+
+        Raises:
+            TypeError: as Python does, where one is missing or is no parameter.
+        """
+        parameters = tuple(self.PROPOSITIONS.values())
+        if len(arguments) == len(parameters):
+            try:
+                return self._values(arguments)
+            except KeyError:
+                pass
+        where = f"{type(self).__name__}.step()"
+        for name in arguments:
+            if name not in parameters:
+                raise TypeError(f"{where} got an unexpected keyword argument {name!r}")
+        missing = ", ".join(repr(name) for name in parameters if name not in arguments)
+        raise TypeError(f"{where} missing required keyword-only arguments: {missing}")
 
     def verdicts(self) -> tuple[Verdict, ...]:
         """Of each requirement, whatever follows: satisfied or violated; or pending."""
@@ -341,6 +366,41 @@ class Monitor:
             else PENDING
             for must, may, certain in readings
         )
+
+
+def rows_in_order(
+    names: tuple[str, ...], order: tuple[str, ...]
+) -> Callable[[Iterable[Sequence[Any]]], Iterable[Sequence[Any]]]:
+    """What puts rows of values in the order of `names` into another order.
+
+    Raises:
+        ValueError: the names are not the same, each once.
+    """
+    places = {name: place for place, name in enumerate(names)}
+    missing, unknown = {*order} - places.keys(), places.keys() - {*order}
+    for wrong, why in ((missing, "is missing"), (unknown, "is no name of this monitor")):
+        if wrong:
+            raise ValueError(f"`{min(wrong)}` {why}")
+    if len(places) < len(names):
+        raise ValueError("a name comes more than once")
+    if names == order:
+        return lambda rows: rows
+    pick = _picked([places[name] for name in order])
+
+    def in_order(rows: Iterable[Sequence[Any]]) -> Iterator[Sequence[Any]]:
+        for row in rows:
+            if len(row) != len(names):
+                raise ValueError(f"a row has {len(row)} values for {len(names)} names")
+            yield pick(row)
+
+    return in_order
+
+
+def _picked(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
+    """What gives the values under all keys."""
+    if len(keys) < 2:
+        return lambda values: tuple(values[key] for key in keys)
+    return itemgetter(*keys)
 
 
 def _standing(

@@ -147,6 +147,7 @@ def text(*rules: Formalized) -> str:
         tick=str(rules[0].clock) if rules[0].clock else "not declared",
         inputs=inputs,
         row=_tuple([p.name for p in inputs]),
+        by_mapping=len(inputs) > MOST_PARAMETERS,
         program=code,
         front=lines,
         digest=_digest(code, rules, lines),
@@ -289,6 +290,9 @@ def prefixes_of(ids: Iterable[str]) -> dict[str, str]:
 
 
 _MOST_LEVELS = 60
+MOST_PARAMETERS = 60
+"""Python compares each argument of a call with one parameter after the other: a step with more
+parameters takes them as a mapping."""
 _SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
 _RESERVED = frozenset(
     "self every known doubt tick rows row must may first kept_first boolean Signals Marks previous "

@@ -12,7 +12,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping, Sequence
 
-from compiler.targets.python.monitor import parameters_of, prefixes_of
+from compiler.targets.python.monitor import MOST_PARAMETERS, parameters_of, prefixes_of
 from compiler.targets.python.program import MARKS, SIGNALS, locals_of, negation
 from fretc.verification.monitor.column_layout import check_columns
 from fretc.verification.monitor.front_layout import check_front, declared_variables
@@ -226,8 +226,10 @@ def _check_interface(
     rows = "self, rows: Iterable[Row | Mapping[str, Truth]]"
     run_body = f"self.advance(rows)\nreturn self.verdicts(){verdicts}"
     demand(reads(body_of(run, "run", rows), run_body), run)
-    parameters = ", ".join(f"{name}: Truth" for name in inputs)
-    stepped = body_of(step, "step", f"self, *, {parameters}" if inputs else "self")
+    parameters = "self, *, " + ", ".join(f"{name}: Truth" for name in inputs)
+    if len(inputs) > MOST_PARAMETERS:
+        parameters = "self, **propositions: Truth"
+    stepped = body_of(step, "step", parameters if inputs else "self")
     _check_step(stepped, inputs, prefixes)
 
 
@@ -288,6 +290,8 @@ def _check_step(body: Sequence[ast.stmt], inputs: Sequence[str], prefixes: Seque
     """Check that both rails take the row, and that the verdicts follow from their marks."""
     fork = " or ".join(f"{name} is None" for name in inputs)
     text = f"row = ({', '.join(inputs)}{',' * (len(inputs) == 1)})\n"
+    if len(inputs) > MOST_PARAMETERS:
+        fork, text = "None in row", "row = self._row(propositions)\n"
     text += f"if {fork}:\n    self._fork()\n" if inputs else ""
     text += "must, may = self.must, self.may\nmust.advance((row,))\n"
     text += "if may is not must:\n    may.advance((row,))"

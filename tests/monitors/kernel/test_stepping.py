@@ -3,6 +3,7 @@
 import json
 import random
 from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -112,6 +113,84 @@ def test_steps_batches_mistakes_saved_states_and_columns_tell_the_same(
     ticks, columns = packed(dict(zip(whole.PROPOSITIONS, zip(*table, strict=True), strict=True)))
     assert evaluate(whole, columns, ticks) == run_by_steps(whole, columns, ticks)
     assert outputs(whole) == outputs(pieces)
+
+
+# Many propositions, and rows in another order ---------------------------------------------------
+
+
+@cache
+def wide(count: int) -> str:
+    """A monitor of so many propositions."""
+    return emitted(
+        f'sw shall always satisfy {" | ".join(f"p{i}" for i in range(count - 1))} | "odd name"'
+    )
+
+
+WIDE = (target.MOST_PARAMETERS, target.MOST_PARAMETERS + 1)
+
+
+@pytest.mark.parametrize("count", WIDE)
+def test_a_step_of_many_propositions_is_that_of_few(count: int) -> None:
+    single, whole = load("m", wide(count)), load("m", wide(count))
+    table = [(False, True, None) * count for _ in range(3)]
+    table = [row[i : i + count] for i, row in enumerate(table)] + [(False,) * count]
+    step_of: Any = single
+    for row in table:
+        step_of.step(**dict(zip(single.PROPOSITIONS.values(), row, strict=True)))
+    whole.advance(table)
+    assert outputs(single) == outputs(whole)
+    assert whole.standings()[0].first_violation == 3
+
+
+@pytest.mark.parametrize("count", [2, *WIDE])
+def test_a_step_names_what_is_missing_or_no_parameter_as_python_does(count: int) -> None:
+    machine: Any = load("m", wide(count))
+    values: dict[str, Any] = dict.fromkeys(machine.PROPOSITIONS.values(), True)
+    name = list(values)[-1]
+    less = {each: True for each in values if each != name}
+    with pytest.raises(TypeError, match=rf"R1Monitor.step\(\) missing .*: '{name}'"):
+        machine.step(**less)
+    for arguments in (values, less):
+        with pytest.raises(TypeError, match="unexpected keyword argument 'other'"):
+            machine.step(**arguments, other=True)
+    with pytest.raises(TypeError, match="is True, False or None"):
+        machine.step(**{**values, name: 1})
+    assert machine.tick == -1
+
+
+@pytest.mark.parametrize("sentence", ["whenever p sw shall satisfy q", "sw shall satisfy p"])
+def test_rows_in_another_order_are_put_into_that_of_the_monitor(sentence: str) -> None:
+    first, second = monitor(sentence), monitor(sentence)
+    table = rows(first, 50, 2)
+    first.advance(table)
+    names = tuple(second.PROPOSITIONS)
+    second.advance(second.rows_of(names[::-1])(row[::-1] for row in table))
+    assert outputs(first) == outputs(second)
+    for wrong in ((True,) * (len(names) + 1), ()):
+        with pytest.raises(ValueError, match="values"):
+            second.advance(second.rows_of(names[::-1])([wrong]))
+    assert outputs(first) == outputs(second)
+
+
+@pytest.mark.parametrize(
+    ("names", "why"),
+    [("p", "`q` is missing"), ("pqs", "`s` is no name"), ("pqq", "more than once"), ("", "`p`")],
+)
+def test_names_that_are_not_the_propositions_are_refused(names: str, why: str) -> None:
+    with pytest.raises(ValueError, match=why):
+        monitor("whenever p sw shall satisfy q").rows_of(tuple(names))
+
+
+def test_rows_of_variables_may_come_in_another_order() -> None:
+    sentence = "whenever speed > 2 sw shall satisfy stopped"
+    first, second = monitor(sentence), monitor(sentence)
+    one, other = (3.0, None), (None, 3.0)
+    taken: Any = first
+    verdict = taken.run([one])
+    taken = second
+    assert tuple(taken.VARIABLES) == ("speed", "stopped")
+    assert taken.run(second.rows_of(("stopped", "speed"))([other])) == verdict
+    assert outputs(first) == outputs(second)
 
 
 def test_rows_may_be_given_by_name() -> None:
