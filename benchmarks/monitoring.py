@@ -307,6 +307,22 @@ def _of_window(sentence: str, bound: int) -> tuple[float, ...]:
     return (*spent, min(first))
 
 
+def after_unknown() -> None:
+    """What steps cost once a value was unknown, against those of a monitor that knows all."""
+    rows = []
+    for name, made in workload_rules().items():
+        machine, other = monitor(made), monitor(made)
+        names = tuple(machine.PROPOSITIONS.values())
+        named = [{n: (i + k) % 3 > 0 for k, n in enumerate(names)} for i in range(STEPS // 10)]
+        other.step(**dict.fromkeys(names))  # type: ignore[attr-defined]
+        stepping(other.step, named)  # type: ignore[attr-defined]
+        spent = [stepping(each.step, named) for each in (machine, other)]  # type: ignore[attr-defined]
+        met = "yes" if other.may is other.must else "no"
+        rows.append((name, *(f"{each:.3f}" for each in spent), f"{spent[1] / spent[0]:.2f}", met))
+    head = ("", "step us", "after an unknown", "x", "one rail")
+    table("After an unknown value", head, rows)
+
+
 def wide() -> None:
     """What each of many propositions costs, by name and by position, against one of ten."""
     rows = []
@@ -422,6 +438,7 @@ def main() -> None:
     online()
     windows()
     wide()
+    after_unknown()
     if not options.no_peers:
         peers_online()
     many()

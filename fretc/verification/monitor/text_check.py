@@ -294,7 +294,7 @@ def _check_step(body: Sequence[ast.stmt], inputs: Sequence[str], prefixes: Seque
         fork, text = "None in row", "row = self._row(propositions)\n"
     text += f"if {fork}:\n    self._fork()\n" if inputs else ""
     text += "must, may = self.must, self.may\nmust.advance((row,))\n"
-    text += "if may is not must:\n    may.advance((row,))"
+    text += "if may is not must:\n    may.advance((row,))\n    self._meet()"
     head = len(ast.parse(text).body)
     demand(reads(body[:head], text), body[0])
     if len(prefixes) == 1:

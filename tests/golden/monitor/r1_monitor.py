@@ -441,6 +441,26 @@ class Window:
         """The runs, each as ages (oldest, youngest); ages above `hi` are all one."""
         return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._runs())
 
+    def is_like(self, other: "Window") -> bool:
+        """Both have one state; their clocks agree. What a fork shares is not looked at again."""
+        mine, theirs, shared = self.first, other.first, other.turn
+        youngest = (self.start, self.end), (other.start, other.end)
+        if mine is None or theirs is None:
+            return mine is theirs and self._same(*youngest)
+        if mine is theirs and shared is not None:
+            mine, theirs = shared, shared
+        elif not self._same((mine.start, mine.end), (theirs.start, theirs.end)):
+            return False
+        mine, theirs = self._after(mine), other._after(theirs)
+        while mine and theirs and (mine.start, mine.end) == (theirs.start, theirs.end):
+            mine, theirs = self._after(mine), other._after(theirs)
+        return mine is theirs is None and youngest[0] == youngest[1]
+
+    def _same(self, one: tuple[int, int], other: tuple[int, int]) -> bool:
+        """Both are one run, as far as the window reaches."""
+        reach = self.now - self.hi
+        return one[1] == other[1] and max(one[0], reach) == max(other[0], reach)
+
     def restore(self, state: Sequence[Sequence[int]]) -> None:
         """Go back to a state."""
         self._clear()
@@ -470,8 +490,9 @@ class Standing(NamedTuple):
     """The last tick at which that can be decided; None where there is no deadline."""
 
 
-_PIECE, _FEW = 4096, 64
-"""Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy."""
+_PIECE, _FEW, _SOON = 4096, 64, 64
+"""Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy;
+ticks after which two rails are compared first."""
 
 
 class Monitor:
@@ -507,7 +528,7 @@ class Monitor:
         content = {
             "program": self.PROGRAM,
             "must": _saved(self.must),
-            "may": _saved(self.may) if self.may is not self.must else None,
+            "may": None if self._is_one() else _saved(self.may),
         }
         return {**content, "sha256": _digest(content)}
 
@@ -527,7 +548,9 @@ class Monitor:
         _restored(must, content["must"])
         if content["may"] is not None:
             _restored(may, content["may"])
-        self.must, self.may = must, must if content["may"] is None else may
+        self.must = self.may = must
+        if content["may"] is not None:
+            self._part(may)
 
     def standings(self) -> tuple[Standing, ...]:
         """The standing of each requirement."""
@@ -546,7 +569,34 @@ class Monitor:
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
-            self.may = _forked(self.must)
+            self._part(_forked(self.must))
+
+    def _part(self, may: Rail) -> None:
+        self.may = may
+        self._apart = self.tick
+        self._due = self.tick + _SOON
+
+    def _meet(self) -> None:
+        """One rail again if both remember the same; looked at ever less often: it may take long."""
+        tick = self.tick
+        if tick < self._due:
+            return
+        if self._is_one():
+            self.may = self.must
+        self._due = tick + max(_SOON, tick - self._apart)
+
+    def _is_one(self) -> bool:
+        """Both rails remember the same; windows, which may be long, are looked at last."""
+        if self.may is self.must:
+            return True
+        windows = []
+        for name in self.RAIL.__slots__:
+            must, may = getattr(self.must, name), getattr(self.may, name)
+            if isinstance(must, Window):
+                windows.append((must, may))
+            elif must != may and name != "doubt":
+                return False
+        return all(must.is_like(may) for must, may in windows)
 
     def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
         """Step every row, in pieces of some thousand: one rail after the other.
@@ -573,6 +623,7 @@ class Monitor:
         if self.may is not self.must:
             self.must.advance(block)
             self.may.advance(block)
+            self._meet()
         elif len(block) < _FEW:
             if any(None in row for row in block):
                 self._fork()
@@ -581,7 +632,7 @@ class Monitor:
         else:
             before = _forked(self.must)
             if not self.must.advance(block):
-                self.may = before
+                self._part(before)
                 before.advance(block)
 
     def _copies(self) -> tuple[Rail, Rail]:
@@ -1383,6 +1434,7 @@ class R1Monitor(Monitor):
         must.advance((row,))
         if may is not must:
             may.advance((row,))
+            self._meet()
         if must.r1_broken >= 0:
             return VIOLATED
         return PENDING

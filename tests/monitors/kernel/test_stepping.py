@@ -4,6 +4,7 @@ import json
 import random
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,7 @@ def rows(machine: Monitor, count: int, seed: int, unknown: float = 0.1) -> Rows:
 
 
 def outputs(machine: Monitor) -> tuple[object, ...]:
-    return machine.tick, machine.verdicts(), machine.standings(), step(machine)
+    return machine.tick, machine.verdicts(), machine.standings(), step(machine), machine.state()
 
 
 @pytest.mark.slow
@@ -251,6 +252,80 @@ def test_whatever_stops_a_run_both_rails_stay_together() -> None:
     with pytest.raises(KeyboardInterrupt):
         machine.advance(source())
     assert machine.must.tick == machine.may.tick == 4_095
+
+
+# One rail again -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sentence", [*SENTENCES, *LONG])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_monitor_whose_rails_meet_again_tells_what_one_tells_whose_rails_do_not(
+    sentence: str, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    choose = random.Random(seed)
+    one, other = monitor(sentence), monitor(sentence)
+    monkeypatch.setattr(other, "_meet", lambda: None)
+    single: Any = one
+    for tick, row in enumerate(of_runs(one, 2_000, choose)):
+        single.step(**dict(zip(one.PROPOSITIONS.values(), row, strict=True)))
+        other.advance([row])
+        if tick % 97 == 0:
+            assert outputs(one) == outputs(other)
+
+
+@pytest.mark.parametrize("batch", [1, 7, 5_000])
+@pytest.mark.parametrize(
+    ("sentence", "last"),
+    [
+        ("whenever p sw shall within 3 ticks satisfy q", (True, True)),
+        ("sw shall always satisfy (p | occurred(2, 5, q))", (True, False)),
+        ("whenever p sw shall eventually satisfy q", (True, True)),
+    ],
+)
+def test_rails_meet_again_soon_after_all_is_known(
+    sentence: str, last: tuple[bool, bool], batch: int
+) -> None:
+    machine = monitor(sentence)
+    machine.advance([(True, None)])
+    assert machine.may is not machine.must
+    for _ in range(400 // batch + 2):
+        machine.advance([last] * batch)
+    assert machine.may is machine.must
+
+
+def test_rails_stay_two_where_a_violation_is_possible() -> None:
+    machine = monitor("whenever p sw shall immediately satisfy q")
+    machine.advance([(True, None), *[(False, True)] * 9_000])
+    assert machine.may is not machine.must
+    assert machine.standings()[0].finite is None
+
+
+@pytest.mark.parametrize("after", [100, 500])
+def test_rails_stay_two_as_long_as_their_windows_differ(after: int) -> None:
+    """All else agrees; that `q` may have held shows where `p` fails 300 to 1 000 ticks later."""
+    machine = monitor("sw shall always satisfy (p | occurred(300, 1000, q))")
+    machine.advance([(True, None)])
+    for _ in range(after):
+        machine.advance([(True, False)])
+    machine.advance([(False, False)])
+    assert machine.standings()[0].finite is (None if after == 500 else False)
+    machine.reset()
+    machine.advance([(True, None)])
+    for _ in range(2_100):
+        machine.advance([(True, False)])
+    assert machine.may is machine.must
+
+
+def test_rails_part_no_more_often_than_every_64_ticks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A copy of a rail costs more than some steps of a second one."""
+    machine: Any = monitor("whenever p sw shall within 3 ticks satisfy q")
+    parted: list[int] = []
+    part = machine._part
+    monkeypatch.setattr(machine, "_part", lambda may: (parted.append(machine.tick), part(may)))
+    for tick in range(1_000):
+        machine.step(p=False, q=None if tick % 3 == 0 else True)
+    assert all(later - sooner > 63 for sooner, later in pairwise(parted))
+    assert parted
 
 
 # Checkpoints ----------------------------------------------------------------------------------
