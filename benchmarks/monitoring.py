@@ -29,6 +29,7 @@ from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors.kernel import Column, Monitor, evaluate
 from monitors.kernel.columns import once, reuse_memory
+from monitors.kernel.verdicts import PENDING, VIOLATED, Verdict
 from monitors.loading import load
 
 STEPS = 200_000
@@ -270,6 +271,46 @@ def online() -> None:
     table(f"Single ticks, {STEPS:,} of them", head, rows)
 
 
+class WrittenByHand:
+    """W2 as one may write it: it refuses what is no truth value, and knows its demands."""
+
+    def __init__(self) -> None:
+        self.tick = self.last = self.open = self.broken = -1
+
+    def step(self, *, a: bool, b: bool) -> Verdict:
+        if not isinstance(a, bool) or not isinstance(b, bool):
+            raise TypeError("a truth value is True or False")
+        self.tick += 1
+        if a:
+            self.last = self.tick
+        if b:
+            self.open = -1
+        elif a and self.open < 0:
+            self.open = self.tick
+        if self.broken < 0 <= self.open <= self.tick - 10:
+            self.broken = self.tick
+        return VIOLATED if self.broken >= 0 else PENDING
+
+
+def by_hand() -> None:
+    """A step of W2 against a hand-written one, called in turn."""
+    machine: Any = monitor(workload_rules()["W2"])
+    arrays = WORKLOADS["W2"].columns(STEPS // 10).values()
+    table_rows = list(zip(*(values.tolist() for values in arrays), strict=True))
+    peer = WrittenByHand()
+
+    def calls(step: Callable[..., object]) -> float:
+        start = time.process_time()
+        for a, b in table_rows:
+            step(a=a, b=b)
+        return time.process_time() - start
+
+    pairs = [(calls(machine.step), calls(peer.step)) for _ in range(60)]
+    ours, theirs = (min(each) / len(table_rows) * 1e6 for each in zip(*pairs, strict=True))
+    row = (f"{ours:.3f}", f"{theirs:.3f}", f"{ours / theirs:.2f}")
+    table("A step of W2", ("us", "by hand", "x"), [row])
+
+
 def windows() -> None:
     """What a long window with both bounds costs, against one of 10: a call is two ticks."""
     forms = {
@@ -369,31 +410,47 @@ def _peer_step(peer: Peer, name: str) -> float | None:
 def many() -> None:
     """W5, and one file of up to 1 000 requirements: microseconds a tick and requirement."""
     rows = []
-    generator = np.random.default_rng(1)
-    for count in (1, 20, 100, 1_000):
-        rules = mixed(count)
+    for count, names in ((1, 12), (20, 12), (100, 12), (1_000, 12), (1_000, 1_000)):
+        rules = mixed(count, names)
         start = time.process_time()
         made = text(*rules)
         written = time.process_time() - start
-        machine = load("m", made)
-        ticks = max(200, 100_000 // count)
+        machine: Any = load("m", made)
+        ticks = max(50, 50_000 // count)
+        generator = np.random.default_rng(1)
         values = generator.random((ticks, len(machine.PROPOSITIONS))) < 0.3
         table_rows = [tuple(row) for row in values.tolist()]
         spent = seconds(lambda m=machine, x=table_rows: m.run(x), 3) / ticks / count * 1e6
-        names = tuple(machine.PROPOSITIONS.values())
-        named = [dict(zip(names, row, strict=True)) for row in table_rows]
-        single = stepping(machine.step, named) / count
+        named = [dict(zip(machine.PROPOSITIONS, row, strict=True)) for row in table_rows]
+        parts = [load("m", text(*rules[i : i + 20])) for i in range(0, count, 20)]
         rows.append(
             (
                 f"{count:,}",
+                f"{len(machine.PROPOSITIONS):,}",
                 f"{written / count * 1e3:.2f}",
                 f"{len(made) // 1024:,}",
                 f"{spent:.3f}",
-                f"{single:.3f}",
+                *(f"{_steps(each, named) / count:.3f}" for each in ([machine], parts)),
             )
         )
-    head = ("requirements", "ms each to write", "kB", "run us each", "step us each")
+    head = ("requirements", "propositions", "ms each to write", "kB", "run us each", "step us each")
+    head = (*head, "in files of 20")
     table("Many requirements in one file (mixed, bounds to 1 000)", head, rows)
+
+
+def _steps(machines: Sequence[Any], rows: Sequence[Mapping[str, bool]]) -> float:
+    """Microseconds a tick, of monitors that are stepped one after the other."""
+    named = [
+        [{p: row[name] for name, p in machine.PROPOSITIONS.items()} for machine in machines]
+        for row in rows
+    ]
+
+    def calls() -> None:
+        for tick in named:
+            for machine, values in zip(machines, tick, strict=True):
+                machine.step(**values)
+
+    return seconds(calls) / len(rows) * 1e6
 
 
 # Memory and compiling -------------------------------------------------------------------------
@@ -436,6 +493,7 @@ def main() -> None:
             against_peers(ticks, ours)
     bounds(max(options.ticks))
     online()
+    by_hand()
     windows()
     wide()
     after_unknown()

@@ -16,9 +16,6 @@ from typing import Any, ClassVar, NamedTuple, Protocol
 
 from monitors.kernel.columns import Column
 from monitors.kernel.verdicts import (
-    PENDING,
-    SATISFIED,
-    VIOLATED,
     Requirement,
     Signals,
     Truth,
@@ -229,7 +226,7 @@ ticks after which two rails are compared first."""
 
 
 class Monitor:
-    """Steps propositions and gives verdicts; a generated class adds `step` and `run`."""
+    """Steps propositions; a generated class adds `step`, `run` and `verdicts`."""
 
     PROGRAM: ClassVar[str]
     """SHA-256 of the generated code: a state fits no other."""
@@ -239,6 +236,8 @@ class Monitor:
     LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
     """Each parameter of `columns`, with its proposition, and False where it is negated."""
     RAIL: ClassVar[type[Rail]]
+    verdicts: Callable[..., tuple[Verdict, ...]]
+    """Of each requirement, whatever follows: satisfied or violated; or pending."""
     columns: Callable[..., tuple[Signals[int], ...]]
     """The signals of whole traces, for each requirement: of `every`, the column that is true at
     every tick, and a keyword for each of `LITERALS`."""
@@ -303,6 +302,16 @@ class Monitor:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
             self._part(_forked(self.must))
+
+    def _step(self, row: Row) -> None:
+        """Step both rails, or one as long as all is known."""
+        if self.may is self.must and None in row:
+            self._fork()
+        must, may = self.must, self.may
+        must.advance((row,))
+        if may is not must:
+            may.advance((row,))
+            self._meet()
 
     def _part(self, may: Rail) -> None:
         self.may = may
@@ -405,18 +414,6 @@ class Monitor:
                 raise TypeError(f"{where} got an unexpected keyword argument {name!r}")
         missing = ", ".join(repr(name) for name in parameters if name not in arguments)
         raise TypeError(f"{where} missing required keyword-only arguments: {missing}")
-
-    def verdicts(self) -> tuple[Verdict, ...]:
-        """Of each requirement, whatever follows: satisfied or violated; or pending."""
-        readings = zip(self.must.marks(), self.may.marks(), self.must.signals(), strict=True)
-        return tuple(
-            VIOLATED
-            if must.violated >= 0
-            else SATISFIED
-            if certain.settled and may.violated < 0
-            else PENDING
-            for must, may, certain in readings
-        )
 
 
 def rows_in_order(
@@ -539,4 +536,4 @@ def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
         if isinstance(there, Window):
             there.restore(value)
         else:
-            setattr(rail, name, value)
+            setattr(rail, name, tuple(value) if isinstance(value, list) else value)

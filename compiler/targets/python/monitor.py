@@ -23,6 +23,7 @@ from compiler.logic import printing
 from compiler.targets.python.comparisons import ANNOTATIONS, NAMES, Front, Writer, front
 from compiler.targets.python.program import (
     MARKS,
+    SIGNALS,
     Program,
     locals_of,
     marks_of,
@@ -148,6 +149,8 @@ def text(*rules: Formalized) -> str:
         inputs=inputs,
         row=_tuple([p.name for p in inputs]),
         by_mapping=len(inputs) > MOST_PARAMETERS,
+        inlined=is_inlined(len(rules), len(inputs)),
+        settled=SIGNALS.index("settled"),
         program=code,
         front=lines,
         digest=_digest(code, rules, lines),
@@ -158,6 +161,11 @@ def text(*rules: Formalized) -> str:
         imports=runtime.imports,
         kernel=runtime.text,
     )
+
+
+def is_inlined(requirements: int, inputs: int) -> bool:
+    """Whether a step has the code of a tick in it: a call would cost as much as the tick."""
+    return requirements == 1 and inputs <= MOST_PARAMETERS
 
 
 def _digest(code: Program, rules: Sequence[Formalized], front: _Lines | None) -> str:
@@ -295,9 +303,9 @@ MOST_PARAMETERS = 60
 parameters takes them as a mapping."""
 _SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
 _RESERVED = frozenset(
-    "self every known doubt tick rows row must may first kept_first boolean Signals Marks previous "
-    "weak_previous once historically since released since_from since_between released_between "
-    "SATISFIED VIOLATED PENDING".split()
+    "self every known doubt tick rows row rail must may first kept_first boolean Signals Marks "
+    "previous weak_previous once historically since released since_from since_between "
+    "released_between SATISFIED VIOLATED PENDING".split()
 )
 """Names in the generated functions: their locals and the functions that they call."""
 

@@ -496,7 +496,7 @@ ticks after which two rails are compared first."""
 
 
 class Monitor:
-    """Steps propositions and gives verdicts; a generated class adds `step` and `run`."""
+    """Steps propositions; a generated class adds `step`, `run` and `verdicts`."""
 
     PROGRAM: ClassVar[str]
     """SHA-256 of the generated code: a state fits no other."""
@@ -506,6 +506,8 @@ class Monitor:
     LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
     """Each parameter of `columns`, with its proposition, and False where it is negated."""
     RAIL: ClassVar[type[Rail]]
+    verdicts: Callable[..., tuple[Verdict, ...]]
+    """Of each requirement, whatever follows: satisfied or violated; or pending."""
     columns: Callable[..., tuple[Signals[int], ...]]
     """The signals of whole traces, for each requirement: of `every`, the column that is true at
     every tick, and a keyword for each of `LITERALS`."""
@@ -570,6 +572,16 @@ class Monitor:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
             self._part(_forked(self.must))
+
+    def _step(self, row: Row) -> None:
+        """Step both rails, or one as long as all is known."""
+        if self.may is self.must and None in row:
+            self._fork()
+        must, may = self.must, self.may
+        must.advance((row,))
+        if may is not must:
+            may.advance((row,))
+            self._meet()
 
     def _part(self, may: Rail) -> None:
         self.may = may
@@ -672,18 +684,6 @@ class Monitor:
                 raise TypeError(f"{where} got an unexpected keyword argument {name!r}")
         missing = ", ".join(repr(name) for name in parameters if name not in arguments)
         raise TypeError(f"{where} missing required keyword-only arguments: {missing}")
-
-    def verdicts(self) -> tuple[Verdict, ...]:
-        """Of each requirement, whatever follows: satisfied or violated; or pending."""
-        readings = zip(self.must.marks(), self.may.marks(), self.must.signals(), strict=True)
-        return tuple(
-            VIOLATED
-            if must.violated >= 0
-            else SATISFIED
-            if certain.settled and may.violated < 0
-            else PENDING
-            for must, may, certain in readings
-        )
 
 
 def rows_in_order(
@@ -806,7 +806,7 @@ def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
         if isinstance(there, Window):
             there.restore(value)
         else:
-            setattr(rail, name, value)
+            setattr(rail, name, tuple(value) if isinstance(value, list) else value)
 
 
 @dataclass(frozen=True)
@@ -1299,17 +1299,11 @@ class R1Rail:
 
     __slots__ = (
         "doubt",
-        "r1_answer",
-        "r1_breach",
         "r1_broken",
-        "r1_doom",
         "r1_doomed",
-        "r1_fails",
         "r1_last",
         "r1_open",
-        "r1_owed",
-        "r1_settled",
-        "r1_trigger",
+        "r1_signals",
         "since_1",
         "tick",
     )
@@ -1327,13 +1321,7 @@ class R1Rail:
         self.r1_doomed = -1
         self.r1_last = -1
         self.r1_open = -1
-        self.r1_trigger = False
-        self.r1_breach = False
-        self.r1_doom = False
-        self.r1_owed = False
-        self.r1_fails = False
-        self.r1_settled = False
-        self.r1_answer = False
+        self.r1_signals: tuple[bool, ...] = (False,) * 7
 
     def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
         """Step every row; whether all was known in them."""
@@ -1371,10 +1359,7 @@ class R1Rail:
             return True
         self.tick = tick
         self.since_1 = since_1
-        self.r1_trigger = too_close
-        self.r1_owed = since_1
-        self.r1_fails = since_1
-        self.r1_answer = stopped
+        self.r1_signals = (too_close, False, False, since_1, since_1, False, stopped)
         self.r1_last = r1_last
         self.r1_open = r1_open
         return known
@@ -1382,15 +1367,7 @@ class R1Rail:
     def signals(self) -> tuple[Signals[bool], ...]:
         """The signals of the last tick, for each requirement."""
         return (
-            Signals(
-                self.r1_trigger,
-                self.r1_breach,
-                self.r1_doom,
-                self.r1_owed,
-                self.r1_fails,
-                self.r1_settled,
-                self.r1_answer,
-            ),
+            Signals(*self.r1_signals),
         )
 
     def marks(self) -> tuple[Marks, ...]:
@@ -1426,16 +1403,30 @@ class R1Monitor(Monitor):
     may: R1Rail
 
     def step(self, *, too_close: Truth, stopped: Truth) -> Verdict:
-        """One tick; None stands for unknown."""
-        row = (too_close, stopped)
-        if too_close is None or stopped is None:
-            self._fork()
-        must, may = self.must, self.may
-        must.advance((row,))
-        if may is not must:
-            may.advance((row,))
-            self._meet()
-        if must.r1_broken >= 0:
+        """One tick; None stands for unknown. It is `advance` for one row where all is known."""
+        rail = self.must
+        if (
+            rail is not self.may
+            or (too_close is not True and too_close is not False)
+            or (stopped is not True and stopped is not False)
+        ):
+            self._step((too_close, stopped))
+            return self.verdicts()[0]
+        rail.tick = tick = rail.tick + 1
+        since_1 = rail.since_1
+        not_stopped = not stopped
+        # !stopped S (too_close & !stopped)
+        since_1 = too_close and not_stopped or not_stopped and since_1
+        # R1: trigger, open demand
+        if too_close:
+            rail.r1_last = tick
+        if not since_1:
+            rail.r1_open = -1
+        elif rail.r1_open < 0:
+            rail.r1_open = tick
+        rail.since_1 = since_1
+        rail.r1_signals = (too_close, False, False, since_1, since_1, False, stopped)
+        if rail.r1_broken >= 0:
             return VIOLATED
         return PENDING
 
@@ -1443,6 +1434,15 @@ class R1Monitor(Monitor):
         """Many ticks at once: rows in the order of `PROPOSITIONS`, or by their names."""
         self.advance(rows)
         return self.verdicts()[0]
+
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Of each requirement, whatever follows: satisfied or violated; or pending."""
+        must = self.must
+        return (
+            VIOLATED
+            if must.r1_broken >= 0
+            else PENDING,
+        )
 
     @staticmethod
     def columns(every: int, *, too_close: int, not_stopped: int, stopped: int) -> tuple[Signals[int], ...]:
