@@ -119,7 +119,7 @@ def test_a_fork_that_has_left_the_runs_of_its_window_behind_keeps_none_of_them()
     assert other.turn is not None
     for _ in range(6):
         other.step(left=True, right=False)
-    assert (other.first, other.last, other.turn, other.branch) == (None,) * 4
+    assert {other.first, other.last, other.turn, other.branch} == {None}
 
 
 @pytest.mark.parametrize("copied", [Window.copy, Window.fork])
