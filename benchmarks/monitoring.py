@@ -12,7 +12,7 @@ import gc
 import time
 import tracemalloc
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -111,10 +111,35 @@ def from_numpy(columns: Columns) -> dict[str, Column]:
 
 
 def truths(machine: Monitor, literals: Mapping[str, int], every: int) -> int:
-    """What the peers tell too: the truth at each tick, as if the trace ended there."""
+    """The truth at each tick, as if the trace ended there: all that the peers tell.
+
+    Nobody calls this of ours: `evaluate` is what a user calls.
+    """
     (signals,) = machine.columns(every, **literals)
-    lost = once(signals.breach, 0, None, every) if signals.breach else 0
-    return every ^ (lost | signals.fails)
+    broken = once(signals.breach, 0, None, every) if signals.breach else 0
+    return every ^ (broken | signals.fails)
+
+
+def verdict(machine: Monitor, columns: Mapping[str, Column], ticks: int) -> object:
+    """A user's call that asks whether the trace is violated, and from where on."""
+    (outcome,) = evaluate(machine, columns, ticks)
+    return outcome.verdict, outcome.first_violation
+
+
+def lists(machine: Monitor, columns: Mapping[str, Column], ticks: int) -> object:
+    """A user's call that reads every list of the outcome."""
+    (outcome,) = evaluate(machine, columns, ticks)
+    return [
+        tuple(each)
+        for each in (
+            outcome.violations,
+            outcome.unknown,
+            outcome.triggers,
+            outcome.answers,
+            outcome.open,
+            outcome.uncertain,
+        )
+    ]
 
 
 def literals_of(machine: Monitor, columns: Mapping[str, Column], every: int) -> dict[str, int]:
@@ -135,9 +160,23 @@ def table(title: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> 
 # Whole traces ---------------------------------------------------------------------------------
 
 
-def offline(ticks: int) -> dict[str, tuple[float, float]]:
-    """Millions of ticks per second: evaluation alone, and with the conversion from NumPy."""
-    found, rows = {}, []
+@dataclass(frozen=True)
+class Rates:
+    """Millions of ticks per second of a workload."""
+
+    verdict: float
+    """`evaluate`, verdict and first violation."""
+    verdict_from_numpy: float
+    """The same, with the conversion of Boolean arrays."""
+    lists: float
+    """`evaluate` and all lists."""
+    truths: float
+    """The truth at each tick alone."""
+
+
+def offline(ticks: int) -> dict[str, Rates]:
+    """What calls over whole traces cost, beside the truth alone and beside single operations."""
+    found, calls, alone = {}, [], []
     reuse_memory()
     for name, made in workload_rules().items():
         machine = monitor(made)
@@ -146,23 +185,36 @@ def offline(ticks: int) -> dict[str, tuple[float, float]]:
         literals = literals_of(machine, columns, every)
         a, b = columns["a"].true, columns["b"].true
         one, add = repeated(lambda a=a, b=b: a & b), repeated(lambda a=a, b=b: a + b)
-        alone = repeated(lambda m=machine, x=literals, e=every: truths(m, x, e))
-        whole = repeated(lambda m=machine, x=columns: evaluate(m, x, ticks))
-        converted = alone + repeated(lambda x=arrays: from_numpy(x))
-        found[name] = ticks / alone / 1e6, ticks / converted / 1e6
-        rows.append(
+        truth = repeated(lambda m=machine, x=literals, e=every: truths(m, x, e))
+        short = repeated(lambda m=machine, x=columns: verdict(m, x, ticks))
+        whole = repeated(lambda m=machine, x=columns: lists(m, x, ticks))
+        converted = short + repeated(lambda x=arrays: from_numpy(x))
+        rates = Rates(*(ticks / spent / 1e6 for spent in (short, converted, whole, truth)))
+        found[name] = rates
+        (outcome,) = evaluate(machine, columns, ticks)
+        calls.append(
             (
                 name,
-                f"{alone * 1e3:.3f}",
-                f"{found[name][0]:,.0f}",
-                f"{alone / one:.0f}",
-                f"{alone / add:.1f}",
-                f"{found[name][1]:,.0f}",
+                f"{short * 1e3:.2f}",
+                f"{rates.verdict:,.0f}",
+                f"{rates.verdict_from_numpy:,.0f}",
                 f"{whole * 1e3:.1f}",
+                f"{rates.lists:,.0f}",
+                f"{len(outcome.triggers) + len(outcome.answers):,}",
             )
         )
-    head = ("", "alone ms", "M ticks/s", "x a & b", "x a + b", "from NumPy", "outcome ms")
-    table(f"Whole traces, {ticks:,} ticks, one core", head, rows)
+        shares = f"{truth / one:.0f}", f"{truth / add:.1f}", f"{short / truth:.1f}"
+        alone.append((name, f"{truth * 1e3:.3f}", f"{rates.truths:,.0f}", *shares))
+    table(
+        f"`evaluate` over {ticks:,} ticks, one core: verdict and first violation, or all lists",
+        ("", "verdict ms", "M ticks/s", "from NumPy", "lists ms", "M ticks/s", "items in them"),
+        calls,
+    )
+    table(
+        "The truth at each tick alone, which only the peers tell",
+        ("", "ms", "M ticks/s", "x a & b", "x a + b", "verdict: times that"),
+        alone,
+    )
     return found
 
 
@@ -190,8 +242,8 @@ def bounds(ticks: int) -> None:
     )
 
 
-def against_peers(ticks: int, ours: Mapping[str, tuple[float, float]]) -> None:
-    """Our rate divided by theirs."""
+def against_peers(ticks: int, ours: Mapping[str, Rates]) -> None:
+    """Our rates divided by theirs, which are of the truth at each tick."""
     rows = []
     for peer in PEERS:
         missing = peer.missing()
@@ -200,19 +252,22 @@ def against_peers(ticks: int, ours: Mapping[str, tuple[float, float]]) -> None:
             continue
         for name in peer.formulas:
             theirs = speed(peer, name, ticks, runs=3)
-            alone, converted = ours[name]
+            rates = ours[name]
             rows.append(
                 (
                     peer.name,
                     name,
                     f"{theirs.ticks:,}",
                     f"{theirs.alone:.2f}",
-                    f"{alone / theirs.alone:,.0f}",
-                    f"{converted / theirs.from_numpy:,.0f}",
+                    f"{rates.verdict / theirs.alone:,.1f}",
+                    f"{rates.lists / theirs.alone:,.2f}",
+                    f"{rates.verdict_from_numpy / theirs.from_numpy:,.1f}",
+                    f"{rates.truths / theirs.alone:,.0f}",
                 )
             )
-    head = ("peer", "", "its ticks", "M ticks/s", "ours: times alone", "times from NumPy")
-    table(f"Peers, our rates at {ticks:,} ticks", head, rows)
+    ours_in = ("ours: verdict", "all lists", "verdict from NumPy", "truth alone")
+    head = ("peer", "", "its ticks", "M ticks/s", *ours_in)
+    table(f"Peers, and how many times their rate ours is at {ticks:,} ticks", head, rows)
 
 
 # Single ticks ---------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ if __name__ == "__main__" and not sys.flags.safe_path:
 """The first statements of whatever can be run as a file. Python would look for the standard library
 beside it first. `from __future__ import annotations` is an import, too, and can only come before
 it: so generated files have none, and neither have the modules that they are made of."""
-_MODULES = ("verdicts", "columns", "stepping", "outcomes", "tables", "command")
+_MODULES = ("verdicts", "columns", "listings", "stepping", "outcomes", "tables", "command")
 """The modules of `monitors.kernel`, each after those that it needs."""
 _VARIABLES = ("readings", "variables", "variable_tables", "variable_command")
 """Those that a monitor needs, too, where it is stepped by variables."""

@@ -3,6 +3,7 @@
 `--hypothesis-profile=full`, or `HYPOTHESIS_PROFILE=full`: many more examples.
 """
 
+import gc
 import os
 import signal
 import sys
@@ -41,6 +42,13 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update-golden", action="store_true", help="rewrite tests/golden/")
+
+
+def pytest_collection_finish() -> None:
+    """Keep the collector of garbage from what is loaded by now: it stays, and it is large."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
 
 
 @pytest.fixture

@@ -20,9 +20,9 @@ from fretish.bindings.declarations import Declarations
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
-from monitors.kernel import Column, Monitor, Outcome, evaluate
+from monitors.kernel import INCONCLUSIVE, Column, Monitor, Outcome, evaluate
 from monitors.kernel.columns import columns_of
-from monitors.kernel.verdicts import Truth, truth
+from monitors.kernel.verdicts import Truth, Verdict, truth
 from monitors.loading import load
 
 
@@ -99,7 +99,7 @@ def packed(columns: Mapping[str, Sequence[Truth]]) -> tuple[int, dict[str, Colum
 
 
 def over(
-    machine: Monitor, columns: Mapping[str, Sequence[Truth]], end: str = "inconclusive"
+    machine: Monitor, columns: Mapping[str, Sequence[Truth]], end: Verdict = INCONCLUSIVE
 ) -> Outcome:
     """The column program over a whole trace, for a monitor of one requirement."""
     ticks, made = packed(columns)

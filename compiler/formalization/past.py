@@ -57,7 +57,7 @@ class Watch:
     owed: Formula
     """A demand is open here: what follows decides it, where none has been broken before."""
     fails: Formula
-    """The trace would violate the sentence if it ended here, though it is not lost yet."""
+    """The trace would violate the sentence if it ended here, though nothing is broken yet."""
     settled: Formula
     """Nothing that follows on an infinite trace can break a demand, where none has been broken."""
     answer: Formula | None

@@ -19,7 +19,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from monitors import kernel
 from monitors.kernel import Column, Monitor, Outcome
 from monitors.kernel.stepping import Standing
-from monitors.kernel.verdicts import Truth
+from monitors.kernel.verdicts import Truth, Verdict
 from monitors.loading import load
 
 
@@ -157,7 +157,7 @@ class Stream:
         """As an audit judges, but that the monitor remembers all ticks before the last one."""
         ticks = min(1, self._count)
         columns = {name: _column(self._last.get(name), ticks) for name in monitor.PROPOSITIONS}
-        end = str(self._plan.declarations.clock.end)
+        end = Verdict(self._plan.declarations.clock.end)
         engine = partial(_outcome, before=ticks)
         return str(
             judged(monitor, columns, cut, ticks, intact=True, end=end, engine=engine).verdict
@@ -184,7 +184,7 @@ def _column(truth: Truth, ticks: int) -> Column:
 
 
 def _outcome(
-    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: str, before: int
+    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict, before: int
 ) -> tuple[Outcome, ...]:
     """What a monitor shows that has made its steps, and perhaps one more, which it forgets."""
     if ticks > before:

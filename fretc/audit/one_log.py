@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from statistics import median
 
 import numpy as np
@@ -35,6 +35,7 @@ from fretish.reading.memory import remembered
 from fretish.units import base_name
 from monitors import kernel
 from monitors.kernel import Column, Monitor
+from monitors.kernel.verdicts import Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,13 +171,13 @@ def _evidence(
         truths.cut,
         ticks,
         intact=recording.intact,
-        end=str(declarations.clock.end),
+        end=Verdict(declarations.clock.end),
         engine=engine,
     )
     outcome = judgement.outcome
-    at = partial(_moment, truths.timeline)
+    at = cache(partial(_moment, truths.timeline))  # a tick may be a trigger, an answer and more
     signals = signals_of(declarations, requirement.propositions)
-    latencies = tuple(at(k).seconds - at(t).seconds for t, k in outcome.answers)
+    answers = tuple((at(t), at(k)) for t, k in outcome.answers)
     evidence = Evidence(
         run=recording.name,
         requirement=monitor.REQUIREMENTS[0].id,
@@ -187,14 +188,14 @@ def _evidence(
         end_ns=recording.end_ns,
         first_ns=int(truths.timeline.times[0]) if ticks else recording.start_ns,
         clock=f"{declarations.clock}, by {declarations.clock.time}",
-        answers=tuple((at(t), at(k)) for t, k in outcome.answers),
+        answers=answers,
         states=tuple((at(tick), state) for tick, state in states(outcome)),
         triggers=tuple(at(t) for t in outcome.triggers),
         violations=violations(
             outcome, requirement.demand, monitor.REQUIREMENTS[0].horizon, at, recording, signals
         ),
         open=tuple(at(t) for t, _ in outcome.open),
-        latencies=tuple(round(latency, 9) for latency in latencies),
+        latencies=tuple(round(k.seconds - t.seconds, 9) for t, k in answers),
         propositions={name: tally(column, ticks) for name, column in columns.items()},
         margins=tuple(margin for name in columns for margin in margins_of[name]),
         units={name: base_name(declarations.signals[name].unit.dimension) for name in signals},

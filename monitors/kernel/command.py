@@ -15,11 +15,9 @@ from monitors.kernel.tables import InputError, read_rows, visible
 from monitors.kernel.verdicts import (
     EXIT_STATUS,
     INCONCLUSIVE,
-    NO_DATA,
-    SATISFIED,
-    VACUOUS,
     VIOLATED,
     Truth,
+    Verdict,
 )
 
 Read = Callable[[TextIO, str, argparse.Namespace], Iterable[Sequence[Truth]]]
@@ -142,7 +140,8 @@ def _report(monitor: Monitor, path: str, options: argparse.Namespace, read: Read
         except OSError as error:
             raise InputError(f"{source}: {error.strerror or error}") from None
     run = stepped if options.engine == "online" else evaluate
-    outcomes = run(monitor, dict(zip(names, columns, strict=True)), ticks, options.end)
+    end = Verdict(options.end)
+    outcomes = run(monitor, dict(zip(names, columns, strict=True)), ticks, end)
     for outcome in outcomes:
         if options.format == "json":
             print(json.dumps(outcome.as_json()))
@@ -163,16 +162,27 @@ def _opened(path: str) -> TextIO:
 
 
 def _sentence(outcome: Outcome) -> str:
+    return f"{outcome.verdict} ({_details(outcome)})"
+
+
+def _details(outcome: Outcome) -> str:
     count = f"{len(outcome.triggers)} trigger{'' if len(outcome.triggers) == 1 else 's'}"
-    unknown = ", ".join(f"{a}..{b}" for a, b in outcome.unknown)
-    details = {
-        SATISFIED: count,
-        VIOLATED: "ticks " + ", ".join(f"{a}..{b}" for a, b in outcome.violations),
-        INCONCLUSIVE: f"{count}, {len(outcome.open)} open at the end",
-        VACUOUS: "never triggered",
-        NO_DATA: f"unknown at ticks {unknown}" if unknown else _why_no_data(outcome),
-    }
-    return f"{outcome.verdict} ({details[outcome.verdict]})"
+    match outcome.verdict:
+        case Verdict.SATISFIED:
+            return count
+        case Verdict.VIOLATED:
+            return f"ticks {_in_words(outcome.violations)}"
+        case Verdict.INCONCLUSIVE:
+            return f"{count}, {len(outcome.open)} open at the end"
+        case Verdict.VACUOUS:
+            return "never triggered"
+        case _:
+            unknown = outcome.unknown
+            return f"unknown at ticks {_in_words(unknown)}" if unknown else _why_no_data(outcome)
+
+
+def _in_words(runs: Sequence[tuple[int, int]]) -> str:
+    return ", ".join(f"{first}..{last}" for first, last in runs)
 
 
 def _why_no_data(outcome: Outcome) -> str:

@@ -7,20 +7,22 @@ The text below the imports is copied into every generated monitor to the letter,
 included: a change of it changes all of them.
 """
 
-from bisect import bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from monitors.kernel.columns import (
     LARGE,
     Column,
     column,
+    first_of,
     reuse_memory,
-    runs_of,
     ticks_of,
     truths,
+    until,
 )
+from monitors.kernel.listings import Listing, run_list, tick_list
 from monitors.kernel.stepping import Monitor, finite_verdict, literals_of
 from monitors.kernel.verdicts import (
     INCONCLUSIVE,
@@ -37,7 +39,10 @@ from monitors.kernel.verdicts import (
 
 @dataclass(frozen=True)
 class Outcome:
-    """One requirement over one whole trace; ticks count from 0, intervals include both ends."""
+    """One requirement over one whole trace; ticks count from 0, intervals include both ends.
+
+    `evaluate` gives its lists as `Listing`: nothing is made of what nobody reads.
+    """
 
     requirement: str
     ticks: int
@@ -45,16 +50,16 @@ class Outcome:
     finite: Truth
     """FRET's verdict on the finite trace."""
     first_violation: int | None
-    violations: tuple[tuple[int, int], ...]
+    violations: Sequence[tuple[int, int]]
     """Runs of ticks at which a demand was broken, or was overdue and still unanswered."""
-    unknown: tuple[tuple[int, int], ...]
+    unknown: Sequence[tuple[int, int]]
     """Runs of ticks at which it cannot be known whether a demand was broken."""
-    triggers: tuple[int, ...]
-    answers: tuple[tuple[int, int], ...]
+    triggers: Sequence[int]
+    answers: Sequence[tuple[int, int]]
     """Trigger and first answer to it, where a demand waits for one and it came."""
-    open: tuple[tuple[int, int | None], ...]
+    open: Sequence[tuple[int, int | None]]
     """Trigger and deadline (None: there is none) of each demand that is open at the end."""
-    uncertain: tuple[int, ...] = ()
+    uncertain: Sequence[int] = ()
     """Triggers whose answer, or whose open demand, may be another where propositions are unknown;
     of all others it is the same whatever the unknown values were."""
 
@@ -76,7 +81,7 @@ class Outcome:
 
 
 def evaluate(
-    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: str = INCONCLUSIVE
+    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict = INCONCLUSIVE
 ) -> tuple[Outcome, ...]:
     """The column program over a whole trace; the monitor's own state is not touched.
 
@@ -102,7 +107,7 @@ def evaluate(
 
 
 def stepped(
-    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: str = INCONCLUSIVE
+    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict = INCONCLUSIVE
 ) -> tuple[Outcome, ...]:
     """The same as `evaluate`, by stepping the monitor from tick 0 over every tick.
 
@@ -131,42 +136,36 @@ def _gathered(steps: Sequence[tuple[Signals[bool], ...]], place: int) -> Signals
 
 
 def _outcome(
-    requirement: Requirement, ticks: int, must: Signals[int], may: Signals[int], end: str
+    requirement: Requirement, ticks: int, must: Signals[int], may: Signals[int], end: Verdict
 ) -> Outcome:
     last = ticks - 1
-    lost, lost_perhaps = must.breach | must.doom, may.breach | may.doom
-    owed = truth(_at(must.owed, last), _at(may.owed, last))
-    triggers = tuple(ticks_of(must.trigger))
-    violations = runs_of(lost)
+    violated, perhaps = must.breach | must.doom, may.breach | may.doom
+    unknown = perhaps ^ violated
     verdict = NO_DATA
+    finite: Truth = None
     if ticks:
-        violated = truth(lost != 0, lost_perhaps != 0)
-        verdict = at_end(violated, owed, truth(must.trigger != 0, may.trigger != 0))
+        owed = truth(_at(must.owed, last), _at(may.owed, last))
+        triggered = truth(must.trigger != 0, may.trigger != 0)
+        verdict = at_end(truth(violated != 0, perhaps != 0), owed, triggered)
+        broken = truth(must.breach != 0, may.breach != 0)
+        finite = finite_verdict(broken, truth(_at(must.fails, last), _at(may.fails, last)))
     if end == VIOLATED and verdict == INCONCLUSIVE:
-        verdict, violations = VIOLATED, ((last, last),)
-    horizon = requirement.horizon
-    answers, waiting = _answered(triggers, must.answer, may.owed, ticks)
-    deadlines = [(trigger, None if horizon is None else trigger + horizon) for trigger in waiting]
-    answered = tuple((t, k) for t, k in answers if horizon is None or k - t <= horizon)
-    still_open = tuple((t, d) for t, d in deadlines if d is None or d > last)
-    uncertain: tuple[int, ...] = ()
-    if must != may:
-        ends = (*answered, *((trigger, ticks) for trigger, _ in still_open))
-        uncertain = _uncertain(ends, must.owed & ~may.answer)
-    broken = truth(must.breach != 0, may.breach != 0)
-    fails = truth(_at(must.fails, last), _at(may.fails, last))
+        verdict, violated = VIOLATED, 1 << last
+    demands = _Demands(
+        ticks, requirement.horizon, must.trigger, must.answer, may.answer, must.owed, may.owed
+    )
     return Outcome(
         requirement=requirement.id,
         ticks=ticks,
         verdict=verdict,
-        finite=finite_verdict(broken, fails) if ticks else None,
-        first_violation=violations[0][0] if violations else None,
-        violations=violations,
-        unknown=runs_of(lost_perhaps ^ lost),
-        triggers=triggers,
-        answers=answered,
-        open=still_open,
-        uncertain=uncertain,
+        finite=finite,
+        first_violation=first_of(violated),
+        violations=run_list(violated),
+        unknown=run_list(unknown),
+        triggers=tick_list(must.trigger),
+        answers=Listing(lambda: demands.answered, demands.answers),
+        open=Listing(lambda: demands.open, demands.deadlines),
+        uncertain=Listing(lambda: demands.uncertain, lambda: ticks_of(demands.uncertain)),
     )
 
 
@@ -175,41 +174,64 @@ def _at(column: int, tick: int) -> bool:
     return tick >= 0 and bool(column >> tick & 1)
 
 
-def _answered(
-    triggers: tuple[int, ...], answer: int, owed: int, ticks: int
-) -> tuple[tuple[tuple[int, int], ...], tuple[int, ...]]:
-    """Each trigger with its answer; and the triggers that still wait at the end.
+@dataclass(frozen=True)
+class _Demands:
+    """What becomes of each demand: columns with a bit at its trigger.
 
-    A trigger waits as long as a demand may be open, up to the first answer.
+    A demand waits as long as one may be open, up to the first answer that is certain.
     """
-    answered = answer.to_bytes((ticks + 7) // 8, "little")
-    unanswered = runs_of(owed & ~answer)
-    starts = [first for first, _ in unanswered]
-    pairs: list[tuple[int, int]] = []
-    waiting: list[int] = []
-    for trigger in triggers:
-        place = bisect_right(starts, trigger) - 1
-        waits = place >= 0 and trigger <= unanswered[place][1]
-        then = unanswered[place][1] + 1 if waits else trigger
-        if then == ticks:
-            waiting.append(trigger)
-        elif answered[then >> 3] >> (then & 7) & 1:
-            pairs.append((trigger, then))
-    return tuple(pairs), tuple(waiting)
+
+    ticks: int
+    horizon: int | None
+    triggers: int
+    must_answer: int
+    may_answer: int
+    must_owed: int
+    may_owed: int
+
+    @cached_property
+    def answered(self) -> int:
+        """It waits for an answer, which comes in time."""
+        return self.triggers & until(self._waits, self.must_answer, self._most)
+
+    @cached_property
+    def open(self) -> int:
+        """It waits at the end, and its deadline has not passed."""
+        first = max(_last_run(self._waits, self.ticks), self.ticks - self._most)
+        return self.triggers >> first << first
+
+    @cached_property
+    def uncertain(self) -> int:
+        """It is answered or open, and does not wait up to there for certain."""
+        waits = self.must_owed ^ self.must_owed & self.may_answer
+        first = _last_run(waits, self.ticks)
+        certain = until(waits, self.must_answer, self._most) & self.answered
+        return self.answered ^ certain | self.open ^ self.open >> first << first
+
+    @property
+    def _waits(self) -> int:
+        """The ticks at which a demand may be open, and no answer is certain."""
+        return self.may_owed ^ self.may_owed & self.must_answer
+
+    @property
+    def _most(self) -> int:
+        """How many ticks it can wait within the trace."""
+        return self.ticks if self.horizon is None else min(self.horizon, self.ticks)
+
+    def answers(self) -> Iterator[tuple[int, int]]:
+        """Trigger and answer: that is the first one from the trigger on."""
+        answers, answer = ticks_of(self.must_answer), -1
+        for trigger in ticks_of(self.answered):
+            while answer < trigger:
+                answer = next(answers)
+            yield trigger, answer
+
+    def deadlines(self) -> Iterator[tuple[int, int | None]]:
+        """Trigger and deadline of each demand that is open."""
+        for trigger in ticks_of(self.open):
+            yield trigger, None if self.horizon is None else trigger + self.horizon
 
 
-def _uncertain(ends: Iterable[tuple[int, int]], waits: int) -> tuple[int, ...]:
-    """Triggers that do not wait for certain up to the tick at which that ends.
-
-    Args:
-        ends: trigger and the tick of its answer, or the tick after the last one.
-        waits: at which ticks a demand is open for certain, and for certain not answered.
-    """
-    runs = runs_of(waits)
-    starts = [first for first, _ in runs]
-    triggers: list[int] = []
-    for trigger, end in ends:
-        place = bisect_right(starts, trigger) - 1
-        if trigger < end and (place < 0 or runs[place][1] < end - 1):
-            triggers.append(trigger)
-    return tuple(sorted(triggers))
+def _last_run(column: int, ticks: int) -> int:
+    """The first tick from which on it is true up to the end; `ticks` where it is not."""
+    return (column ^ (1 << ticks) - 1).bit_length()

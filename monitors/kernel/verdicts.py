@@ -54,7 +54,7 @@ class Signals(NamedTuple, Generic[T]):
     owed: T
     """A demand is open after this tick (where none has been broken before)."""
     fails: T
-    """The trace would violate the requirement if it ended here, though it is not lost yet."""
+    """The trace would violate the requirement if it ended here, though nothing is broken yet."""
     settled: T
     """Nothing that follows can break a demand any more."""
     answer: T

@@ -118,12 +118,12 @@ def pursue(path: NDArray[np.float64], pose: Pose, speed: float, turn: float) -> 
 
 def _ahead(path: NDArray[np.float64], distance: float) -> tuple[float, float]:
     """The first corner of the path at least `distance` metres along it, or its end."""
-    points = [(float(x), float(y)) for x, y in path]
+    points = path.tolist()
     for here, there in pairwise(points):
         distance -= math.dist(here, there)
         if distance <= 0:
-            return there
-    return points[-1]
+            return there[0], there[1]
+    return points[-1][0], points[-1][1]
 
 
 class PoseError:

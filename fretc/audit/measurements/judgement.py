@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from monitors import kernel
 from monitors.kernel import Column, Monitor, Outcome
+from monitors.kernel.verdicts import Verdict
 
-Engine = Callable[[Monitor, Mapping[str, Column], int, str], tuple[Outcome, ...]]
+Engine = Callable[[Monitor, Mapping[str, Column], int, Verdict], tuple[Outcome, ...]]
 """Monitor, columns, ticks and the verdict on what is open at the end → the outcome."""
 
 WITHOUT_VIOLATION = (kernel.SATISFIED, kernel.VACUOUS)
@@ -48,7 +49,7 @@ def judged(
     ticks: int,
     *,
     intact: bool,
-    end: str,
+    end: Verdict,
     engine: Engine = kernel.evaluate,
 ) -> Judgement:
     """Judge one trace.

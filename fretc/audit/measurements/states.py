@@ -3,48 +3,62 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections import Counter
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
 
 from monitors.kernel import Outcome
 
 IDLE, OPEN, VIOLATED, UNKNOWN = "idle", "open", "violated", "unknown"
 """Nothing is demanded that could fail now; an answer is awaited; a demand is broken; it cannot be
 known whether one is."""
-_FIRST = (VIOLATED, UNKNOWN, OPEN)
-"""Of several at one tick the first one counts."""
+_VIOLATED, _UNKNOWN, _OPEN = 1, 2, 4
+_STATES = (IDLE, VIOLATED, UNKNOWN, VIOLATED, OPEN, VIOLATED, UNKNOWN, VIOLATED)
+"""What a sum of these is: of several states at one tick the first one counts."""
 
 
 def states(outcome: Outcome) -> tuple[tuple[int, str], ...]:
     """Each tick at which the state changes, with the new state; the first one is tick 0."""
-    changes: dict[int, Counter[str]] = {0: Counter()}
-    for state, first, last in _stretches(outcome):
-        changes.setdefault(first, Counter())[state] += 1
-        changes.setdefault(last + 1, Counter())[state] -= 1
-    now: Counter[str] = Counter()
-    changes_of_state: list[tuple[int, str]] = []
-    for tick in sorted(tick for tick in changes if tick < outcome.ticks):
-        now.update(changes[tick])
-        state = next((state for state in _FIRST if now[state] > 0), IDLE)
-        if not changes_of_state or changes_of_state[-1][1] != state:
-            changes_of_state.append((tick, state))
-    return tuple(changes_of_state)
+    edges: defaultdict[int, int] = defaultdict(int)
+    edges[0] = 0
+    for state, runs in (
+        (_VIOLATED, outcome.violations),
+        (_UNKNOWN, outcome.unknown),
+        (_OPEN, _waits(outcome)),
+    ):
+        for first, last in _union(runs):
+            edges[first] ^= state
+            edges[last + 1] ^= state
+    changes: list[tuple[int, str]] = []
+    now = 0
+    for tick in sorted(tick for tick in edges if tick < outcome.ticks):
+        now ^= edges[tick]
+        if not changes or changes[-1][1] != _STATES[now]:
+            changes.append((tick, _STATES[now]))
+    return tuple(changes)
 
 
-def _stretches(outcome: Outcome) -> Iterator[tuple[str, int, int]]:
-    """Each state with the ticks of it, both ends included."""
-    yield from ((VIOLATED, first, last) for first, last in outcome.violations)
-    yield from ((UNKNOWN, first, last) for first, last in outcome.unknown)
-    answered = dict(outcome.answers)
-    waiting = {trigger for trigger, _ in outcome.open}
-    broken = [first for first, _ in outcome.violations]
+def _waits(outcome: Outcome) -> Iterator[tuple[int, int]]:
+    """The ticks at which the answer to a trigger is awaited, trigger by trigger."""
+    end_of = dict(outcome.answers) | {trigger: outcome.ticks for trigger, _ in outcome.open}
+    violations = [first for first, _ in outcome.violations]
     for trigger in outcome.triggers:
-        if trigger in answered:
-            until = answered[trigger]
-        elif trigger in waiting:
-            until = outcome.ticks
-        else:
-            place = bisect_left(broken, trigger)
-            until = broken[place] if place < len(broken) else trigger
-        if until > trigger:
-            yield OPEN, trigger, until - 1
+        end = end_of.get(trigger)
+        if end is None:
+            place = bisect_left(violations, trigger)
+            end = violations[place] if place < len(violations) else trigger
+        if end > trigger:
+            yield trigger, end - 1
+
+
+def _union(runs: Iterable[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+    """Runs in the order of their beginnings, as runs of which none overlaps another one."""
+    first, last = 0, -1
+    for begin, end in runs:
+        if begin <= last:
+            last = max(last, end)
+            continue
+        if first <= last:
+            yield first, last
+        first, last = begin, end
+    if first <= last:
+        yield first, last

@@ -92,10 +92,10 @@ def violations(
         recording: with the samples of the signals.
         signals: those that the sentence reads.
     """
-    answered = dict(outcome.answers)
+    answers, triggers = dict(outcome.answers), tuple(outcome.triggers)
     stretches = []
     for place, (first, last) in enumerate(outcome.violations):
-        trigger = _cause(outcome, answered, horizon, first)
+        trigger = _cause(outcome, triggers, answers, horizon, first)
         deadline = None if trigger is None or demand.horizon is None else trigger + demand.horizon
         due = at(deadline) if deadline is not None and deadline < outcome.ticks else None
         begin, broken = None if trigger is None else at(trigger), at(first)
@@ -110,21 +110,24 @@ def violations(
 
 
 def _cause(
-    outcome: Outcome, answered: Mapping[int, int], horizon: int | None, first: int
+    outcome: Outcome,
+    triggers: Sequence[int],
+    answers: Mapping[int, int],
+    horizon: int | None,
+    first: int,
 ) -> int | None:
     """The oldest trigger whose demand can be the one that is broken at tick `first`.
 
     That is one within the horizon which had no answer up to then; where there is no horizon, and
     the demand is not open at the end either, the last trigger.
     """
-    triggers = outcome.triggers
     upto = bisect_right(triggers, first)
     if horizon is not None:
         oldest = bisect_right(triggers, first - horizon - 1)
         for trigger in triggers[oldest:upto]:
-            if answered.get(trigger, first + 1) > first:
+            if answers.get(trigger, first + 1) > first:
                 return trigger
-    if outcome.open and first == outcome.ticks - 1 and outcome.open[0][0] <= first:
+    if first == outcome.ticks - 1 and outcome.open and outcome.open[0][0] <= first:
         return outcome.open[0][0]
     return triggers[upto - 1] if upto else None
 

@@ -23,6 +23,7 @@ from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
 from fretish.clock import in_words
 from monitors.kernel import Monitor
+from monitors.kernel.verdicts import Verdict
 
 MOST = 1 << 22
 """Ticks that are judged for the phases of one requirement and log; what is left is not judged."""
@@ -132,7 +133,7 @@ def phases(
         monitors: each of one requirement.
     """
     names = dict.fromkeys(name for monitor in monitors for name in monitor.PROPOSITIONS)
-    slides, end = sliding(declarations, recording, names), str(declarations.clock.end)
+    slides, end = sliding(declarations, recording, names), Verdict(declarations.clock.end)
     if slides is None:
         return {}
     phases_of = {}
@@ -149,7 +150,7 @@ class _Search:
     A class is a range of phases at which no tick sees anything else: `first..last` of them.
     """
 
-    def __init__(self, slides: Sliding, monitor: Monitor, *, intact: bool, end: str) -> None:
+    def __init__(self, slides: Sliding, monitor: Monitor, *, intact: bool, end: Verdict) -> None:
         self._slides, self._monitor = slides, monitor
         self._columns = {name: slides.of[name] for name in monitor.PROPOSITIONS}
         self._intact, self._end = intact, end

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 
 from compiler.targets.python.monitor import (
     MOST_PARAMETERS,
@@ -50,7 +51,7 @@ def strange(text: str) -> str | None:
         is_alone = head.endswith("\n") and own.startswith("\n")
         if not found or not is_alone or not reads(ast.parse(head).body, runtime.imports):
             return "the run time in it is not the one of this version of fretc"
-        _check_module(ast.parse(own), by_variables=runtime is kernel_of_variables())
+        _check_module(_parsed(own), by_variables=runtime is kernel_of_variables())
     except SyntaxError as error:
         return f"it is no Python: {error}"
     except StrangeError as error:
@@ -59,8 +60,16 @@ def strange(text: str) -> str | None:
 
 
 def own(text: str) -> ast.Module:
-    """The part of a monitor's text below the run time; `strange` has checked its layout."""
-    return ast.parse(text.partition(_runtime(text).text)[2])
+    """The part of a monitor's text below the run time; `strange` has checked its layout.
+
+    Nobody changes it: all that look at one text share its tree.
+    """
+    return _parsed(text.partition(_runtime(text).text)[2])
+
+
+@lru_cache(maxsize=4)
+def _parsed(own: str) -> ast.Module:
+    return ast.parse(own)
 
 
 def _runtime(text: str) -> Runtime:

@@ -108,7 +108,7 @@ def _compared(
         (expected,) = load("generated", generated).REQUIREMENTS
         if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
             return not_checked("it decides the same, but states another sentence or deadline")
-        fault = _front_compared(rule, text, monitor, atoms, others)
+        fault = _front_compared(rule, generated, text, monitor, atoms, others)
         if fault is not None:
             return fault
     ticks, word = _columns_compared(rule, monitor, place, atoms)
@@ -224,6 +224,7 @@ def _generated(monitor: Monitor, rules: Sequence[Formalized]) -> str | None:
 
 def _front_compared(
     rule: Formalized,
+    generated: str,
     text: str,
     monitor: Monitor,
     atoms: Sequence[str],
@@ -234,13 +235,9 @@ def _front_compared(
     Another requirement in the file may read as a truth value what this one takes for a number:
     then what fretc writes for all of them counts.
     """
-    reasons = []
-    for written in (target.text(rule), _generated(monitor, (*others, rule))):
-        reason = None if written is None else _differing(rule, text, written, monitor, atoms)
-        if written is not None and reason is None:
-            return None
-        reasons.append(reason)
-    return next(reason for reason in reversed(reasons) if reason is not None)
+    fault = _differing(rule, text, generated, monitor, atoms)
+    written = None if fault is None else _generated(monitor, (*others, rule))
+    return fault if written is None else _differing(rule, text, written, monitor, atoms)
 
 
 def _differing(

@@ -9,7 +9,7 @@ from compiler.explanation.violability import is_violable, limit
 from compiler.logic import printing
 from compiler.logic.formula import Formula
 from fretish.clock import Clock, End
-from monitors.kernel import evaluate
+from monitors.kernel import VIOLATED, evaluate
 from monitors.kernel.columns import column
 from tests.compiler.formalization.test_anticipation import WHEN, counted, sharing
 from tests.meaning import SCOPES
@@ -49,10 +49,10 @@ def test_where_the_end_violates_some_short_run_does_exactly_if_it_is_violable(sc
             continue
         made, machine = rule(template.sentence, clock=clock), monitor(template.sentence)
         found = any(
-            evaluate(machine, dict(zip(template.columns, told, strict=True)), 3, "violated")[
+            evaluate(machine, dict(zip(template.columns, told, strict=True)), 3, VIOLATED)[
                 0
             ].verdict
-            == "violated"
+            == VIOLATED
             for told in product(
                 [column(bytes(bits)) for bits in product((0, 1), repeat=3)],
                 repeat=len(template.columns),

@@ -22,12 +22,22 @@ import itertools
 import json
 import os
 import re
-from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache, cached_property, total_ordering
+from itertools import chain
 from operator import itemgetter
-from typing import Any, ClassVar, Generic, NamedTuple, Protocol, TextIO, TypeVar
+from typing import (
+    Any,
+    ClassVar,
+    Generic,
+    NamedTuple,
+    Protocol,
+    TextIO,
+    TypeVar,
+    overload,
+)
 
 Truth = bool | None
 """True, False, or None: unknown."""
@@ -80,7 +90,7 @@ class Signals(NamedTuple, Generic[T]):
     owed: T
     """A demand is open after this tick (where none has been broken before)."""
     fails: T
-    """The trace would violate the requirement if it ended here, though it is not lost yet."""
+    """The trace would violate the requirement if it ended here, though nothing is broken yet."""
     settled: T
     """Nothing that follows can break a demand any more."""
     answer: T
@@ -118,12 +128,14 @@ LARGE = 1 << 19
 """Ticks from which on a column is a block that the C library treats in another way."""
 
 
+@cache
 def reuse_memory() -> None:
     """Let the C library keep the memory of large columns for the next ones.
 
     glibc asks the system for each block from 128 kB on, and gives it back at once, which costs more
     than to compute it. A larger block that has been freed raises this limit: see mallopt(3),
-    M_MMAP_THRESHOLD. Nothing is written to it, so it takes no memory.
+    M_MMAP_THRESHOLD. Nothing is written to it, so it takes no memory. A second one would be one of
+    those that are kept, and be cleared each time: so it is done once.
     """
     bytes(31 << 20)
 
@@ -190,20 +202,37 @@ def truths(column: Column, ticks: int) -> list[Truth]:
 
 def ticks_of(column: int) -> Iterator[int]:
     """The ticks at which it is true, in order; the cost is that of its memory and of these."""
-    data = column.to_bytes((column.bit_length() + 7) // 8, "little")
-    for byte in re.finditer(rb"[^\0]", data):
-        first = 8 * byte.start()
-        for bit in _BITS[data[byte.start()]]:
-            yield first + bit
+    return chain.from_iterable(_pieces_of(column))
 
 
+_PIECE_BYTES = 512
 _BITS = tuple(tuple(bit for bit in range(8) if byte >> bit & 1) for byte in range(256))
 
 
-def runs_of(column: int) -> tuple[tuple[int, int], ...]:
+def _pieces_of(column: int) -> Iterator[list[int]]:
+    """The same in pieces: a list of ticks takes less time than a generator that yields each."""
+    data = column.to_bytes((column.bit_length() + 7) // 8, "little")
+    for start in range(0, len(data), _PIECE_BYTES):
+        piece = data[start : start + _PIECE_BYTES]
+        if piece.strip(b"\0"):
+            octets = zip(range(8 * start, 8 * (start + len(piece)), 8), piece, strict=True)
+            yield [first + bit for first, byte in octets if byte for bit in _BITS[byte]]
+
+
+def first_of(column: int) -> int | None:
+    """The first tick at which it is true."""
+    return (column & -column).bit_length() - 1 if column else None
+
+
+def starts_of(column: int) -> int:
+    """True where it is, and was not at the tick before."""
+    return column ^ column & column << 1
+
+
+def runs_of(column: int) -> Iterator[tuple[int, int]]:
     """Its maximal runs of true ticks, each as (first, last)."""
     edges = ticks_of(column ^ column << 1)
-    return tuple((first, after - 1) for first, after in zip(edges, edges, strict=True))
+    return ((first, after - 1) for first, after in zip(edges, edges, strict=True))
 
 
 # Operators, in the order of their cost ---------------------------------------------------------
@@ -269,6 +298,17 @@ def released_between(left: int, right: int, lo: int, hi: int | None, every: int)
     return every ^ since_between(every ^ left, every ^ right, lo, hi, every)
 
 
+def until(left: int, right: int, most: int) -> int:
+    """`left U[0,most] right`: right comes at most so many ticks later, and left holds before."""
+    done = 0
+    while left and done < most:
+        step = min(done + 1, most - done)
+        right |= left & right >> step
+        left &= left >> done + 1
+        done += step
+    return right
+
+
 def _from_first(arg: int, every: int) -> int:
     """True from the first tick of `arg` on."""
     return every ^ (arg ^ arg - 1) >> 1 if arg else 0
@@ -292,6 +332,76 @@ def _lasting(arg: int, more: int) -> int:
         arg &= arg << step
         done += step
     return arg
+
+
+@total_ordering
+class Listing(Sequence[T]):
+    """A tuple that is made when one of its places is asked for; until then it is its columns.
+
+    Whatever is done with it gives what the tuple gives, and a copy of it is the tuple.
+    """
+
+    def __init__(self, marks: Callable[[], int], items: Callable[[], Iterator[T]]) -> None:
+        """`marks` gives a column with one bit for each of the items."""
+        self._marks, self._items = marks, items
+        self._tuple: tuple[T, ...] | None = None
+
+    def __len__(self) -> int:
+        return self._marks().bit_count()
+
+    def __iter__(self) -> Iterator[T]:
+        return self._items() if self._tuple is None else iter(self._tuple)
+
+    @overload
+    def __getitem__(self, place: int) -> T: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> tuple[T, ...]: ...
+
+    def __getitem__(self, place: int | slice) -> T | tuple[T, ...]:
+        if self._tuple is None:
+            self._tuple = tuple(self._items())
+        return self._tuple[place]
+
+    def __eq__(self, other: object) -> bool:
+        return tuple(self).__eq__(_as_tuple(other))
+
+    def __lt__(self, other: Any) -> bool:
+        return tuple(self).__lt__(_as_tuple(other))
+
+    def __add__(self, other: Any) -> tuple[Any, ...]:
+        return tuple(self).__add__(_as_tuple(other))
+
+    def __radd__(self, other: tuple[Any, ...]) -> tuple[Any, ...]:
+        return other + tuple(self)
+
+    def __mul__(self, count: int) -> tuple[T, ...]:
+        return tuple(self) * count
+
+    __rmul__ = __mul__
+
+    def __hash__(self) -> int:
+        return hash(tuple(self))
+
+    def __repr__(self) -> str:
+        return repr(tuple(self))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return tuple, (tuple(self),)
+
+
+def _as_tuple(value: Any) -> Any:
+    return tuple(value) if isinstance(value, Listing) else value
+
+
+def tick_list(column: int) -> Listing[int]:
+    """The ticks at which a column is true."""
+    return Listing(lambda: column, lambda: ticks_of(column))
+
+
+def run_list(column: int) -> Listing[tuple[int, int]]:
+    """Its maximal runs of true ticks, each as (first, last)."""
+    return Listing(lambda: starts_of(column), lambda: runs_of(column))
 
 
 Row = Sequence[Truth]
@@ -811,7 +921,10 @@ def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
 
 @dataclass(frozen=True)
 class Outcome:
-    """One requirement over one whole trace; ticks count from 0, intervals include both ends."""
+    """One requirement over one whole trace; ticks count from 0, intervals include both ends.
+
+    `evaluate` gives its lists as `Listing`: nothing is made of what nobody reads.
+    """
 
     requirement: str
     ticks: int
@@ -819,16 +932,16 @@ class Outcome:
     finite: Truth
     """FRET's verdict on the finite trace."""
     first_violation: int | None
-    violations: tuple[tuple[int, int], ...]
+    violations: Sequence[tuple[int, int]]
     """Runs of ticks at which a demand was broken, or was overdue and still unanswered."""
-    unknown: tuple[tuple[int, int], ...]
+    unknown: Sequence[tuple[int, int]]
     """Runs of ticks at which it cannot be known whether a demand was broken."""
-    triggers: tuple[int, ...]
-    answers: tuple[tuple[int, int], ...]
+    triggers: Sequence[int]
+    answers: Sequence[tuple[int, int]]
     """Trigger and first answer to it, where a demand waits for one and it came."""
-    open: tuple[tuple[int, int | None], ...]
+    open: Sequence[tuple[int, int | None]]
     """Trigger and deadline (None: there is none) of each demand that is open at the end."""
-    uncertain: tuple[int, ...] = ()
+    uncertain: Sequence[int] = ()
     """Triggers whose answer, or whose open demand, may be another where propositions are unknown;
     of all others it is the same whatever the unknown values were."""
 
@@ -850,7 +963,7 @@ class Outcome:
 
 
 def evaluate(
-    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: str = INCONCLUSIVE
+    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict = INCONCLUSIVE
 ) -> tuple[Outcome, ...]:
     """The column program over a whole trace; the monitor's own state is not touched.
 
@@ -876,7 +989,7 @@ def evaluate(
 
 
 def stepped(
-    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: str = INCONCLUSIVE
+    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict = INCONCLUSIVE
 ) -> tuple[Outcome, ...]:
     """The same as `evaluate`, by stepping the monitor from tick 0 over every tick.
 
@@ -905,42 +1018,36 @@ def _gathered(steps: Sequence[tuple[Signals[bool], ...]], place: int) -> Signals
 
 
 def _outcome(
-    requirement: Requirement, ticks: int, must: Signals[int], may: Signals[int], end: str
+    requirement: Requirement, ticks: int, must: Signals[int], may: Signals[int], end: Verdict
 ) -> Outcome:
     last = ticks - 1
-    lost, lost_perhaps = must.breach | must.doom, may.breach | may.doom
-    owed = truth(_at(must.owed, last), _at(may.owed, last))
-    triggers = tuple(ticks_of(must.trigger))
-    violations = runs_of(lost)
+    violated, perhaps = must.breach | must.doom, may.breach | may.doom
+    unknown = perhaps ^ violated
     verdict = NO_DATA
+    finite: Truth = None
     if ticks:
-        violated = truth(lost != 0, lost_perhaps != 0)
-        verdict = at_end(violated, owed, truth(must.trigger != 0, may.trigger != 0))
+        owed = truth(_at(must.owed, last), _at(may.owed, last))
+        triggered = truth(must.trigger != 0, may.trigger != 0)
+        verdict = at_end(truth(violated != 0, perhaps != 0), owed, triggered)
+        broken = truth(must.breach != 0, may.breach != 0)
+        finite = finite_verdict(broken, truth(_at(must.fails, last), _at(may.fails, last)))
     if end == VIOLATED and verdict == INCONCLUSIVE:
-        verdict, violations = VIOLATED, ((last, last),)
-    horizon = requirement.horizon
-    answers, waiting = _answered(triggers, must.answer, may.owed, ticks)
-    deadlines = [(trigger, None if horizon is None else trigger + horizon) for trigger in waiting]
-    answered = tuple((t, k) for t, k in answers if horizon is None or k - t <= horizon)
-    still_open = tuple((t, d) for t, d in deadlines if d is None or d > last)
-    uncertain: tuple[int, ...] = ()
-    if must != may:
-        ends = (*answered, *((trigger, ticks) for trigger, _ in still_open))
-        uncertain = _uncertain(ends, must.owed & ~may.answer)
-    broken = truth(must.breach != 0, may.breach != 0)
-    fails = truth(_at(must.fails, last), _at(may.fails, last))
+        verdict, violated = VIOLATED, 1 << last
+    demands = _Demands(
+        ticks, requirement.horizon, must.trigger, must.answer, may.answer, must.owed, may.owed
+    )
     return Outcome(
         requirement=requirement.id,
         ticks=ticks,
         verdict=verdict,
-        finite=finite_verdict(broken, fails) if ticks else None,
-        first_violation=violations[0][0] if violations else None,
-        violations=violations,
-        unknown=runs_of(lost_perhaps ^ lost),
-        triggers=triggers,
-        answers=answered,
-        open=still_open,
-        uncertain=uncertain,
+        finite=finite,
+        first_violation=first_of(violated),
+        violations=run_list(violated),
+        unknown=run_list(unknown),
+        triggers=tick_list(must.trigger),
+        answers=Listing(lambda: demands.answered, demands.answers),
+        open=Listing(lambda: demands.open, demands.deadlines),
+        uncertain=Listing(lambda: demands.uncertain, lambda: ticks_of(demands.uncertain)),
     )
 
 
@@ -949,44 +1056,67 @@ def _at(column: int, tick: int) -> bool:
     return tick >= 0 and bool(column >> tick & 1)
 
 
-def _answered(
-    triggers: tuple[int, ...], answer: int, owed: int, ticks: int
-) -> tuple[tuple[tuple[int, int], ...], tuple[int, ...]]:
-    """Each trigger with its answer; and the triggers that still wait at the end.
+@dataclass(frozen=True)
+class _Demands:
+    """What becomes of each demand: columns with a bit at its trigger.
 
-    A trigger waits as long as a demand may be open, up to the first answer.
+    A demand waits as long as one may be open, up to the first answer that is certain.
     """
-    answered = answer.to_bytes((ticks + 7) // 8, "little")
-    unanswered = runs_of(owed & ~answer)
-    starts = [first for first, _ in unanswered]
-    pairs: list[tuple[int, int]] = []
-    waiting: list[int] = []
-    for trigger in triggers:
-        place = bisect_right(starts, trigger) - 1
-        waits = place >= 0 and trigger <= unanswered[place][1]
-        then = unanswered[place][1] + 1 if waits else trigger
-        if then == ticks:
-            waiting.append(trigger)
-        elif answered[then >> 3] >> (then & 7) & 1:
-            pairs.append((trigger, then))
-    return tuple(pairs), tuple(waiting)
+
+    ticks: int
+    horizon: int | None
+    triggers: int
+    must_answer: int
+    may_answer: int
+    must_owed: int
+    may_owed: int
+
+    @cached_property
+    def answered(self) -> int:
+        """It waits for an answer, which comes in time."""
+        return self.triggers & until(self._waits, self.must_answer, self._most)
+
+    @cached_property
+    def open(self) -> int:
+        """It waits at the end, and its deadline has not passed."""
+        first = max(_last_run(self._waits, self.ticks), self.ticks - self._most)
+        return self.triggers >> first << first
+
+    @cached_property
+    def uncertain(self) -> int:
+        """It is answered or open, and does not wait up to there for certain."""
+        waits = self.must_owed ^ self.must_owed & self.may_answer
+        first = _last_run(waits, self.ticks)
+        certain = until(waits, self.must_answer, self._most) & self.answered
+        return self.answered ^ certain | self.open ^ self.open >> first << first
+
+    @property
+    def _waits(self) -> int:
+        """The ticks at which a demand may be open, and no answer is certain."""
+        return self.may_owed ^ self.may_owed & self.must_answer
+
+    @property
+    def _most(self) -> int:
+        """How many ticks it can wait within the trace."""
+        return self.ticks if self.horizon is None else min(self.horizon, self.ticks)
+
+    def answers(self) -> Iterator[tuple[int, int]]:
+        """Trigger and answer: that is the first one from the trigger on."""
+        answers, answer = ticks_of(self.must_answer), -1
+        for trigger in ticks_of(self.answered):
+            while answer < trigger:
+                answer = next(answers)
+            yield trigger, answer
+
+    def deadlines(self) -> Iterator[tuple[int, int | None]]:
+        """Trigger and deadline of each demand that is open."""
+        for trigger in ticks_of(self.open):
+            yield trigger, None if self.horizon is None else trigger + self.horizon
 
 
-def _uncertain(ends: Iterable[tuple[int, int]], waits: int) -> tuple[int, ...]:
-    """Triggers that do not wait for certain up to the tick at which that ends.
-
-    Args:
-        ends: trigger and the tick of its answer, or the tick after the last one.
-        waits: at which ticks a demand is open for certain, and for certain not answered.
-    """
-    runs = runs_of(waits)
-    starts = [first for first, _ in runs]
-    triggers: list[int] = []
-    for trigger, end in ends:
-        place = bisect_right(starts, trigger) - 1
-        if trigger < end and (place < 0 or runs[place][1] < end - 1):
-            triggers.append(trigger)
-    return tuple(sorted(triggers))
+def _last_run(column: int, ticks: int) -> int:
+    """The first tick from which on it is true up to the end; `ticks` where it is not."""
+    return (column ^ (1 << ticks) - 1).bit_length()
 
 
 class InputError(Exception):
@@ -1251,7 +1381,8 @@ def _report(monitor: Monitor, path: str, options: argparse.Namespace, read: Read
         except OSError as error:
             raise InputError(f"{source}: {error.strerror or error}") from None
     run = stepped if options.engine == "online" else evaluate
-    outcomes = run(monitor, dict(zip(names, columns, strict=True)), ticks, options.end)
+    end = Verdict(options.end)
+    outcomes = run(monitor, dict(zip(names, columns, strict=True)), ticks, end)
     for outcome in outcomes:
         if options.format == "json":
             print(json.dumps(outcome.as_json()))
@@ -1272,16 +1403,27 @@ def _opened(path: str) -> TextIO:
 
 
 def _sentence(outcome: Outcome) -> str:
+    return f"{outcome.verdict} ({_details(outcome)})"
+
+
+def _details(outcome: Outcome) -> str:
     count = f"{len(outcome.triggers)} trigger{'' if len(outcome.triggers) == 1 else 's'}"
-    unknown = ", ".join(f"{a}..{b}" for a, b in outcome.unknown)
-    details = {
-        SATISFIED: count,
-        VIOLATED: "ticks " + ", ".join(f"{a}..{b}" for a, b in outcome.violations),
-        INCONCLUSIVE: f"{count}, {len(outcome.open)} open at the end",
-        VACUOUS: "never triggered",
-        NO_DATA: f"unknown at ticks {unknown}" if unknown else _why_no_data(outcome),
-    }
-    return f"{outcome.verdict} ({details[outcome.verdict]})"
+    match outcome.verdict:
+        case Verdict.SATISFIED:
+            return count
+        case Verdict.VIOLATED:
+            return f"ticks {_in_words(outcome.violations)}"
+        case Verdict.INCONCLUSIVE:
+            return f"{count}, {len(outcome.open)} open at the end"
+        case Verdict.VACUOUS:
+            return "never triggered"
+        case _:
+            unknown = outcome.unknown
+            return f"unknown at ticks {_in_words(unknown)}" if unknown else _why_no_data(outcome)
+
+
+def _in_words(runs: Sequence[tuple[int, int]]) -> str:
+    return ", ".join(f"{first}..{last}" for first, last in runs)
 
 
 def _why_no_data(outcome: Outcome) -> str:

@@ -114,6 +114,18 @@ def test_a_bound_beyond_the_trace_costs_no_memory() -> None:
     assert c.once(1, 0, far, 7) == c.historically(3, far, far, 7) == 7
 
 
+@given(pairs, st.integers(0, 80) | st.just(10**15))
+def test_until(both: tuple[Bits, Bits], most: int) -> None:
+    left, right = both
+
+    def at(t: int) -> bool:
+        later = range(t, min(t + most + 1, len(left)))
+        return any(right[j] and all(left[t:j]) for j in later)
+
+    expected = [at(t) for t in range(len(left))]
+    assert c.until(number(left), number(right), most) == number(expected)
+
+
 # Ticks and runs -------------------------------------------------------------------------------
 
 
@@ -123,11 +135,17 @@ def test_the_ticks_of_a_column_are_those_of_its_bits(values: Bits) -> None:
 
 
 @given(bits)
+def test_the_first_tick_of_a_column_is_that_of_its_lowest_bit(values: Bits) -> None:
+    assert c.first_of(number(values)) == (values.index(True) if True in values else None)
+
+
+@given(bits)
 def test_runs_are_maximal_and_cover_every_tick(values: Bits) -> None:
-    runs = c.runs_of(number(values))
+    runs = list(c.runs_of(number(values)))
     covered = [tick for first, last in runs for tick in range(first, last + 1)]
     assert covered == [i for i, value in enumerate(values) if value]
     assert all(first > last + 1 for (_, last), (first, _) in pairwise(runs))
+    assert c.starts_of(number(values)) == sum(1 << first for first, _ in runs)
 
 
 @given(st.lists(st.tuples(*(st.sampled_from([True, False, None]),) * 2), max_size=40))

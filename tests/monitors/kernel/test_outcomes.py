@@ -1,15 +1,30 @@
-"""Answers and open demands are certain where no value of what is unknown would change them."""
+"""An outcome is what its fields mean, and certain where no value of the unknown would change it."""
 
 import random
+import tracemalloc
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields
 from itertools import product
+from typing import ClassVar
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from monitors.kernel import Monitor, Outcome, evaluate
-from monitors.kernel.columns import columns_of
+from monitors.kernel import (
+    INCONCLUSIVE,
+    NO_DATA,
+    SATISFIED,
+    VACUOUS,
+    VIOLATED,
+    Column,
+    Monitor,
+    Outcome,
+    evaluate,
+)
+from monitors.kernel.columns import LARGE, column, columns_of
 from monitors.kernel.outcomes import stepped
-from monitors.kernel.verdicts import Truth
+from monitors.kernel.verdicts import Requirement, Signals, Truth, Verdict
 from tests.meaning import SCOPES
 from tests.monitoring import monitor
 from tests.strategies import templates
@@ -120,3 +135,183 @@ def test_an_answer_behind_an_unknown_value_is_uncertain() -> None:
     assert outcome.as_json()["uncertain"] == [0, 4]
     known, _ = outcomes(machine, {"p": p, "q": [False, False, True, False, False, False]})
     assert (known.answers, known.open, known.uncertain) == (((0, 2),), ((4, 7),), ())
+
+
+# The outcome of any signals -------------------------------------------------------------------
+
+
+class Given(Monitor):
+    """A monitor whose signals are its propositions."""
+
+    PROPOSITIONS: ClassVar[Mapping[str, str]] = {name: name for name in Signals._fields}
+    LITERALS = tuple((name, name, True) for name in Signals._fields)
+
+    def reset(self) -> None:
+        """There is nothing to forget."""
+
+    @staticmethod
+    def columns(every: int, **signals: int) -> tuple[Signals[int], ...]:
+        return (Signals(**signals),)
+
+
+def outcome_of(
+    signals: Mapping[str, Column], ticks: int, horizon: int | None, end: Verdict = INCONCLUSIVE
+) -> Outcome:
+    class WithHorizon(Given):
+        REQUIREMENTS = (Requirement("R1", "", "", horizon),)
+
+    (outcome,) = evaluate(WithHorizon(), signals, ticks, end)
+    return outcome
+
+
+def naive(
+    must: Signals[list[bool]], may: Signals[list[bool]], horizon: int | None, end: Verdict
+) -> Outcome:
+    """The outcome tick by tick, from what its fields mean."""
+    ticks = len(must.trigger)
+    violated = [a or b for a, b in zip(must.breach, must.doom, strict=True)]
+    perhaps = [a or b for a, b in zip(may.breach, may.doom, strict=True)]
+    verdict = naive_verdict(must, may, violated, perhaps)
+    finite = None
+    if ticks and (any(must.breach) or must.fails[-1]):
+        finite = False
+    elif ticks and not any(may.breach) and not may.fails[-1]:
+        finite = True
+    unknown = [a != b for a, b in zip(violated, perhaps, strict=True)]
+    if end == VIOLATED and verdict == "inconclusive":
+        verdict, violated[-1] = VIOLATED, True
+    triggers = tuple(tick for tick in range(ticks) if must.trigger[tick])
+    answers, still_open, uncertain = [], [], []
+    for trigger in triggers:
+        at = trigger
+        while at < ticks and may.owed[at] and not must.answer[at]:
+            at += 1
+        late = horizon is not None and (ticks if at == ticks else at) - trigger > horizon
+        if at == ticks and not late:
+            still_open.append((trigger, None if horizon is None else trigger + horizon))
+        elif at < ticks and must.answer[at] and not late:
+            answers.append((trigger, at))
+        else:
+            continue
+        if any(not must.owed[k] or may.answer[k] for k in range(trigger, at)):
+            uncertain.append(trigger)
+    return Outcome(
+        "R1",
+        ticks,
+        verdict,
+        finite,
+        next((tick for tick, value in enumerate(violated) if value), None),
+        runs(violated),
+        runs(unknown),
+        triggers,
+        tuple(answers),
+        tuple(still_open),
+        tuple(uncertain),
+    )
+
+
+def naive_verdict(
+    must: Signals[list[bool]],
+    may: Signals[list[bool]],
+    violated: Sequence[bool],
+    perhaps: Sequence[bool],
+) -> Verdict:
+    if not violated:
+        return NO_DATA
+    for sure, possible, verdict in (
+        (any(violated), any(perhaps), VIOLATED),
+        (must.owed[-1], may.owed[-1], INCONCLUSIVE),
+        (any(must.trigger), any(may.trigger), SATISFIED),
+    ):
+        if possible:
+            return verdict if sure else NO_DATA
+    return VACUOUS
+
+
+def runs(values: Sequence[bool]) -> tuple[tuple[int, int], ...]:
+    found: list[tuple[int, int]] = []
+    for tick, value in enumerate(values):
+        if value and found and found[-1][1] == tick - 1:
+            found[-1] = (found[-1][0], tick)
+        elif value:
+            found.append((tick, tick))
+    return tuple(found)
+
+
+def hold_to_the_definition(
+    codes: Mapping[str, bytes], ticks: int, horizon: int | None, end: Verdict
+) -> Outcome:
+    """Whether the outcome of these signals is the naive one; 0 false, 1 true, 2 unknown."""
+    must = Signals(**{name: [code == 1 for code in values] for name, values in codes.items()})
+    may = Signals(**{name: [code != 0 for code in values] for name, values in codes.items()})
+    columns = {name: column(values) for name, values in codes.items()}
+    found, expected = outcome_of(columns, ticks, horizon, end), naive(must, may, horizon, end)
+    assert found == expected
+    assert found.as_json() == expected.as_json()
+    for field in fields(Outcome):
+        lazy, eager = getattr(found, field.name), getattr(expected, field.name)
+        assert (repr(lazy), hash(lazy)) == (repr(eager), hash(eager))
+        if isinstance(eager, tuple):
+            assert len(lazy) == len(eager), field.name
+    return found
+
+
+ends = st.sampled_from([INCONCLUSIVE, VIOLATED])
+horizons = st.none() | st.integers(0, 70) | st.just(10**15)
+
+
+@st.composite
+def signal_codes(draw: st.DrawFn) -> dict[str, bytes]:
+    """Each signal true with a chance of its own, and unknown with another one."""
+    ticks = draw(st.sampled_from([0, 1, 63, 64, 65]) | st.integers(0, 80))
+    choose = random.Random(draw(st.integers(0, 10**6)))
+    few = draw(st.sampled_from([0, 0.02, 0.3]))
+
+    def values(share: float) -> bytes:
+        return bytes(2 if choose.random() < few else choose.random() < share for _ in range(ticks))
+
+    chances = st.sampled_from([0, 0.05, 0.3, 0.9, 1])
+    return {name: values(draw(chances)) for name in Signals._fields}
+
+
+@given(signal_codes(), horizons, ends)
+def test_the_outcome_is_what_its_fields_mean(
+    codes: dict[str, bytes], horizon: int | None, end: Verdict
+) -> None:
+    hold_to_the_definition(codes, len(codes["trigger"]), horizon, end)
+
+
+@pytest.mark.parametrize("horizon", [None, 0, 5, 300])
+def test_the_outcome_of_a_long_trace_is_what_its_fields_mean(horizon: int | None) -> None:
+    choose, ticks = random.Random(7), 20_000
+    chances = {"owed": 0.97, "answer": 0.05, "trigger": 0.2}
+    codes = {
+        name: bytes(
+            2 if choose.random() < 0.001 else choose.random() < chances.get(name, 0.01)
+            for _ in range(ticks)
+        )
+        for name in Signals._fields
+    }
+    outcome = hold_to_the_definition(codes, ticks, horizon, INCONCLUSIVE)
+    assert len(outcome.answers) > 100
+    assert outcome.uncertain or horizon == 0
+
+
+def test_what_nobody_reads_takes_no_memory() -> None:
+    ticks = LARGE
+    alternating = int("01" * (ticks // 2), 2)
+    signals = {name: Column(0, 0) for name in Signals._fields}
+    signals |= {"trigger": Column((1 << ticks) - 1, 0), "breach": Column(alternating, 0)}
+    signals |= {"owed": Column(alternating << 1, 0), "answer": Column(alternating, 0)}
+    outcome_of(signals, ticks, None)
+    tracemalloc.start()
+    try:
+        outcome = outcome_of(signals, ticks, None)
+        assert (outcome.verdict, outcome.first_violation) == ("violated", 0)
+        counts = len(outcome.triggers), len(outcome.answers), len(outcome.violations)
+        assert counts == (ticks, ticks - 1, ticks // 2)
+        now, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert now < 10 * ticks / 8, "more than some columns"
+    assert most < 20 * ticks / 8, "more than some columns"

@@ -26,7 +26,7 @@ from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from monitors.kernel import Monitor
-from monitors.kernel.verdicts import Truth
+from monitors.kernel.verdicts import Truth, Verdict
 from monitors.loading import load
 from tests import fret_notation as fret
 from tests import meaning
@@ -310,7 +310,7 @@ def ran(sentence: str, end: str = "inconclusive", **columns: str) -> dict[str, A
     """Run over columns such as `p="10?"`."""
     values: dict[str, Truth] = {"0": False, "1": True, "?": None}
     given = {name: [values[mark] for mark in column] for name, column in columns.items()}
-    return over(monitor(sentence), given, end).as_json()
+    return over(monitor(sentence), given, Verdict(end)).as_json()
 
 
 def test_r1_is_inconclusive_until_the_robot_stops() -> None:

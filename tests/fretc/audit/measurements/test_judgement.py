@@ -61,7 +61,7 @@ def test_a_cut_tick_counts_as_unchanged_only_where_all_of_it_is_known(
         {"p": TRUTHS[cut[0]], "q": TRUTHS[cut[1]]},
         2,
         intact=True,
-        end="inconclusive",
+        end=kernel.INCONCLUSIVE,
         engine=engine,
     )
     assert judgement.verdict == expected

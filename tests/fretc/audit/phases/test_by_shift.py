@@ -22,6 +22,7 @@ from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from monitors import kernel
 from monitors.kernel import Monitor
+from monitors.kernel.verdicts import Verdict
 from monitors.loading import load
 
 BINDINGS = """
@@ -115,7 +116,7 @@ def at(phase: int, declarations: Declarations, log: Recording, watching: Monitor
         truths.cut,
         len(truths.timeline.times),
         intact=log.intact,
-        end=str(clock.end),
+        end=Verdict(clock.end),
         engine=kernel.stepped,
     ).verdict
 
