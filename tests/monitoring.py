@@ -21,7 +21,7 @@ from fretish.clock import Clock
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors.kernel import INCONCLUSIVE, Column, Monitor, Outcome, evaluate
-from monitors.kernel.columns import columns_of
+from monitors.kernel.columns import columns_of, pieces_of
 from monitors.kernel.verdicts import Truth, Verdict, truth
 from monitors.loading import load
 
@@ -94,7 +94,7 @@ def step(machine: Monitor, place: int = 0) -> Step:
 
 def packed(columns: Mapping[str, Sequence[Truth]]) -> tuple[int, dict[str, Column]]:
     """The length of the columns, and each as integers."""
-    ticks, made = columns_of(zip(*columns.values(), strict=True), len(columns))
+    ticks, made = columns_of(pieces_of(zip(*columns.values(), strict=True)), len(columns))
     return ticks, dict(zip(columns, made, strict=True))
 
 

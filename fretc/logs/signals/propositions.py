@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs.signals.measures import ExpressionError, Scope, Term, compared, term
-from fretc.logs.signals.samples import Recording, Samples, Times, Values
+from fretc.logs.signals.samples import Recording, Samples, Times, Values, distinct
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.bindings.expressions import ticks_back
@@ -166,7 +166,11 @@ class History:
 
     def with_times(self, times: Sequence[Times]) -> History:
         """The same with further events at these times."""
-        extra = np.setdiff1d(np.concatenate([self.times[:0], *times]), self.times)
+        if not any(map(len, times)):
+            return self
+        extra = distinct(np.concatenate(times))
+        before = np.searchsorted(self.times, extra), np.searchsorted(self.times, extra, "right")
+        extra = extra[before[0] == before[1]]
         if not len(extra):
             return self
         in_force = np.searchsorted(self.times, extra, "right") - 1
@@ -211,7 +215,7 @@ def _history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
     samples = {name: recording.samples.get(name, _NONE) for name in signals}
     gaps = _merged(recording.gaps)
     fixed = [recording.start_ns, *(edge for gap in gaps for edge in gap)]
-    sources = [np.unique(np.array(fixed, np.int64))]
+    sources = [distinct(np.array(fixed, np.int64))]
     for name, signal in signals.items():
         sources += [samples[name].times, _expiries(samples[name].times, signal.max_age)]
     times, places = _events(sources)
@@ -339,7 +343,7 @@ def _persistence(arg: Steps, duration: int) -> Steps:
     """
     ends = np.append(arg.times[1:], _FOREVER)
     begins = np.append(arg.times[:1], ends[:-1])  # where it can begin to be true
-    times = np.unique(np.concatenate([arg.times, begins + duration]))
+    times = distinct(np.concatenate([arg.times, begins + duration]))
     states = np.full(len(times), TRUE, np.int8)
     states[times < arg.times[0] + duration] = UNKNOWN
     for state in (UNKNOWN, FALSE):

@@ -26,7 +26,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache, cached_property, total_ordering
-from itertools import chain
 from operator import itemgetter
 from typing import (
     Any,
@@ -178,38 +177,113 @@ def code(value: Truth) -> int:
     return int(boolean(value))
 
 
-def columns_of(rows: Iterable[Sequence[Truth]], count: int) -> tuple[int, tuple[Column, ...]]:
-    """The length and the columns of a table with `count` truth values in each row, one row a tick.
+class Tape:
+    """A column that grows: bits in whole bytes, and the codes of up to seven ticks after them."""
+
+    __slots__ = ("rest", "true", "unknown")
+
+    def __init__(self) -> None:
+        self.true, self.unknown = bytearray(), bytearray()
+        self.rest = b""
+
+    def append(self, codes: bytes) -> None:
+        """Go on with one code a tick."""
+        codes = self.rest + codes
+        size = len(codes) // 8
+        true, unknown = column(codes[: 8 * size])
+        if unknown:  # as long as all is known, that takes no memory
+            self.unknown += bytes(len(self.true) - len(self.unknown))
+            self.unknown += unknown.to_bytes(size, "little")
+        self.true += true.to_bytes(size, "little")
+        self.rest = codes[8 * size :]
+
+    def column(self) -> Column:
+        """All of it."""
+        ticks, last = 8 * len(self.true), column(self.rest)
+        return Column(
+            int.from_bytes(self.true, "little") | last.true << ticks,
+            int.from_bytes(self.unknown, "little") | last.unknown << ticks,
+        )
+
+
+class Piece(NamedTuple):
+    """Some ticks of a trace."""
+
+    ticks: int
+    codes: Sequence[bytes]
+    """Of each proposition, one a tick."""
+
+
+def pieces_of(rows: Iterable[Sequence[Truth]]) -> Iterator[Piece]:
+    """Truth values, one row a tick, in pieces.
 
     Raises:
         TypeError: a value is not True, False or None.
-        ValueError: a row has more or fewer values.
+        ValueError: a row has more or fewer values than others.
     """
-    codes = [bytearray() for _ in range(count)]
+    waiting = iter(rows)
+    while some := list(itertools.islice(waiting, _AT_ONCE)):
+        columns = zip(*some, strict=True)
+        yield Piece(len(some), [bytes(map(code, values)) for values in columns])
+
+
+_AT_ONCE = 512
+"""Rows of a piece: there may be thousands of values in each."""
+
+
+def columns_of(pieces: Iterable[Piece], count: int) -> tuple[int, tuple[Column, ...]]:
+    """The length and the columns of a trace of `count` propositions.
+
+    Raises:
+        ValueError: a piece has more or fewer of them.
+    """
+    tapes = [Tape() for _ in range(count)]
     ticks = 0
-    for row in rows:
-        ticks += 1
-        for values, value in zip(codes, row, strict=True):
-            values.append(code(value))
-    return ticks, tuple(map(column, codes))
+    for piece in pieces:
+        ticks += piece.ticks
+        for tape, codes in zip(tapes, piece.codes, strict=True):
+            tape.append(codes)
+    return ticks, tuple(tape.column() for tape in tapes)
 
 
 def truths(column: Column, ticks: int) -> list[Truth]:
     """The truth value at each tick."""
-    true, unknown = set(ticks_of(column.true)), set(ticks_of(column.unknown))
-    return [None if tick in unknown else tick in true for tick in range(ticks)]
+    true, unknown = (f"{bits:0{ticks}b}"[::-1][:ticks] for bits in column)
+    if not column.unknown:
+        return [bit == "1" for bit in true]
+    return [None if doubt == "1" else bit == "1" for bit, doubt in zip(true, unknown, strict=True)]
+
+
+def rows_of(columns: Sequence[Column], ticks: int) -> Iterator[tuple[Truth, ...]]:
+    """The truth value of each column, tick by tick."""
+    if not columns:
+        yield from itertools.repeat((), ticks)
+        return
+    size = (ticks + 7) // 8
+    data = [[bits.to_bytes(size, "little") for bits in column] for column in columns]
+    for first in range(0, size, _STRETCH):
+        parts = [
+            Column(*(int.from_bytes(bits[first : first + _STRETCH], "little") for bits in column))
+            for column in data
+        ]
+        few = min(8 * _STRETCH, ticks - 8 * first)
+        yield from zip(*(truths(part, few) for part in parts), strict=True)
+
+
+_STRETCH = 64
+"""Bytes of a column whose truth values are in memory at once."""
 
 
 def ticks_of(column: int) -> Iterator[int]:
     """The ticks at which it is true, in order; the cost is that of its memory and of these."""
-    return chain.from_iterable(_pieces_of(column))
+    return itertools.chain.from_iterable(_tick_lists(column))
 
 
 _PIECE_BYTES = 512
 _BITS = tuple(tuple(bit for bit in range(8) if byte >> bit & 1) for byte in range(256))
 
 
-def _pieces_of(column: int) -> Iterator[list[int]]:
+def _tick_lists(column: int) -> Iterator[list[int]]:
     """The same in pieces: a list of ticks takes less time than a generator that yields each."""
     data = column.to_bytes((column.bit_length() + 7) // 8, "little")
     for start in range(0, len(data), _PIECE_BYTES):
@@ -996,25 +1070,50 @@ def stepped(
     Args, raises: as for `evaluate`.
     """
     monitor.reset()
-    table = [truths(columns[name], ticks) for name in monitor.PROPOSITIONS]
-    must: list[tuple[Signals[bool], ...]] = []
-    may: list[tuple[Signals[bool], ...]] = []
-    for tick in range(ticks):
-        monitor.advance([tuple(values[tick] for values in table)])
-        must.append(monitor.must.signals())
-        may.append(monitor.may.signals())
+    rows = rows_of([columns[name] for name in monitor.PROPOSITIONS], ticks)
+    must, may = _Record(monitor), _Record(monitor)
+    while some := list(itertools.islice(rows, _TICKS)):
+        if any(None in row for row in some):
+            monitor._fork()
+        certain = _signal_codes(monitor.must, some)
+        must.append(certain)
+        may.append(certain if monitor.may is monitor.must else _signal_codes(monitor.may, some))
+    rails = zip(must.columns(), may.columns(), strict=True)
     return tuple(
-        _outcome(requirement, ticks, _gathered(must, i), _gathered(may, i), end)
-        for i, requirement in enumerate(monitor.REQUIREMENTS)
+        _outcome(requirement, ticks, certain, possible, end)
+        for requirement, (certain, possible) in zip(monitor.REQUIREMENTS, rails, strict=True)
     )
 
 
-def _gathered(steps: Sequence[tuple[Signals[bool], ...]], place: int) -> Signals[int]:
-    """The signals of one requirement at each tick, as columns."""
-    if not steps:
-        return Signals(*(0 for _ in Signals._fields))
-    values = zip(*(step[place] for step in steps), strict=True)
-    return Signals(*(column(bytes(value)).true for value in values))
+_TICKS = 512
+"""Ticks over which the signals of one rail are gathered, and then those of the other."""
+
+
+def _signal_codes(rail: Rail, rows: Iterable[Row]) -> bytes:
+    """The codes of all signals after each row, one row after the other."""
+    values: list[bool] = []
+    for row in rows:
+        rail.advance((row,))
+        for signals in rail.signals():
+            values += signals
+    return bytes(values)
+
+
+class _Record:
+    """The signals of a rail, tick by tick, as columns that grow."""
+
+    def __init__(self, monitor: Monitor) -> None:
+        self._tapes = [Tape() for _ in monitor.REQUIREMENTS for _ in Signals._fields]
+
+    def append(self, codes: bytes) -> None:
+        """Go on with all signals of some ticks, one tick after the other."""
+        for place, tape in enumerate(self._tapes):
+            tape.append(codes[place :: len(self._tapes)])
+
+    def columns(self) -> Iterator[Signals[int]]:
+        """Those of each requirement."""
+        columns = (tape.column().true for tape in self._tapes)
+        return map(Signals, *[columns] * len(Signals._fields))
 
 
 def _outcome(
@@ -1134,10 +1233,8 @@ def visible(text: str) -> str:
 _WORDS: dict[str, Truth] = {"": None, "0": False, "1": True, "false": False, "true": True}
 
 
-def read_rows(
-    text: Iterable[str], names: Sequence[str], source: str
-) -> Iterator[tuple[Truth, ...]]:
-    """The rows of a table: CSV with a header, or JSON lines where the first line is an object.
+def read_pieces(text: TextIO, names: Sequence[str], source: str) -> Iterator[Piece]:
+    """A table, in pieces: CSV with a header, or JSON lines where the first line is an object.
 
     Values are 0, 1, true, false, or nothing (null in JSON): unknown. A column `tick` may count
     the rows; it must grow by one from row to row. Other columns are passed over.
@@ -1145,8 +1242,12 @@ def read_rows(
     Raises:
         InputError: a column is missing, a value is no truth value, ticks jump.
     """
-    for place, row in placed_rows(text, names, source):
-        yield tuple(_truth(row[name], name, place) for name in names)
+    lines, number, is_json = _beginning(text, source)
+    if is_json:
+        rows = _in_order(_json_rows(lines, names, source, number), names)
+        return pieces_of(_truths(rows, names))
+    header, line = _header(lines, names, source, number)
+    return _csv_pieces(text, header, names, source, line)
 
 
 def placed_rows(
@@ -1157,17 +1258,30 @@ def placed_rows(
     Raises:
         InputError: a column is missing, ticks jump.
     """
+    lines, number, is_json = _beginning(text, source)
+    if is_json:
+        return _in_order(_json_rows(lines, names, source, number), names)
+    header, line = _header(lines, names, source, number)
+    return _in_order(_csv_rows(lines, header, source, line), names)
+
+
+def _beginning(text: Iterable[str], source: str) -> tuple[Iterator[str], int, bool]:
+    """The lines from the first one that is not empty, its number, and whether it is JSON."""
     lines = iter(text)
     lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
     number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
     if not number:
         raise InputError(f"{source}: the trace is empty")
-    lines = itertools.chain([first], lines)
     is_json = re.match(r'\s*\{\s*["}]', first) is not None
-    read = _json_rows if is_json else _csv_rows
-    tick: int | None = None
+    return itertools.chain([first], lines), number, is_json
+
+
+def _in_order(
+    rows: Iterable[tuple[str, dict[str, Any]]], names: Sequence[str], tick: int | None = None
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The rows, where a column `tick` grows by one, from the tick before the first row on."""
     has_tick: bool | None = None
-    for place, row in read(lines, names, source, number):
+    for place, row in rows:
         if "tick" not in names:
             if has_tick not in (None, "tick" in row):
                 raise InputError(f"{place}: some rows have a `tick` and some have none")
@@ -1177,15 +1291,34 @@ def placed_rows(
         yield place, row
 
 
-def _csv_rows(
+def _truths(
+    rows: Iterable[tuple[str, dict[str, Any]]], names: Sequence[str]
+) -> Iterator[tuple[Truth, ...]]:
+    for place, row in rows:
+        yield tuple([_truth(row[name], name, place) for name in names])
+
+
+def _header(
     lines: Iterable[str], names: Sequence[str], source: str, number: int
-) -> Iterator[tuple[str, dict[str, Any]]]:
+) -> tuple[list[str], int]:
+    """The columns of CSV that begins in that line, and the line in which its header ends."""
     table = csv.reader(lines, strict=True)
     try:
         header = [name.strip() for name in next(table)]
-        _check_columns(header, names, f"{source}:{number}")
+    except csv.Error as error:
+        raise InputError(f"{source}:{number - 1 + table.line_num}: {error}") from None
+    _check_columns(header, names, f"{source}:{number}")
+    return header, number - 1 + table.line_num
+
+
+def _csv_rows(
+    lines: Iterable[str], header: Sequence[str], source: str, before: int
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The rows of CSV below its header, of which so many lines are before these."""
+    table = csv.reader(lines, strict=True)
+    try:
         for values in table:
-            place = f"{source}:{number - 1 + table.line_num}"
+            place = f"{source}:{before + table.line_num}"
             if not values and len(header) > 1:
                 continue  # an empty line; in a table of one column it is an unknown value
             values = values or [""]
@@ -1193,7 +1326,7 @@ def _csv_rows(
                 raise InputError(f"{place}: {len(values)} values for {len(header)} columns")
             yield place, dict(zip(header, values, strict=True))
     except csv.Error as error:
-        raise InputError(f"{source}:{number - 1 + table.line_num}: {error}") from None
+        raise InputError(f"{source}:{before + table.line_num}: {error}") from None
 
 
 def _json_rows(
@@ -1203,7 +1336,7 @@ def _json_rows(
         if not line.strip():
             continue
         try:
-            row = json.loads(line, object_pairs_hook=_distinct)
+            row = _JSON.decode(line)
         except (ValueError, RecursionError) as error:
             raise InputError(f"{source}:{number}: not JSON: {error}") from None
         if not isinstance(row, dict):
@@ -1217,6 +1350,9 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(found) < len(pairs):
         raise ValueError("a key comes twice")
     return found
+
+
+_JSON = json.JSONDecoder(object_pairs_hook=_distinct)
 
 
 def _check_columns(keys: Iterable[str], names: Sequence[str], place: str) -> None:
@@ -1252,7 +1388,7 @@ def _truth(value: Any, name: str, place: str) -> Truth:
 
 def _next_tick(value: Any, before: int | None, place: str) -> int:
     text = str(value)
-    if not re.fullmatch(r"\s*-?[0-9]{1,18}\s*", text):
+    if not _WHOLE.fullmatch(text):
         raise InputError(f"{place}: column `tick`: `{_short(text)}` is no whole number")
     tick = int(text)
     if before is not None and tick != before + 1:
@@ -1261,8 +1397,103 @@ def _next_tick(value: Any, before: int | None, place: str) -> int:
     return tick
 
 
-Read = Callable[[TextIO, str, argparse.Namespace], Iterable[Sequence[Truth]]]
-"""Gives the truth of the propositions, a row a tick, from a table, its source and the options."""
+_WHOLE = re.compile(r"\s*-?[0-9]{1,18}\s*")
+
+
+# Whole pieces of CSV, where they leave no doubt ------------------------------------------------
+
+_CHARACTERS, _MOST_CHARACTERS = 1 << 12, 1 << 22
+"""Of the text of a piece for each column, and at most; it ends with the line that they end in."""
+
+
+class _Block(NamedTuple):
+    """The lines of a text, as a piece of the trace."""
+
+    lines: int
+    tick: int | None
+    """In the last row, by the column `tick`."""
+    piece: Piece
+
+
+def _csv_pieces(
+    text: TextIO, header: Sequence[str], names: Sequence[str], source: str, line: int
+) -> Iterator[Piece]:
+    """CSV below its header, which ends in that line.
+
+    Where a piece leaves a doubt it is read row by row, and so is all that follows: that is slower,
+    and finds what is wrong, and where.
+    """
+    tick: int | None = None
+    size = min(_CHARACTERS * len(header), _MOST_CHARACTERS)
+    while part := text.read(size) + text.readline():
+        try:
+            block = _block(part, header, names, tick)
+        except (csv.Error, KeyError, ValueError):
+            lines = itertools.chain(io.StringIO(part, newline=""), text)
+            rows = _in_order(_csv_rows(lines, header, source, line), names, tick)
+            yield from pieces_of(_truths(rows, names))
+            return
+        line, tick = line + block.lines, block.tick
+        yield block.piece
+
+
+def _block(part: str, header: Sequence[str], names: Sequence[str], tick: int | None) -> _Block:
+    """Whole lines of CSV, which follow the row with that tick.
+
+    Raises:
+        csv.Error, KeyError, ValueError: there is a doubt.
+    """
+    width, has_tick = len(header), "tick" in header and "tick" not in names
+    codes = None if has_tick else _digits(part, width)
+    if codes:
+        named = dict(zip(header, codes, strict=True))
+        rows = len(codes[0])
+        return _Block(rows, None, Piece(rows, [named[name] for name in names]))
+    table = csv.reader(io.StringIO(part, newline=""), strict=True)
+    values = [row or [""] for row in table if row or width == 1]
+    columns = list(zip(*values, strict=True)) or [()] * width
+    cells = dict(zip(header, columns, strict=True))
+    if has_tick:
+        tick = _last_tick(cells["tick"], tick)
+    piece = Piece(len(values), [_codes(cells[name]) for name in names])
+    return _Block(table.line_num, tick, piece)
+
+
+def _digits(part: str, width: int) -> list[bytes] | None:
+    """The codes of every column, if each cell is one digit: 0 or 1."""
+    text = part.encode().replace(b"\r\n", b"\n").removesuffix(b"\n") + b"\n"
+    cells, separators = text[::2], text[1::2]
+    rows = len(separators) // width
+    if separators != (b"," * (width - 1) + b"\n") * rows or cells.strip(b"01"):
+        return None
+    codes = cells.translate(_CODES)
+    return [codes[place::width] for place in range(width)]
+
+
+_CODES = bytes.maketrans(b"01", b"\0\1")
+
+
+def _codes(words: Sequence[str]) -> bytes:
+    """The codes of truth values."""
+    known = {word: code(_WORDS[word.strip().lower()]) for word in set(words)}
+    return bytes(map(known.__getitem__, words))
+
+
+def _last_tick(words: Sequence[str], before: int | None) -> int | None:
+    """The last of ticks that grow by one and are written without superfluous zeros."""
+    if not words:
+        return before
+    if not (_WHOLE.fullmatch(words[0]) and _WHOLE.fullmatch(words[-1])):
+        raise ValueError
+    first = int(words[0]) if before is None else before + 1
+    after = first + len(words)
+    if list(map(str.strip, words)) != list(map(str, range(first, after))):
+        raise ValueError
+    return after - 1
+
+
+Read = Callable[[TextIO, str, argparse.Namespace], Iterable[Piece]]
+"""Gives the truth of the propositions, from a table, its source and the options."""
 
 
 def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
@@ -1275,7 +1506,7 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
     return judge(
         monitor,
         _parser(monitor),
-        lambda text, source, options: read_rows(text, names, source),
+        lambda text, source, options: read_pieces(text, names, source),
         arguments,
     )
 
