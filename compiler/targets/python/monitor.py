@@ -46,7 +46,7 @@ def refuse(rule: Formalized) -> Diagnostic | None:
     F601: Python reads no more than 200 parentheses within each other; and one run cannot show
     a probability.
     """
-    if max(map(depth, conditions(rule.sentence))) > _MOST_LEVELS:
+    if not is_readable(rule):
         return not_expressible(
             "Python",
             rule,
@@ -81,6 +81,11 @@ def refuse(rule: Formalized) -> Diagnostic | None:
         rule.sentence.timing_span,
         help='declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks',
     )
+
+
+def is_readable(rule: Formalized) -> bool:
+    """Whether Python reads the monitor: it takes no more than 200 parentheses within each other."""
+    return max(map(depth, conditions(rule.sentence))) <= _MOST_LEVELS
 
 
 _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
