@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from textwrap import indent
 from typing import NamedTuple
 
 from compiler.formalization.formalize import formalize
@@ -11,6 +14,8 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.past import Watch
 from compiler.logic import formula as f
 from compiler.targets.python import monitor as target
+from fretc.verification.monitor.statements import below_docstring
+from fretc.verification.monitor.tick_layout import inlined
 from fretish.bindings.declarations import Declarations
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
@@ -100,6 +105,32 @@ def over(
     ticks, made = packed(columns)
     (outcome,) = evaluate(machine, made, ticks, end)
     return outcome
+
+
+OWN = "# The requirements ---"
+"""Where the code of the requirements begins."""
+_TICK = re.compile(
+    r"( +)rail\.tick = tick = rail\.tick \+ 1\n(?:.*\n)*?(?= +if rail\.\w+_broken >)"
+)
+
+
+def without_step(text: str) -> str:
+    """A monitor's text; of the tick in its step the first line is left."""
+    place = text.index(OWN)
+    return text[:place] + _TICK.sub(r"\1rail.tick = tick = rail.tick + 1\n", text[place:])
+
+
+def with_step(text: str) -> str:
+    """The text with the tick of its `advance` in its step, too, if it has it in there."""
+    place = text.index(OWN)
+    head, own = text[:place], text[place:]
+    try:
+        functions = [n for n in ast.walk(ast.parse(own)) if isinstance(n, ast.FunctionDef)]
+        (advance,) = (node for node in functions if node.name == "advance")
+        tick = inlined(below_docstring(advance))
+    except (SyntaxError, ValueError, StopIteration, AssertionError):
+        return text
+    return head + _TICK.sub(lambda match: indent(tick, match[1]) + "\n", own)
 
 
 def of_formula(formula: f.Formula) -> Monitor:

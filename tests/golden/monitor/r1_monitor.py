@@ -22,7 +22,6 @@ import itertools
 import json
 import os
 import re
-from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
@@ -524,38 +523,140 @@ class Rail(Protocol):
         """What is remembered, for each requirement."""
 
 
-class Window:
-    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window."""
+class _Run:
+    """Ticks without a gap at which `right` of a window held, and the run after it."""
 
-    __slots__ = ("hi", "lo", "now", "runs")
+    __slots__ = ("end", "next", "start")
+
+    def __init__(self, start: int, end: int) -> None:
+        self.start, self.end = start, end
+        self.next: _Run | None = None
+
+
+class Window:
+    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window.
+
+    Copies share the runs that have ended, so a copy costs the same for any number of them: they are
+    linked from the oldest to the youngest, a window goes no further than its own last one, and what
+    a fork adds branches off. The run that may still grow is `start` and `end`.
+    """
+
+    __slots__ = ("branch", "end", "first", "hi", "last", "lo", "now", "start", "turn")
 
     def __init__(self, lo: int, hi: int) -> None:
         self.lo, self.hi = lo, hi
         self.now = -1
-        self.runs: deque[list[int]] = deque()
+        self._clear()
+
+    def _clear(self) -> None:
+        """No run."""
+        self.start = self.end = _NONE
+        self.first: _Run | None = None
+        self.last: _Run | None = None
+        self.turn: _Run | None = None
+        self.branch: _Run | None = None
 
     def step(self, left: bool, right: bool) -> bool:
         """Whether right held `lo..hi` ticks ago, and left ever since."""
         self.now += 1
+        now = self.now
         if not left:
-            self.runs.clear()
+            self._clear()
         if right:
-            if self.runs and self.runs[-1][1] == self.now - 1:
-                self.runs[-1][1] = self.now
-            else:
-                self.runs.append([self.now, self.now])
-        while self.runs and self.runs[0][1] < self.now - self.hi:
-            self.runs.popleft()
-        return bool(self.runs) and self.runs[0][0] <= self.now - self.lo
+            if self.end != now - 1:
+                if self.end != _NONE:
+                    self._add(_Run(self.start, self.end))
+                self.start = now
+            self.end = now
+        while self.first is not None and self.first.end < now - self.hi:
+            self._drop(self.first)
+        if self.first is not None:
+            return self.first.start <= now - self.lo
+        if self.end < now - self.hi:
+            self.start = self.end = _NONE
+        return 0 <= self.start <= now - self.lo
+
+    def _add(self, run: _Run) -> None:
+        """The run has ended."""
+        if self.last is None:
+            self.first = run
+        elif self.last is self.turn:
+            self.branch = run
+        else:
+            self.last.next = run
+        self.last = run
+
+    def _after(self, run: _Run) -> _Run | None:
+        if run is self.last:
+            return None
+        return self.branch if run is self.turn else run.next
+
+    def _drop(self, oldest: _Run) -> None:
+        self.first = self._after(oldest)
+        if self.first is None:
+            self.last = None
+        if oldest is self.turn:  # it leads to all runs of the other window
+            self.turn = self.branch = None
+
+    def copy(self) -> "Window":
+        """As it is now; only one of both can go on."""
+        other = Window(self.lo, self.hi)
+        for name in self.__slots__:
+            setattr(other, name, getattr(self, name))
+        return other
+
+    def fork(self) -> "Window":
+        """As it is now; both can go on. A fork has none of its own."""
+        assert self.turn is None
+        other = self.copy()
+        other.turn = self.last
+        return other
+
+    def _runs(self) -> Iterator[tuple[int, int]]:
+        """The oldest first."""
+        run = self.first
+        while run is not None:
+            yield run.start, run.end
+            run = self._after(run)
+        if self.end != _NONE:
+            yield self.start, self.end
 
     def state(self) -> tuple[tuple[int, int], ...]:
         """The runs, each as ages (oldest, youngest); ages above `hi` are all one."""
-        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self.runs)
+        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._runs())
+
+    def is_like(self, other: "Window") -> bool:
+        """Both have one state; their clocks agree. What a fork shares is not looked at again."""
+        mine, theirs, shared = self.first, other.first, other.turn
+        youngest = (self.start, self.end), (other.start, other.end)
+        if mine is None or theirs is None:
+            return mine is theirs and self._same(*youngest)
+        if mine is theirs and shared is not None:
+            mine, theirs = shared, shared
+        elif not self._same((mine.start, mine.end), (theirs.start, theirs.end)):
+            return False
+        mine, theirs = self._after(mine), other._after(theirs)
+        while mine and theirs and (mine.start, mine.end) == (theirs.start, theirs.end):
+            mine, theirs = self._after(mine), other._after(theirs)
+        return mine is theirs is None and youngest[0] == youngest[1]
+
+    def _same(self, one: tuple[int, int], other: tuple[int, int]) -> bool:
+        """Both are one run, as far as the window reaches."""
+        reach = self.now - self.hi
+        return one[1] == other[1] and max(one[0], reach) == max(other[0], reach)
 
     def restore(self, state: Sequence[Sequence[int]]) -> None:
         """Go back to a state."""
+        self._clear()
         self.now = self.hi
-        self.runs = deque([self.now - a, self.now - b] for a, b in state)
+        for oldest, youngest in state:
+            if self.end != _NONE:
+                self._add(_Run(self.start, self.end))
+            self.start, self.end = self.now - oldest, self.now - youngest
+
+
+_NONE = -2
+"""No tick, and none before one."""
 
 
 class Standing(NamedTuple):
@@ -573,12 +674,13 @@ class Standing(NamedTuple):
     """The last tick at which that can be decided; None where there is no deadline."""
 
 
-_PIECE, _FEW = 4096, 64
-"""Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy."""
+_PIECE, _FEW, _SOON = 4096, 64, 64
+"""Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy;
+ticks after which two rails are compared first."""
 
 
 class Monitor:
-    """Steps propositions and gives verdicts; a generated class adds `step` and `run`."""
+    """Steps propositions; a generated class adds `step`, `run` and `verdicts`."""
 
     PROGRAM: ClassVar[str]
     """SHA-256 of the generated code: a state fits no other."""
@@ -588,11 +690,14 @@ class Monitor:
     LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
     """Each parameter of `columns`, with its proposition, and False where it is negated."""
     RAIL: ClassVar[type[Rail]]
+    verdicts: Callable[..., tuple[Verdict, ...]]
+    """Of each requirement, whatever follows: satisfied or violated; or pending."""
     columns: Callable[..., tuple[Signals[int], ...]]
     """The signals of whole traces, for each requirement: of `every`, the column that is true at
     every tick, and a keyword for each of `LITERALS`."""
 
     def __init__(self) -> None:
+        self._values = _picked(tuple(self.PROPOSITIONS.values()))
         self.reset()
 
     def reset(self) -> None:
@@ -609,7 +714,7 @@ class Monitor:
         content = {
             "program": self.PROGRAM,
             "must": _saved(self.must),
-            "may": _saved(self.may) if self.may is not self.must else None,
+            "may": None if self._is_one() else _saved(self.may),
         }
         return {**content, "sha256": _digest(content)}
 
@@ -629,7 +734,9 @@ class Monitor:
         _restored(must, content["must"])
         if content["may"] is not None:
             _restored(may, content["may"])
-        self.must, self.may = must, must if content["may"] is None else may
+        self.must = self.may = must
+        if content["may"] is not None:
+            self._part(may)
 
     def standings(self) -> tuple[Standing, ...]:
         """The standing of each requirement."""
@@ -648,7 +755,44 @@ class Monitor:
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
-            self.may = _copied(self.must, doubt=True)
+            self._part(_forked(self.must))
+
+    def _step(self, row: Row) -> None:
+        """Step both rails, or one as long as all is known."""
+        if self.may is self.must and None in row:
+            self._fork()
+        must, may = self.must, self.may
+        must.advance((row,))
+        if may is not must:
+            may.advance((row,))
+            self._meet()
+
+    def _part(self, may: Rail) -> None:
+        self.may = may
+        self._apart = self.tick
+        self._due = self.tick + _SOON
+
+    def _meet(self) -> None:
+        """One rail again if both remember the same; looked at ever less often: it may take long."""
+        tick = self.tick
+        if tick < self._due:
+            return
+        if self._is_one():
+            self.may = self.must
+        self._due = tick + max(_SOON, tick - self._apart)
+
+    def _is_one(self) -> bool:
+        """Both rails remember the same; windows, which may be long, are looked at last."""
+        if self.may is self.must:
+            return True
+        windows = []
+        for name in self.RAIL.__slots__:
+            must, may = getattr(self.must, name), getattr(self.may, name)
+            if isinstance(must, Window):
+                windows.append((must, may))
+            elif must != may and name != "doubt":
+                return False
+        return all(must.is_like(may) for must, may in windows)
 
     def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
         """Step every row, in pieces of some thousand: one rail after the other.
@@ -675,42 +819,90 @@ class Monitor:
         if self.may is not self.must:
             self.must.advance(block)
             self.may.advance(block)
+            self._meet()
         elif len(block) < _FEW:
             if any(None in row for row in block):
                 self._fork()
                 self.may.advance(block)
             self.must.advance(block)
         else:
-            before = _copied(self.must, doubt=True)
+            before = _forked(self.must)
             if not self.must.advance(block):
-                self.may = before
+                self._part(before)
                 before.advance(block)
 
     def _copies(self) -> tuple[Rail, Rail]:
         """Both rails as they are now."""
-        must = _copied(self.must, doubt=False)
-        return must, must if self.may is self.must else _copied(self.may, doubt=True)
+        must = _copied(self.must)
+        return must, must if self.may is self.must else _copied(self.may)
 
     def _in_order(self, rows: list[Any]) -> list[Row]:
         """Rows by name as rows in the order of `PROPOSITIONS`."""
         if not isinstance(rows[0], Mapping):
             return rows
-        names = tuple(self.PROPOSITIONS)
-        if len(names) < 2:
-            return [tuple(row[name] for name in names) for row in rows]
-        return list(map(itemgetter(*names), rows))
+        return list(map(_picked(tuple(self.PROPOSITIONS)), rows))
 
-    def verdicts(self) -> tuple[Verdict, ...]:
-        """Of each requirement, whatever follows: satisfied or violated; or pending."""
-        readings = zip(self.must.marks(), self.may.marks(), self.must.signals(), strict=True)
-        return tuple(
-            VIOLATED
-            if must.violated >= 0
-            else SATISFIED
-            if certain.settled and may.violated < 0
-            else PENDING
-            for must, may, certain in readings
-        )
+    def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Row]], Iterable[Row]]:
+        """What makes rows for `run` of rows whose values are in the order of `names`.
+
+        Raises:
+            ValueError: the names are not those of `PROPOSITIONS`, each once.
+        """
+        return rows_in_order(tuple(names), tuple(self.PROPOSITIONS))
+
+    def _row(self, arguments: Mapping[str, Truth]) -> Row:
+        """The arguments of a step that has too many parameters for Python to look for each.
+
+        Raises:
+            TypeError: as Python does, where one is missing or is no parameter.
+        """
+        parameters = tuple(self.PROPOSITIONS.values())
+        if len(arguments) == len(parameters):
+            try:
+                return self._values(arguments)
+            except KeyError:
+                pass
+        where = f"{type(self).__name__}.step()"
+        for name in arguments:
+            if name not in parameters:
+                raise TypeError(f"{where} got an unexpected keyword argument {name!r}")
+        missing = ", ".join(repr(name) for name in parameters if name not in arguments)
+        raise TypeError(f"{where} missing required keyword-only arguments: {missing}")
+
+
+def rows_in_order(
+    names: tuple[str, ...], order: tuple[str, ...]
+) -> Callable[[Iterable[Sequence[Any]]], Iterable[Sequence[Any]]]:
+    """What puts rows of values in the order of `names` into another order.
+
+    Raises:
+        ValueError: the names are not the same, each once.
+    """
+    places = {name: place for place, name in enumerate(names)}
+    missing, unknown = {*order} - places.keys(), places.keys() - {*order}
+    for wrong, why in ((missing, "is missing"), (unknown, "is no name of this monitor")):
+        if wrong:
+            raise ValueError(f"`{min(wrong)}` {why}")
+    if len(places) < len(names):
+        raise ValueError("a name comes more than once")
+    if names == order:
+        return lambda rows: rows
+    pick = _picked([places[name] for name in order])
+
+    def in_order(rows: Iterable[Sequence[Any]]) -> Iterator[Sequence[Any]]:
+        for row in rows:
+            if len(row) != len(names):
+                raise ValueError(f"a row has {len(row)} values for {len(names)} names")
+            yield pick(row)
+
+    return in_order
+
+
+def _picked(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
+    """What gives the values under all keys."""
+    if len(keys) < 2:
+        return lambda values: tuple(values[key] for key in keys)
+    return itemgetter(*keys)
 
 
 def _standing(
@@ -755,15 +947,22 @@ def literals_of(
     return found
 
 
-def _copied(rail: Rail, *, doubt: bool) -> Rail:
-    """A rail in the same state, on which an unknown counts as `doubt`."""
+def _copied(rail: Rail) -> Rail:
+    """A rail in the same state; only one of both can go on."""
+    return _with_windows(rail, rail.doubt, Window.copy)
+
+
+def _forked(rail: Rail) -> Rail:
+    """A rail in the same state, on which an unknown counts as true; both can go on."""
+    return _with_windows(rail, True, Window.fork)
+
+
+def _with_windows(rail: Rail, doubt: bool, made: Callable[[Window], Window]) -> Rail:
     copy = type(rail)(doubt=doubt)
     for name in rail.__slots__:
-        there, value = getattr(copy, name), getattr(rail, name)
-        if isinstance(there, Window):
-            there.restore(value.state())
-        elif name != "doubt":
-            setattr(copy, name, value)
+        if name != "doubt":
+            value = getattr(rail, name)
+            setattr(copy, name, made(value) if isinstance(value, Window) else value)
     return copy
 
 
@@ -791,7 +990,7 @@ def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
         if isinstance(there, Window):
             there.restore(value)
         else:
-            setattr(rail, name, value)
+            setattr(rail, name, tuple(value) if isinstance(value, list) else value)
 
 
 @dataclass(frozen=True)
@@ -1473,17 +1672,11 @@ class R1Rail:
 
     __slots__ = (
         "doubt",
-        "r1_answer",
-        "r1_breach",
         "r1_broken",
-        "r1_doom",
         "r1_doomed",
-        "r1_fails",
         "r1_last",
         "r1_open",
-        "r1_owed",
-        "r1_settled",
-        "r1_trigger",
+        "r1_signals",
         "since_1",
         "tick",
     )
@@ -1501,13 +1694,7 @@ class R1Rail:
         self.r1_doomed = -1
         self.r1_last = -1
         self.r1_open = -1
-        self.r1_trigger = False
-        self.r1_breach = False
-        self.r1_doom = False
-        self.r1_owed = False
-        self.r1_fails = False
-        self.r1_settled = False
-        self.r1_answer = False
+        self.r1_signals: tuple[bool, ...] = (False,) * 7
 
     def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
         """Step every row; whether all was known in them."""
@@ -1545,10 +1732,7 @@ class R1Rail:
             return True
         self.tick = tick
         self.since_1 = since_1
-        self.r1_trigger = too_close
-        self.r1_owed = since_1
-        self.r1_fails = since_1
-        self.r1_answer = stopped
+        self.r1_signals = (too_close, False, False, since_1, since_1, False, stopped)
         self.r1_last = r1_last
         self.r1_open = r1_open
         return known
@@ -1556,15 +1740,7 @@ class R1Rail:
     def signals(self) -> tuple[Signals[bool], ...]:
         """The signals of the last tick, for each requirement."""
         return (
-            Signals(
-                self.r1_trigger,
-                self.r1_breach,
-                self.r1_doom,
-                self.r1_owed,
-                self.r1_fails,
-                self.r1_settled,
-                self.r1_answer,
-            ),
+            Signals(*self.r1_signals),
         )
 
     def marks(self) -> tuple[Marks, ...]:
@@ -1600,15 +1776,30 @@ class R1Monitor(Monitor):
     may: R1Rail
 
     def step(self, *, too_close: Truth, stopped: Truth) -> Verdict:
-        """One tick; None stands for unknown."""
-        row = (too_close, stopped)
-        if too_close is None or stopped is None:
-            self._fork()
-        must, may = self.must, self.may
-        must.advance((row,))
-        if may is not must:
-            may.advance((row,))
-        if must.r1_broken >= 0:
+        """One tick; None stands for unknown. It is `advance` for one row where all is known."""
+        rail = self.must
+        if (
+            rail is not self.may
+            or (too_close is not True and too_close is not False)
+            or (stopped is not True and stopped is not False)
+        ):
+            self._step((too_close, stopped))
+            return self.verdicts()[0]
+        rail.tick = tick = rail.tick + 1
+        since_1 = rail.since_1
+        not_stopped = not stopped
+        # !stopped S (too_close & !stopped)
+        since_1 = too_close and not_stopped or not_stopped and since_1
+        # R1: trigger, open demand
+        if too_close:
+            rail.r1_last = tick
+        if not since_1:
+            rail.r1_open = -1
+        elif rail.r1_open < 0:
+            rail.r1_open = tick
+        rail.since_1 = since_1
+        rail.r1_signals = (too_close, False, False, since_1, since_1, False, stopped)
+        if rail.r1_broken >= 0:
             return VIOLATED
         return PENDING
 
@@ -1616,6 +1807,15 @@ class R1Monitor(Monitor):
         """Many ticks at once: rows in the order of `PROPOSITIONS`, or by their names."""
         self.advance(rows)
         return self.verdicts()[0]
+
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Of each requirement, whatever follows: satisfied or violated; or pending."""
+        must = self.must
+        return (
+            VIOLATED
+            if must.r1_broken >= 0
+            else PENDING,
+        )
 
     @staticmethod
     def columns(every: int, *, too_close: int, not_stopped: int, stopped: int) -> tuple[Signals[int], ...]:
