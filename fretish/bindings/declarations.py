@@ -16,6 +16,7 @@ from typing import Any
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
+from fretish.documents import Requirement
 from fretish.expressions import Expression, names
 from fretish.reading.memory import remembered
 from fretish.units import Unit
@@ -337,6 +338,9 @@ class Declarations:
     map: Map | None = None
     labels: Mapping[str, tuple[LabelSource, ...]] = field(default_factory=dict)
     """`[run.label]`: each label of runs, with its sources; the first that says something counts."""
+    environment: tuple[Requirement, ...] = ()
+    """`[[assume.requirement]]`: what the environment is taken to keep, where requirements are
+    asked whether they can be kept together; no verdict on a log depends on it."""
 
     @property
     def signal_names(self) -> tuple[str, ...]:

@@ -93,6 +93,7 @@ class Code(Enum):
         "F353",
         "samples of a tick combine in several ways",
     )
+    NO_ROLE = ("F354", "nothing says who chooses a variable")
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
     DEFINITION_CIRCLE = ("F342", "the values of variables lead in a circle")
     DOUBLE_DEFINITION = ("F343", "a name is defined in two ways")

@@ -1,0 +1,82 @@
+"""Who chooses each variable: the environment its inputs, the system its outputs.
+
+A role is declared, never guessed: whether requirements can be kept together depends on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from compiler.formalization.binding_agreement import place
+from compiler.formalization.formalized import Formalized
+from fretish import expressions as e
+from fretish.bindings.declarations import Declarations, Role
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.reading.toml_text import as_key
+
+Roles = Mapping[str, Role]
+"""Input or output, of every variable of the requirements."""
+CHOSEN = (Role.INPUT, Role.OUTPUT)
+
+
+def roles(rules: Sequence[Formalized]) -> Roles | tuple[Diagnostic, ...]:
+    """The role of each variable; or F354 for each that has none, where it stands first."""
+    found: dict[str, Role] = {}
+    missing: dict[str, Diagnostic] = {}
+    for rule in rules:
+        for name in rule.variables:
+            if name in found or name in missing:
+                continue
+            role = _role(rule, name)
+            if role is None:
+                missing[name] = _no_role(rule, name, rules)
+            else:
+                found[name] = role
+    return tuple(missing.values()) or found
+
+
+def _role(rule: Formalized, name: str) -> Role | None:
+    """The role that is declared; that of its signals, where a proposition has none of its own."""
+    variable = rule.glossary.get(name)
+    if variable is not None and variable.role in CHOSEN:
+        return Role(variable.role)
+    return _common(rule.declarations, name) if rule.declarations else None
+
+
+def _common(declarations: Declarations, name: str) -> Role | None:
+    proposition = declarations.propositions.get(name)
+    if proposition is None:
+        return None
+    signals = (declarations.signals.get(signal) for signal in proposition.signals)
+    theirs = {signal.role if signal is not None else None for signal in signals}
+    role = theirs.pop() if len(theirs) == 1 else None
+    return role if role in CHOSEN else None
+
+
+def _no_role(rule: Formalized, name: str, rules: Iterable[Formalized]) -> Diagnostic:
+    """F354."""
+    declared, table = rule.declarations, "variable"
+    if declared is not None:
+        table = "proposition" if name in declared.propositions else table
+        table = "signal" if name in declared.signals else table
+    answered = any(name in _answers(each) for each in rules)
+    role = Role.OUTPUT if answered else Role.INPUT
+    why = "stands in a response" if answered else "stands in no response"
+    variable = rule.glossary.get(name)
+    if variable is not None and variable.role == Role.MODE:
+        message = f"`{name}` is a mode, and nothing says whether the system chooses it"
+    else:
+        message = f"nothing says who chooses `{name}`: the environment or the system"
+    line = f'role = "{role}"'
+    return Diagnostic(
+        Code.NO_ROLE,
+        message,
+        place(rule, name),
+        help=f'say `role = "input"` (the environment) or `role = "output"` (the system) in '
+        f"`[{table}.{as_key(name)}]` of bindings.toml; `{name}` {why}",
+        paste=f"[{table}.{as_key(name)}]\n{line}",
+    )
+
+
+def _answers(rule: Formalized) -> frozenset[str]:
+    return frozenset(name.id for name in e.names(rule.sentence.response))

@@ -1,0 +1,90 @@
+"""What each question of some requirements starts from: their arena, and what limits its answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import atoms_of
+from fretc.analysis.arena.alphabet import Tick, numbers
+from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.product import Arena, arena
+from fretc.analysis.arena.propositions import Propositions
+from fretc.analysis.arena.roles import Roles
+from fretc.analysis.components import about
+from fretc.analysis.games.budget import Budget
+from fretc.analysis.games.game import Game
+from fretc.analysis.games.plays import Letter
+from fretc.analysis.games.runs import Runs
+from fretish.bindings.declarations import Role
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """Some requirements, the assumptions that bear upon them, and the arena of both."""
+
+    rules: tuple[Formalized, ...]
+    assumptions: tuple[Formalized, ...]
+    arena: Arena
+    roles: Roles
+    as_fret: bool
+
+    def counters(self, ids: Iterable[str]) -> tuple[Counter, ...]:
+        """Those of some requirements, in the order of the files."""
+        wanted = set(ids)
+        return tuple(each for each in self.arena.counters if each.id in wanted)
+
+    def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
+        """The game of some counters, under all assumptions."""
+        return Game(self.arena.alphabet, counters, self.arena.assumptions, budget)
+
+    def runs(
+        self, kept: Sequence[Counter], budget: Budget, watched: Sequence[Counter] = ()
+    ) -> Runs:
+        """The runs that keep some counters, and all assumptions."""
+        counters = [*kept, *self.arena.assumptions]
+        return Runs(self.arena.alphabet, counters, budget, watched)
+
+    def ticks(self, ids: Iterable[str], letters: Iterable[Letter]) -> tuple[Tick, ...]:
+        """Letters as values of the variables of some requirements and of the assumptions."""
+        wanted = set(ids)
+        rules = [*(rule for rule in self.rules if rule.id in wanted), *self.assumptions]
+        names = {name for rule in rules for name in (*rule.variables, *atoms_of(rule.sentence))}
+        each = map(self.arena.alphabet.values, letters)
+        return tuple({name: tick[name] for name in sorted(tick) if name in names} for tick in each)
+
+    @property
+    def of_inputs(self) -> str | None:
+        """Why the environment has more letters here than there can be; None: it has not."""
+        return self.arena.alphabet.doubts.get(Role.INPUT)
+
+    @property
+    def of_outputs(self) -> str | None:
+        """The same of the system."""
+        return self.arena.alphabet.doubts.get(Role.OUTPUT)
+
+    @property
+    def left_out(self) -> str | None:
+        """Which requirements have no counter, and why; None: each has one."""
+        return "; ".join(f"{id}: {why}" for id, why in self.arena.beyond.items()) or None
+
+
+def stage(
+    rules: Sequence[Formalized],
+    assumptions: Sequence[Formalized],
+    roles: Roles,
+    *,
+    as_fret: bool = False,
+) -> Stage:
+    """The stage of some requirements.
+
+    Raises:
+        BeyondError: an assumption has no counter.
+    """
+    near = about(rules, assumptions, roles)
+    fresh = numbers()
+    alphabet = Propositions([*rules, *near], roles, fresh)
+    return Stage(
+        tuple(rules), near, arena(rules, near, alphabet, fresh, as_fret=as_fret), roles, as_fret
+    )

@@ -1,0 +1,121 @@
+"""Whether a component can be kept, and if not, which of its requirements fight."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from compiler.formalization.formalized import Formalized
+from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.roles import Roles
+from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
+from fretc.analysis.games.budget import Budget, OutOfTimeError
+from fretc.analysis.games.cores import Members, cores
+from fretc.analysis.games.plays import Counterstrategy
+from fretc.analysis.games.replay import broken
+from fretc.analysis.reasons import because
+from fretc.analysis.stage import Stage
+from fretish.bindings.declarations import Role
+
+
+@dataclass(frozen=True, slots=True)
+class Completeness:
+    """All minimal conflicts among these are found."""
+
+    requirements: tuple[str, ...]
+
+
+def verdict(setting: Stage, seconds: float) -> Iterator[Component]:
+    """Whether the requirements of a component can be kept together."""
+    start = time.process_time()
+    try:
+        answer, why = _verdict(setting, Budget(seconds))
+    except (BeyondError, OutOfTimeError) as error:
+        answer, why = Verdict.NOT_CHECKED, str(error)
+    spent = round(time.process_time() - start, 3)
+    yield component(setting.rules, setting.roles, answer, why, spent)
+
+
+def component(
+    rules: Sequence[Formalized], roles: Roles, answer: Verdict, why: str, seconds: float = 0.0
+) -> Component:
+    """A component with its verdict."""
+    names = (name for rule in rules for name in rule.variables if roles[name] is Role.OUTPUT)
+    ids = tuple(rule.id for rule in rules)
+    return Component(ids, tuple(dict.fromkeys(names)), answer, why, seconds)
+
+
+def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
+    """The verdict, and how it is known, or why it is not."""
+    _check_assumptions(setting, budget)
+    if setting.game(setting.arena.counters, budget).solution().is_realizable:
+        doubt = setting.left_out or setting.of_outputs
+        if doubt is None:
+            return Verdict.REALIZABLE, "the system has a strategy"
+    else:
+        doubt = setting.of_inputs
+        if doubt is None:
+            return Verdict.UNREALIZABLE, "the environment wins"
+    return Verdict.NOT_CHECKED, doubt
+
+
+def _check_assumptions(setting: Stage, budget: Budget) -> None:
+    """Raise BeyondError where no run keeps the assumptions: everything would follow from them."""
+    if not setting.assumptions:
+        return
+    runs = setting.runs((), budget)
+    if not runs.is_possible():
+        ids = ", ".join(each.id for each in setting.assumptions)
+        raise BeyondError(f"no run keeps the assumptions {ids}")
+
+
+def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completeness | OpenQuestion]:
+    """Every minimal conflict; at the end a question, where there may be more."""
+    budget = Budget(seconds)
+    counters = setting.arena.counters
+    read = {rule.id: frozenset(rule.variables) for rule in setting.rules}
+
+    def chosen(members: Members) -> list[Counter]:
+        return [counters[i] for i in sorted(members)]
+
+    def is_conflict(members: Members) -> bool:
+        return not setting.game(chosen(members), budget).solution().is_realizable
+
+    def near(i: int, j: int) -> bool:
+        return bool(read[counters[i].id] & read[counters[j].id])
+
+    question = f"which others of {', '.join(rule.id for rule in setting.rules)} fight"
+    if setting.of_inputs is not None:
+        yield OpenQuestion(question, setting.of_inputs)
+        return
+    try:
+        _check_assumptions(setting, budget)
+        for members in cores(len(counters), is_conflict, near):
+            yield _conflict(setting, chosen(members))
+    except (OutOfTimeError, BeyondError) as error:
+        yield OpenQuestion(question, str(error))
+        return
+    if setting.left_out is None:
+        yield Completeness(tuple(rule.id for rule in setting.rules))
+    else:
+        yield OpenQuestion(question, setting.left_out)
+
+
+def _conflict(setting: Stage, counters: Sequence[Counter]) -> Conflict:
+    """A minimal conflict, with a play that the formulas of its monitors confirm."""
+    ids = sorted(each.id for each in counters)
+    game = setting.game(counters, Budget(float("inf")))
+    play = Counterstrategy(game, game.solution(traps=True)).play()
+    rules = [rule for rule in setting.rules if rule.id in ids]
+    alphabet = setting.arena.alphabet
+    lost = broken(rules, alphabet, play, as_fret=setting.as_fret)
+    assert lost, f"the play of {', '.join(ids)} breaks none of them"
+    assert not broken(setting.assumptions, alphabet, play), "the environment keeps its word"
+    return Conflict(
+        tuple(ids),
+        setting.ticks(ids, play.letters),
+        because(rules, counters, game, play),
+        play.loop,
+    )

@@ -1,0 +1,152 @@
+"""`fretc analyze`: can requirements be kept together, which fight, which say nothing.
+
+`fretc.analysis` answers; this module reads the options and prints.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.options import PATH, format_option, path_option, places, requirements_option
+from fretc.terminal.output import (
+    BAD,
+    INTERRUPTED,
+    NOT_SHOWN,
+    SHOWN,
+    VIOLATION,
+    coloured,
+    say_briefly,
+    stop,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from compiler.formalization.formalized import Formalized
+    from compiler.project.folder import Project
+    from fretc.analysis.findings import Analysis
+
+
+@click.command(short_help="Say whether requirements can be kept together.")
+@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
+@click.option(
+    "--component", metavar="NAME", help="Only the requirements of this component of the sentences."
+)
+@click.option(
+    "--time",
+    "seconds",
+    type=click.FloatRange(min=0, min_open=True),
+    default=20,
+    show_default=True,
+    help="Seconds of a processor for each question.",
+)
+@click.option("--as-fret", is_flag=True, help="Answer as FRET does: `eventually` means at once.")
+@requirements_option
+@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@format_option()
+def analyze(
+    files: tuple[str, ...],
+    component: str | None,
+    seconds: float,
+    as_fret: bool,
+    requirements: str,
+    bindings: str | None,
+    form: str,
+) -> None:
+    """Say whether requirements can be kept together, which fight, and which say nothing.
+
+    FILE holds requirements, or is a folder of such files: in place of `--requirements`. The
+    bindings say which variables are inputs, chosen by the environment, and which are outputs.
+
+    Exit status: 0 a system can keep all of them, 1 none can, 2 bad use or input, 3 not checked.
+    """
+    from compiler.files.records import plain
+    from compiler.files.templating import to_json
+    from fretc.analysis.analysis import Finding, Options, assembled, jobs
+    from fretc.analysis.arena.roles import roles
+    from fretc.analysis.assumptions import assumptions
+    from fretc.analysis.text_output import lines
+    from fretc.analysis.worker import Stopped, findings
+    from fretc.terminal.progress import at_work
+    from fretish.printer import sentence as printed
+
+    project, first = _project(files, requirements, bindings)
+    rules = _rules(project, component)
+    assumed, remarks = assumptions(rules, project.declarations)
+    say_briefly(remarks, first)
+    if has_errors(remarks):
+        raise SystemExit(BAD)
+    chosen = roles([*rules, *assumed])
+    if isinstance(chosen, tuple):
+        stop(*chosen)
+    options = Options(seconds, as_fret)
+    found: list[Finding] = []
+    stopped = False
+    try:
+        for finding in findings(jobs(rules, chosen, assumed, options), at_work):
+            found.append(finding)
+    except Stopped:
+        stopped = True
+    analysis = assembled(rules, chosen, assumed, options, found)
+    if form == "json":
+        click.echo(to_json(plain(analysis)))
+    else:
+        sentences = {rule.id: printed(rule.written) for rule in rules}
+        click.echo(coloured([*lines(analysis, sentences)]), nl=False)
+    raise SystemExit(INTERRUPTED if stopped else _status(analysis))
+
+
+def _project(files: Sequence[str], requirements: str, bindings: str | None) -> tuple[Project, str]:
+    """The project, and where it is; a mistake in it stops the command."""
+    from compiler.project.folder import load
+    from compiler.project.paths import listed, requirement_files
+
+    (first, *_) = places(files, requirements)
+    paths = listed(files) if files else requirement_files(requirements)
+    if isinstance(paths, Diagnostic):
+        stop(paths)
+    project = load(paths, bindings)
+    say_briefly(project.diagnostics, first)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    return project, first
+
+
+def _rules(project: Project, component: str | None) -> tuple[Formalized, ...]:
+    """The rules that are asked about: those that are in force."""
+    rules = tuple(rule for rule in project.rules if rule.requirement.status != "retired")
+    if component is not None:
+        rules = _of_component(rules, component)
+    if not rules:
+        stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
+    return rules
+
+
+def _of_component(rules: Sequence[Formalized], component: str) -> tuple[Formalized, ...]:
+    chosen = tuple(rule for rule in rules if rule.sentence.component == component)
+    if not chosen:
+        known = tuple(dict.fromkeys(rule.sentence.component for rule in rules))
+        near = suggestion(component, known)
+        stop(
+            Diagnostic(
+                Code.BAD_USAGE,
+                f"no requirement is about the component `{component}`",
+                help=f"did you mean `{near}`?" if near else f"there are {', '.join(known)}",
+            )
+        )
+    return chosen
+
+
+def _status(analysis: Analysis) -> int:
+    from fretc.analysis.findings import Verdict
+
+    match analysis.verdict:
+        case Verdict.REALIZABLE:
+            return SHOWN
+        case Verdict.UNREALIZABLE:
+            return VIOLATION
+        case Verdict.NOT_CHECKED:
+            return NOT_SHOWN

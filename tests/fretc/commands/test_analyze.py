@@ -1,0 +1,136 @@
+"""`fretc analyze` as its users meet it."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+
+from fretc.analysis import findings
+from tests.command import Fretc
+
+FIGHT = (
+    "whenever start the line shall within 2 ticks satisfy run",
+    "upon stop the line shall for 3 ticks satisfy !run",
+)
+ROLES = {"start": "input", "stop": "input", "run": "output"}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return written(tmp_path, FIGHT)
+
+
+def written(
+    folder: Path, sentences: Sequence[str], roles: dict[str, str] = ROLES, more: str = ""
+) -> Path:
+    for number, sentence in enumerate(sentences, 1):
+        (folder / f"r{number}.fret").write_text(f'+++\nid = "R{number}"\n+++\n{sentence}\n')
+    tables = "".join(f'[variable.{name}]\nrole = "{role}"\n' for name, role in roles.items())
+    (folder / "bindings.toml").write_text(tables + more)
+    return folder
+
+
+def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
+    run = fretc("analyze", str(folder))
+    assert run.status == 1
+    assert run.out.startswith(
+        "✘ unrealizable: no system can keep all requirements\n"
+        "  ✘ R1, R2 (about run): the environment wins\n"
+        "\n"
+        "✘ conflict 1: R1 and R2 cannot be kept together\n"
+        "  at tick 2 R1 (since tick 0) demands `run` and R2 (since tick 0) forbids `run`\n"
+    )
+    assert "    run (output)   0  0  1\n" in run.out
+
+
+def test_json_is_as_its_schema_says(fretc: Fretc, folder: Path) -> None:
+    run = fretc("analyze", str(folder), "--format", "json")
+    assert run.status == 1
+    found = json.loads(run.out)
+    jsonschema.validate(found, findings.schema())
+    (conflict,) = found["conflicts"]
+    assert conflict["requirements"] == ["R1", "R2"]
+    assert conflict["play"][0] == {"run": False, "start": True, "stop": True}
+    assert found["roles"] == {"run": "output", "start": "input", "stop": "input"}
+
+
+def test_an_assumption_makes_it_realizable(fretc: Fretc, tmp_path: Path) -> None:
+    assumed = (
+        '[[assume.requirement]]\nid = "A1"\ntext = "one button"\n'
+        'sentence = "upon stop the man shall for 3 ticks satisfy !start"\n'
+        '[[assume.requirement]]\nid = "A2"\n'
+        'sentence = "whenever start the man shall for 3 ticks satisfy !stop"\n'
+    )
+    run = fretc("analyze", str(written(tmp_path, FIGHT, more=assumed)))
+    assert run.status == 0, run.out
+    assert run.out.startswith("✔ realizable: a system can keep all requirements, while the assump")
+    assert "assumed A1: one button\nassumed A2: whenever start the man shall" in run.out
+
+
+@pytest.mark.parametrize(
+    ("table", "code", "place"),
+    [
+        ('id = "R1"\nsentence = "m shall never satisfy stop"', "F201", "bindings.toml:9:"),
+        ('id = "A1"\nsentence = "m shall newer satisfy stop"', "F1", "bindings.toml:9:"),
+        ('id = "A1"', "F303", "bindings.toml:"),
+        ('id = "A1"\nsentence = "m shall never satisfy stop"\nsince = 3', "F302", "toml:10:1"),
+        ('id = "A1"\nsentence = "m shall never satisfy fog"', "F354", "bindings.toml:9:"),
+    ],
+)
+def test_a_mistaken_assumption_is_told_where_it_stands(
+    fretc: Fretc, tmp_path: Path, table: str, code: str, place: str
+) -> None:
+    folder = written(tmp_path, FIGHT, more=f"[[assume.requirement]]\n{table}\n")
+    run = fretc("analyze", str(folder))
+    assert run.status == 2
+    assert run.err.startswith(code), run.err
+    assert place in run.err
+
+
+def test_a_variable_without_a_role_is_an_error_with_lines_to_paste(
+    fretc: Fretc, tmp_path: Path
+) -> None:
+    folder = written(tmp_path, FIGHT, {"start": "input", "stop": "mode"})
+    run = fretc("analyze", str(folder))
+    assert run.status == 2
+    assert "F354 nothing says who chooses `run`: the environment or the system" in run.err
+    assert '[variable.run]\nrole = "output"' in run.err
+    assert "F354 `stop` is a mode, and nothing says whether the system chooses it" in run.err
+    assert '[variable.stop]\nrole = "input"' in run.err
+
+
+def test_a_component_is_asked_about_alone(fretc: Fretc, tmp_path: Path) -> None:
+    other = "whenever start the lamp shall immediately satisfy glow"
+    folder = written(tmp_path, (*FIGHT, other), ROLES | {"glow": "output"})
+    run = fretc("analyze", str(folder), "--component", "lamp")
+    assert run.status == 0
+    assert "R1" not in run.out
+    run = fretc("analyze", str(folder), "--component", "lamb")
+    assert run.status == 2
+    assert "no requirement is about the component `lamb`" in run.err
+    assert "did you mean `lamp`?" in run.err
+
+
+def test_what_is_not_checked_exits_with_3(fretc: Fretc, tmp_path: Path) -> None:
+    ahead = "whenever start the line shall immediately satisfy persists(2, run)"
+    run = fretc("analyze", str(written(tmp_path, [ahead], {"start": "input", "run": "output"})))
+    assert run.status == 3
+    assert run.out.startswith("? not checked: R1: `persists(2,run)` is more than a value")
+
+
+def test_a_retired_requirement_is_no_part_of_the_set(fretc: Fretc, folder: Path) -> None:
+    path = folder / "r2.fret"
+    path.write_text(path.read_text().replace('"R2"', '"R2"\nstatus = "retired"'))
+    assert fretc("analyze", str(folder)).status == 0
+
+
+def test_as_fret_eventually_means_at_once(fretc: Fretc, tmp_path: Path) -> None:
+    sentences = (
+        "whenever start the line shall eventually satisfy run",
+        "upon stop the line shall immediately satisfy !run",
+    )
+    folder = str(written(tmp_path, sentences))
+    assert fretc("analyze", folder).status == 0
+    assert fretc("analyze", folder, "--as-fret").status == 1
