@@ -81,5 +81,6 @@ def test_ctrl_c_keeps_what_is_known() -> None:
 
     with pytest.raises(Stopped):
         ask()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     stopped = "lost: stopped by Ctrl-C"
     assert known == ["a", "0 before", "end", "b", "2 before", stopped, stopped]
