@@ -46,6 +46,8 @@ class Counter:
     fair: Function | None
     """Over bits: an endless run keeps the requirement by such states again and again; None: it has
     no other duty than to be safe."""
+    idle: Function
+    """Over bits: nothing is counted, so that nothing is owed by a deadline."""
     enforced: Function
     """Whether a tick lies in an interval of the scope."""
     triggered: Function
@@ -87,7 +89,7 @@ def counter(
     roots = [safe, tick.enforced, tick.triggered, *([] if fair is None else [fair])]
     bits = memory.needed(roots)
     steps = tuple(memory.steps[bit] for bit in bits)
-    return Counter(rule.id, bits, steps, safe, fair, tick.enforced, tick.triggered)
+    return Counter(rule.id, bits, steps, safe, fair, memory.idle, tick.enforced, tick.triggered)
 
 
 class _Tick:
