@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, comparisons
+from compiler.formalization.resolution import candidates
 from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, numbers
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.product import Arena, arena
@@ -56,6 +57,14 @@ class Stage:
         return tuple({name: tick[name] for name in sorted(tick) if name in names} for tick in each)
 
     @property
+    def certain(self) -> tuple[Counter, ...]:
+        """The counters of requirements whose letters are just those that there can be."""
+        doubtful = self.arena.alphabet.doubtful
+        if any(not doubtful.isdisjoint(_atoms(rule)) for rule in self.assumptions):
+            return ()
+        return self.counters(rule.id for rule in self.rules if doubtful.isdisjoint(_atoms(rule)))
+
+    @property
     def of_inputs(self) -> str | None:
         """Why the environment has more letters here than there can be; None: it has not."""
         return self.arena.alphabet.doubts.get(Role.INPUT)
@@ -69,6 +78,10 @@ class Stage:
     def left_out(self) -> str | None:
         """Which requirements have no counter, and why; None: each has one."""
         return "; ".join(f"{id}: {why}" for id, why in self.arena.beyond.items()) or None
+
+
+def _atoms(rule: Formalized) -> frozenset[str]:
+    return frozenset(name for name, _ in candidates(rule.sentence))
 
 
 def stage(
@@ -86,9 +99,11 @@ def stage(
     near = about(rules, assumptions, roles)
     fresh = numbers()
     alphabet = _alphabet([*rules, *near], roles, fresh)
-    return Stage(
-        tuple(rules), near, arena(rules, near, alphabet, fresh, as_fret=as_fret), roles, as_fret
-    )
+    made = arena(rules, near, alphabet, fresh, as_fret=as_fret)
+    memory = alphabet.memory()
+    if memory is not None:
+        made = replace(made, assumptions=(*made.assumptions, memory))
+    return Stage(tuple(rules), near, made, roles, as_fret)
 
 
 def _alphabet(rules: Sequence[Formalized], roles: Roles, fresh: Numbers) -> Alphabet:

@@ -74,7 +74,7 @@ def _check_assumptions(setting: Stage, budget: Budget) -> None:
 def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completeness | OpenQuestion]:
     """Every minimal conflict; at the end a question, where there may be more."""
     budget = Budget(seconds)
-    counters = setting.arena.counters
+    counters = setting.arena.counters if setting.of_inputs is None else setting.certain
     read = {rule.id: frozenset(rule.variables) for rule in setting.rules}
 
     def chosen(members: Members) -> list[Counter]:
@@ -87,9 +87,6 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
         return bool(read[counters[i].id] & read[counters[j].id])
 
     question = f"which others of {', '.join(rule.id for rule in setting.rules)} fight"
-    if setting.of_inputs is not None:
-        yield OpenQuestion(question, setting.of_inputs)
-        return
     try:
         _check_assumptions(setting, budget)
         for members in cores(len(counters), is_conflict, near):
@@ -97,10 +94,11 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
     except (OutOfTimeError, BeyondError) as error:
         yield OpenQuestion(question, str(error))
         return
-    if setting.left_out is None:
+    doubt = setting.left_out or setting.of_inputs
+    if doubt is None:
         yield Completeness(tuple(rule.id for rule in setting.rules))
     else:
-        yield OpenQuestion(question, setting.left_out)
+        yield OpenQuestion(question, doubt)
 
 
 def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Conflict:

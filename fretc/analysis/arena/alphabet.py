@@ -10,10 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import count
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from compiler.logic.decision_diagrams import Function
 from fretish.bindings.declarations import Role
+
+if TYPE_CHECKING:
+    from fretc.analysis.arena.counters import Counter
 
 Value = bool | int | float | str
 """Of a variable at one tick: a truth value, a number, a word of an enumerated signal."""
@@ -48,12 +51,19 @@ class Alphabet(Protocol):
         outputs have too many, what the system can keep is not.
         """
 
+    @property
+    def doubtful(self) -> frozenset[str]:
+        """The atoms that these doubts are about."""
+
     def atom(self, name: str) -> Function:
         """When an atom is true, over inputs and outputs.
 
         Raises:
             BeyondError: the alphabet has no such atom.
         """
+
+    def memory(self) -> Counter | None:
+        """What the environment keeps of the ticks before, where its letters speak of them."""
 
     @property
     def labels(self) -> Mapping[int, str]:

@@ -52,10 +52,19 @@ class Propositions:
         self._read = {name: _read(name, part, rules) for name, part in self._parts.items()}
         self._numbers: dict[str, int] = {}
         self.doubts: dict[Role, str] = {}
+        self._doubted: set[str] = set()
         self._compared = dict(chain.from_iterable(comparisons(rule).items() for rule in rules))
         self._excluded = _exclusions(self._compared, rules)
         for role, reason in self._doubtful(rules):
             self.doubts.setdefault(role, reason)
+
+    @property
+    def doubtful(self) -> frozenset[str]:
+        """The atoms that these doubts are about."""
+        return frozenset(self._doubted)
+
+    def memory(self) -> None:
+        """Nothing is remembered beside what counters do."""
 
     def atom(self, name: str) -> Function:
         """The bit of an atom."""
@@ -144,6 +153,7 @@ class Propositions:
             shown = f"{both} read the same numbers, and are taken as independent"
         refused = next((self._refused[atom] for atom in atoms if atom in self._refused), None)
         shown = shown if refused is None else f"{refused}: {shown}"
+        self._doubted.update(atoms)
         for atom in atoms:
             with suppress(BeyondError):
                 yield self.role(atom), shown

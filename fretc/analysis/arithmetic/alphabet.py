@@ -12,6 +12,8 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import BeyondError, Numbers, Tick
+from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Memory
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arithmetic.cells import (
@@ -25,6 +27,7 @@ from fretc.analysis.arithmetic.cells import (
     point,
     reads,
 )
+from fretc.analysis.arithmetic.past import remembered
 from fretc.analysis.arithmetic.projection import Limit
 from fretc.analysis.arithmetic.terms import Atoms, Term
 from fretish.bindings.declarations import Role
@@ -35,6 +38,8 @@ class Cells:
 
     def __init__(self, rules: Sequence[Formalized], roles: Roles, fresh: Numbers) -> None:
         self._atoms = Atoms(rules)
+        self._memory = remembered(self._atoms)
+        self._fresh = fresh
         self._groups: list[_Group] = []
         self._of: dict[str, _Group] = {}
         refused = dict(self._atoms.refused)
@@ -83,8 +88,12 @@ class Cells:
 
     @property
     def doubts(self) -> Mapping[Role, str]:
-        """Those of the atoms that are in no group."""
-        return self._plain.doubts
+        """Those of the atoms that are in no group, and of numbers of the tick before."""
+        before = next(iter(self._atoms.before), None)
+        if before is None:
+            return self._plain.doubts
+        why = f"of `{before}` no more is remembered than which comparisons it makes true"
+        return {Role.INPUT: why, **self._plain.doubts}
 
     @property
     def labels(self) -> Mapping[int, str]:
@@ -92,9 +101,27 @@ class Cells:
         return {**self._plain.labels, **{n: a for each in self._used for n, a in each.labels()}}
 
     @property
-    def counts(self) -> bool:
-        """Whether there are numbers in it."""
-        return bool(self._groups)
+    def doubtful(self) -> frozenset[str]:
+        """The atoms that these doubts are about."""
+        found = self._atoms.found.items()
+        looking_back = {name for name, atom in found if atom.reads & self._atoms.before.keys()}
+        return self._plain.doubtful | looking_back
+
+    def memory(self) -> Counter | None:
+        """What is remembered of numbers of the tick before, as a promise of the environment."""
+        pairs = [each for each in self._memory if each.now in self._of and each.then in self._of]
+        if not pairs:
+            return None
+        known = Memory(self._fresh, {})
+        begun = known.keep(bdd.true())
+        agrees = bdd.true()
+        for pair in pairs:
+            was, now = known.keep(self.atom(pair.now)), self.atom(pair.then)
+            first = {True: now, False: -now, None: bdd.true()}[pair.first]
+            agrees = agrees & bdd.choice(begun, -(was ^ now), first)
+        bits = known.needed([agrees])
+        steps = tuple(known.steps[bit] for bit in bits)
+        return Counter("", bits, steps, agrees, None, bdd.true(), bdd.true(), bdd.true())
 
     def values(self, letter: Mapping[int, bool]) -> Tick:
         """The truth of propositions, and numbers that make comparisons true and false so."""
@@ -274,7 +301,7 @@ def _owners(names: Sequence[str], atoms: Atoms, roles: Roles) -> Mapping[str, Ro
     found: dict[str, Role] = {}
     for name in names:
         for read in sorted(atoms.found[name].reads):
-            role = roles.get(read) or roles[name]
+            role = Role.INPUT if read in atoms.before else roles.get(read) or roles[name]
             if found.setdefault(read, role) is not role:
                 raise BeyondError(f"read `{read}`, which is not of one role")
     return found

@@ -13,12 +13,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import z3
-from z3 import z3util
 
 from fretc.analysis.arena.alphabet import BeyondError
 from fretc.analysis.arithmetic.projection import Limit, projected
 from fretc.analysis.arithmetic.projection import model as next_model
-from fretc.analysis.arithmetic.terms import Term
+from fretc.analysis.arithmetic.terms import Term, read_by
 
 MOST = 4_096
 """Patterns, or cells, of a group; one with more is refused."""
@@ -132,7 +131,7 @@ def _seen(formulas: Sequence[Term], domain: Term, limit: Limit) -> Iterator[Patt
 
 def reads(formula: Term, variables: Sequence[Term]) -> bool:
     """Whether a formula is about one of the variables."""
-    names = {str(each) for each in z3util.get_vars(formula)}
+    names = read_by(formula)
     return any(str(each) in names for each in variables)
 
 

@@ -11,6 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 import z3
+from z3 import z3util
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import comparisons
@@ -22,6 +23,7 @@ from fretish.bindings import constants
 from fretish.bindings.declarations import Aggregate, Signal
 from fretish.bindings.expressions import ticks_back
 from fretish.bindings.types import Kind, kind
+from fretish.printer import expression as printed
 from fretish.reading.recursion import deep
 
 Term = Any
@@ -35,6 +37,15 @@ class Atom:
     formula: Term
     reads: frozenset[str]
     """Variables or signals."""
+
+
+@dataclass(frozen=True, slots=True)
+class Before:
+    """The number that a variable had at the tick before."""
+
+    of: str
+    first: Term
+    """What it is at the first tick."""
 
 
 class Atoms:
@@ -54,6 +65,8 @@ class Atoms:
         self.found: dict[str, Atom] = {}
         self.refused: dict[str, str] = {}
         """Why another comparison has no formula here."""
+        self.before: dict[str, Before] = {}
+        """What variables for numbers of the tick before are."""
         for name, part in _parts(rules):
             if name not in self.found and name not in self.refused:
                 self._add(name, part)
@@ -64,10 +77,16 @@ class Atoms:
         except BeyondError as error:
             self.refused[name] = f"`{name}` {error}"
         else:
-            self.found[name] = Atom(formula, frozenset(each.id for each in e.names(part)))
+            self.found[name] = Atom(formula, read_by(formula))
 
     def domain(self, name: str) -> Term:
         """Which values a variable may have."""
+        if name in self.before:
+            before = self.before[name]
+            of, domain = self.variables[before.of], self.domain(before.of)
+            begins = z3.simplify(z3.substitute(domain, (of, before.first)))
+            then = z3.substitute(domain, (of, self.variables[name]))
+            return then if z3.is_true(begins) else z3.BoolVal(True)
         variable, signal = self.variables[name], self._signals.get(name)
         if signal is not None and signal.values:
             return z3.Or([variable == self._place(word) for word in signal.values])
@@ -142,10 +161,22 @@ class Atoms:
                 return -read(arg)
             case e.Arithmetic(op, left, right):
                 return _computed(op, read(left), read(right))
+            case e.Call("preInt" | "preReal", (first, e.Name(id))) if not is_base:
+                return self._before(printed(part), read(first), id)
             case e.Call(name, args):
                 return _called(name, [read(each) for each in args])
             case _:
                 raise BeyondError("is no comparison of numbers")
+
+    def _before(self, name: str, first: Term, of: str) -> Term:
+        """The number of the tick before, as a variable of its own."""
+        now = self._variable(of, is_base=False)
+        if now.is_int() and first.is_real():
+            raise BeyondError("begins with what is no whole number")
+        first = z3.ToReal(first) if now.is_real() and first.is_int() else first
+        made = z3.Int(name) if now.is_int() else z3.Real(name)
+        self.before[name] = Before(of, first)
+        return self.variables.setdefault(name, made)
 
     def _variable(self, name: str, *, is_base: bool) -> Term:
         signal, known = self._signals.get(name), self._kind(name)
@@ -161,6 +192,11 @@ class Atoms:
         if scale is None:
             raise BeyondError(f"needs the unit of `{name}`, which has none")
         return variable if scale == 1 else _exact(scale) * variable
+
+
+def read_by(formula: Term) -> frozenset[str]:
+    """The variables that a formula is about."""
+    return frozenset(str(each) for each in z3util.get_vars(formula))
 
 
 def _parts(rules: Sequence[Formalized]) -> Iterator[tuple[str, e.Expression]]:

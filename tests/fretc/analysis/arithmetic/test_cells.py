@@ -130,7 +130,7 @@ def test_cells_are_all_numbers() -> None:
 def assert_lost(found: Stage) -> None:
     """The environment's numbers keep its promise, and the system's break something at the end."""
     game = found.game(found.arena.counters, ENDLESS)
-    play = Counterstrategy(game, game.solution(traps=True)).play()
+    play = Counterstrategy(game, game.solution(traps=True), ENDLESS).play()
     rounds = 1 if play.loop is None else 3
     letters = [*play.letters, *(play.letters[play.loop :] * (rounds - 1))]
     verdicts = stepped(found, [found.arena.alphabet.values(letter) for letter in letters])
