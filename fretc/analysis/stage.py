@@ -31,6 +31,8 @@ class Stage:
     arena: Arena
     roles: Roles
     as_fret: bool
+    memory: Counter | None = None
+    """What the system keeps to, where it chooses numbers of the tick before."""
 
     def counters(self, ids: Iterable[str]) -> tuple[Counter, ...]:
         """Those of some requirements, in the order of the files."""
@@ -39,7 +41,23 @@ class Stage:
 
     def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
         """The game of some counters, under all assumptions."""
-        return Game(self.arena.alphabet, counters, self.arena.assumptions, budget)
+        kept = counters if self.memory is None else [*counters, self.memory]
+        return Game(self.arena.alphabet, kept, self.arena.assumptions, budget)
+
+    def generous(self) -> Stage | None:
+        """The same where the system chooses numbers of the tick before; None: nobody does.
+
+        What cannot be kept even so cannot be kept.
+        """
+        if self.arena.alphabet.memory() is None:
+            return None
+        from fretc.analysis.arithmetic.alphabet import Cells
+
+        fresh = numbers()
+        alphabet = Cells([*self.rules, *self.assumptions], self.roles, fresh, Role.OUTPUT)
+        made = arena(self.rules, self.assumptions, alphabet, fresh, as_fret=self.as_fret)
+        memory = alphabet.memory()
+        return Stage(self.rules, self.assumptions, made, self.roles, self.as_fret, memory)
 
     def runs(
         self, kept: Sequence[Counter], budget: Budget, watched: Sequence[Counter] = ()

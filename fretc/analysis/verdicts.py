@@ -58,7 +58,20 @@ def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
         doubt = setting.of_inputs
         if doubt is None:
             return Verdict.UNREALIZABLE, "the environment wins"
+        generous = setting.generous()
+        if generous is not None and _is_lost(generous, generous.arena.counters, budget):
+            return Verdict.UNREALIZABLE, f"the environment wins, {_WHATEVER}"
     return Verdict.NOT_CHECKED, doubt
+
+
+_WHATEVER = "whatever the numbers of the tick before are taken for"
+
+
+def _is_lost(generous: Stage, counters: Sequence[Counter], budget: Budget) -> bool:
+    """Whether the environment wins, though the system chooses what is not remembered."""
+    if generous.of_inputs is not None:
+        return False
+    return not generous.game(counters, budget).solution().is_realizable
 
 
 def _check_assumptions(setting: Stage, budget: Budget) -> None:
@@ -91,6 +104,8 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
         _check_assumptions(setting, budget)
         for members in cores(len(counters), is_conflict, near):
             yield _conflict(setting, chosen(members), budget)
+        if setting.of_inputs is not None:
+            yield from _with_the_past(setting, budget)
     except (OutOfTimeError, BeyondError) as error:
         yield OpenQuestion(question, str(error))
         return
@@ -99,6 +114,25 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
         yield Completeness(tuple(rule.id for rule in setting.rules))
     else:
         yield OpenQuestion(question, doubt)
+
+
+def _with_the_past(setting: Stage, budget: Budget) -> Iterator[Conflict]:
+    """Conflicts about numbers of the tick before that are certain, and certain to be minimal."""
+    generous = setting.generous()
+    if generous is None:
+        return
+    counters = generous.arena.counters
+    known = {each.id for each in setting.certain}
+
+    def is_conflict(members: Members) -> bool:
+        return _is_lost(generous, [counters[i] for i in sorted(members)], budget)
+
+    for members in cores(len(counters), is_conflict, lambda i, j: True):
+        ids = sorted(counters[i].id for i in members)
+        fewer = [[id for id in ids if id != other] for other in ids]
+        games = (setting.game(setting.counters(each), budget) for each in fewer)
+        if not known.issuperset(ids) and all(game.solution().is_realizable for game in games):
+            yield Conflict(tuple(ids), (), f"the environment wins, {_WHATEVER}; no play is shown")
 
 
 def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Conflict:

@@ -63,7 +63,7 @@ class Alphabet(Protocol):
         """
 
     def memory(self) -> Counter | None:
-        """What the environment keeps of the ticks before, where its letters speak of them."""
+        """What is remembered of the tick before, where letters speak of it."""
 
     @property
     def labels(self) -> Mapping[int, str]:

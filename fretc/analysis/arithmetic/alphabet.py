@@ -34,9 +34,23 @@ from fretish.bindings.declarations import Role
 
 
 class Cells:
-    """An `Alphabet`: comparisons by groups, all other atoms as `Propositions` has them."""
+    """An `Alphabet`: comparisons by groups, all other atoms as `Propositions` has them.
 
-    def __init__(self, rules: Sequence[Formalized], roles: Roles, fresh: Numbers) -> None:
+    Args:
+        rules: whose atoms it has.
+        roles: of their variables.
+        fresh: variables for its bits.
+        past: who chooses numbers of the tick before, as far as nothing is remembered of them.
+    """
+
+    def __init__(
+        self,
+        rules: Sequence[Formalized],
+        roles: Roles,
+        fresh: Numbers,
+        past: Role = Role.INPUT,
+    ) -> None:
+        self._past = past
         self._atoms = Atoms(rules)
         self._memory = remembered(self._atoms)
         self._fresh = fresh
@@ -45,7 +59,7 @@ class Cells:
         refused = dict(self._atoms.refused)
         for names in _linked(self._atoms):
             try:
-                choice = _choice(names, self._atoms, _owners(names, self._atoms, roles))
+                choice = _choice(names, self._atoms, _owners(names, self._atoms, roles, past))
                 group = _Group(choice, self._atoms, fresh)
             except BeyondError as error:
                 shown = f"`{names[0]}` and others" if len(names) > 1 else f"`{names[0]}`"
@@ -93,7 +107,7 @@ class Cells:
         if before is None:
             return self._plain.doubts
         why = f"of `{before}` no more is remembered than which comparisons it makes true"
-        return {Role.INPUT: why, **self._plain.doubts}
+        return {self._past: why, **self._plain.doubts}
 
     @property
     def labels(self) -> Mapping[int, str]:
@@ -108,7 +122,7 @@ class Cells:
         return self._plain.doubtful | looking_back
 
     def memory(self) -> Counter | None:
-        """What is remembered of numbers of the tick before, as a promise of the environment."""
+        """What is remembered of numbers of the tick before: whoever chooses them keeps to it."""
         pairs = [each for each in self._memory if each.now in self._of and each.then in self._of]
         if not pairs:
             return None
@@ -296,12 +310,12 @@ def _linked(atoms: Atoms) -> list[tuple[str, ...]]:
     return [tuple(names) for names, _ in groups]
 
 
-def _owners(names: Sequence[str], atoms: Atoms, roles: Roles) -> Mapping[str, Role]:
+def _owners(names: Sequence[str], atoms: Atoms, roles: Roles, past: Role) -> Mapping[str, Role]:
     """Who chooses each variable of a group: a signal without a role has that of its proposition."""
     found: dict[str, Role] = {}
     for name in names:
         for read in sorted(atoms.found[name].reads):
-            role = Role.INPUT if read in atoms.before else roles.get(read) or roles[name]
+            role = past if read in atoms.before else roles.get(read) or roles[name]
             if found.setdefault(read, role) is not role:
                 raise BeyondError(f"read `{read}`, which is not of one role")
     return found

@@ -1,8 +1,9 @@
-"""Numbers of the tick before: the environment chooses them, and keeps to what is remembered.
+"""Numbers of the tick before: one player chooses them, and keeps to what is remembered.
 
-What is remembered of a number is which comparisons it makes true. A system that wins against any
-number of which these are true wins against the one that it was; so `realizable` is certain. Of
-`unrealizable` nothing is known.
+What is remembered of a number is which comparisons it makes true. Where the environment chooses any
+number of which these are true, and the system wins, it wins with the one that it was, too. Where
+the system chooses, and the environment wins, it wins with the one that it was. So there are two
+games, each with one certain answer; between them nothing is known.
 """
 
 from __future__ import annotations
@@ -34,9 +35,12 @@ def remembered(atoms: Atoms) -> tuple[Remembered, ...]:
 
 
 def _conditions(atoms: Atoms, name: str, before: Before) -> list[Term]:
-    """Comparisons of the number alone, as formulas of the tick."""
+    """Comparisons of the number alone, as formulas of the tick; one says that it is as at first."""
     now, then = atoms.variables[before.of], atoms.variables[name]
     found: dict[str, Term] = {}
+    if not read_by(before.first):
+        as_at_first = z3.simplify(now == before.first)
+        found[as_at_first.sexpr()] = as_at_first
     for atom in atoms.found.values():
         if atom.reads == {before.of}:
             found.setdefault(atom.formula.sexpr(), atom.formula)

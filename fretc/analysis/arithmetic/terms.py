@@ -278,7 +278,7 @@ def _computed(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
 
 def _is_number(term: Term) -> bool:
     simple = z3.simplify(term)
-    return z3.is_rational_value(simple) or z3.is_int_value(simple)
+    return bool(z3.is_rational_value(simple) or z3.is_int_value(simple))
 
 
 def _called(name: str, args: Sequence[Term]) -> Term:
