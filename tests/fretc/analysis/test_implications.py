@@ -151,6 +151,7 @@ def test_pairs_clash_where_spot_s_automata_part() -> None:
     assert clashes > 1
 
 
+@pytest.mark.slow
 def test_long_counts_are_compared_bit_by_bit() -> None:
     """One after the other, these two counters would take a hundred times as long."""
     setting = staged(
