@@ -96,6 +96,7 @@ DOORS = {
     "z3": {
         "fretc/analysis/arithmetic/alphabet.py",
         "fretc/analysis/arithmetic/cells.py",
+        "fretc/analysis/arithmetic/past.py",
         "fretc/analysis/arithmetic/projection.py",
         "fretc/analysis/arithmetic/terms.py",
         "fretc/verification/loop/bounds.py",

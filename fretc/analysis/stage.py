@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib.util import find_spec
+from itertools import chain
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, comparisons
@@ -31,8 +32,8 @@ class Stage:
     arena: Arena
     roles: Roles
     as_fret: bool
-    memory: Counter | None = None
-    """What the system keeps to, where it chooses numbers of the tick before."""
+    past: Role = Role.INPUT
+    """Who chooses numbers of the tick before, as far as nothing is remembered of them."""
 
     def counters(self, ids: Iterable[str]) -> tuple[Counter, ...]:
         """Those of some requirements, in the order of the files."""
@@ -41,29 +42,29 @@ class Stage:
 
     def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
         """The game of some counters, under all assumptions."""
-        kept = counters if self.memory is None else [*counters, self.memory]
-        return Game(self.arena.alphabet, kept, self.arena.assumptions, budget)
+        kept, assumptions = [*counters], [*self.arena.assumptions]
+        (kept if self.past is Role.OUTPUT else assumptions).extend(self._memory)
+        return Game(self.arena.alphabet, kept, assumptions, budget)
+
+    @property
+    def _memory(self) -> tuple[Counter, ...]:
+        return () if self.arena.memory is None else (self.arena.memory,)
 
     def generous(self) -> Stage | None:
         """The same where the system chooses numbers of the tick before; None: nobody does.
 
         What cannot be kept even so cannot be kept.
         """
-        if self.arena.alphabet.memory() is None:
+        if self.arena.memory is None:
             return None
-        from fretc.analysis.arithmetic.alphabet import Cells
-
-        fresh = numbers()
-        alphabet = Cells([*self.rules, *self.assumptions], self.roles, fresh, Role.OUTPUT)
-        made = arena(self.rules, self.assumptions, alphabet, fresh, as_fret=self.as_fret)
-        memory = alphabet.memory()
-        return Stage(self.rules, self.assumptions, made, self.roles, self.as_fret, memory)
+        rules, near = self.rules, self.assumptions
+        return _built(rules, near, self.roles, numbers(), as_fret=self.as_fret, past=Role.OUTPUT)
 
     def runs(
         self, kept: Sequence[Counter], budget: Budget, watched: Sequence[Counter] = ()
     ) -> Runs:
         """The runs that keep some counters, and all assumptions."""
-        counters = [*kept, *self.arena.assumptions]
+        counters = [*kept, *self.arena.assumptions, *self._memory]
         return Runs(self.arena.alphabet, counters, budget, watched)
 
     def ticks(self, ids: Iterable[str], letters: Iterable[Letter]) -> tuple[Tick, ...]:
@@ -115,19 +116,52 @@ def stage(
         BeyondError: an assumption has no counter.
     """
     near = about(rules, assumptions, roles)
-    fresh = numbers()
-    alphabet = _alphabet([*rules, *near], roles, fresh)
-    made = arena(rules, near, alphabet, fresh, as_fret=as_fret)
-    memory = alphabet.memory()
-    if memory is not None:
-        made = replace(made, assumptions=(*made.assumptions, memory))
-    return Stage(tuple(rules), near, made, roles, as_fret)
+    return _built(rules, near, roles, numbers(), as_fret=as_fret)
 
 
-def _alphabet(rules: Sequence[Formalized], roles: Roles, fresh: Numbers) -> Alphabet:
+def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
+    """The stage of a few of the requirements, with bits of the same weight side by side.
+
+    So one count stays easy to compare with another one; counters one after the other need as many
+    nodes for it as the counts have values. For many requirements that is worse.
+    """
+    wanted = set(ids)
+    rules = [rule for rule in setting.rules if rule.id in wanted]
+    near = about(rules, setting.assumptions, setting.roles)
+    used = numbers()
+    first = _built(rules, near, setting.roles, used, as_fret=setting.as_fret)
+    weights = {
+        number: weight
+        for each in (*first.arena.counters, *first.arena.assumptions)
+        for word in each.words
+        for weight, bit in enumerate(word)
+        for number in (bit.now, bit.after)
+    }
+    count = next(used)  # the same build takes as many again, in the same order
+    order = sorted(range(count), key=lambda number: (-weights.get(number, count), number))
+    places = {number: place for place, number in enumerate(order)}
+    fresh = chain((places[number] for number in range(count)), numbers(count))
+    return _built(rules, near, setting.roles, fresh, as_fret=setting.as_fret)
+
+
+def _built(
+    rules: Sequence[Formalized],
+    near: Sequence[Formalized],
+    roles: Roles,
+    fresh: Numbers,
+    *,
+    as_fret: bool,
+    past: Role = Role.INPUT,
+) -> Stage:
+    alphabet = _alphabet([*rules, *near], roles, fresh, past)
+    built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
+    return Stage(tuple(rules), tuple(near), built, roles, as_fret, past)
+
+
+def _alphabet(rules: Sequence[Formalized], roles: Roles, fresh: Numbers, past: Role) -> Alphabet:
     """With the numbers that comparisons are about, where z3 is installed."""
     if not any(comparisons(rule) or rule.declarations for rule in rules) or not find_spec("z3"):
         return Propositions(rules, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 
-    return Cells(rules, roles, fresh)
+    return Cells(rules, roles, fresh, past)

@@ -135,7 +135,7 @@ class Cells:
             agrees = agrees & bdd.choice(begun, -(was ^ now), first)
         bits = known.needed([agrees])
         steps = tuple(known.steps[bit] for bit in bits)
-        return Counter("", bits, steps, agrees, None, bdd.true(), bdd.true(), bdd.true())
+        return Counter("", bits, steps, agrees, None, (), bdd.true(), bdd.true())
 
     def values(self, letter: Mapping[int, bool]) -> Tick:
         """The truth of propositions, and numbers that make comparisons true and false so."""
