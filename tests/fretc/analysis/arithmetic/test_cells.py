@@ -38,7 +38,7 @@ TIMINGS = (
     "at the next timepoint",
     "for 1 tick",
 )
-SETS = 20
+SETS = 16
 
 
 def whole(found: Formalized) -> Formalized:
