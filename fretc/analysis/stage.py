@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.util import find_spec
 from itertools import chain
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, comparisons
 from compiler.formalization.resolution import candidates
+from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, numbers
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.product import Arena, arena
@@ -17,7 +18,7 @@ from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about
 from fretc.analysis.games.budget import Budget
-from fretc.analysis.games.game import Game
+from fretc.analysis.games.game import Game, upheld
 from fretc.analysis.games.plays import Letter
 from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
@@ -34,6 +35,8 @@ class Stage:
     as_fret: bool
     past: Role = Role.INPUT
     """Who chooses numbers of the tick before, as far as nothing is remembered of them."""
+    _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
+    """What each game of the stage needs of the assumptions, once it has been computed."""
 
     def counters(self, ids: Iterable[str]) -> tuple[Counter, ...]:
         """Those of some requirements, in the order of the files."""
@@ -44,7 +47,9 @@ class Stage:
         """The game of some counters, under all assumptions."""
         kept, assumptions = [*counters], [*self.arena.assumptions]
         (kept if self.past is Role.OUTPUT else assumptions).extend(self._memory)
-        return Game(self.arena.alphabet, kept, assumptions, budget)
+        if not self._upheld:
+            self._upheld.append(upheld(self.arena.alphabet, assumptions, budget))
+        return Game(self.arena.alphabet, kept, assumptions, budget, self._upheld[0])
 
     @property
     def _memory(self) -> tuple[Counter, ...]:
