@@ -20,19 +20,35 @@ CHOSEN = (Role.INPUT, Role.OUTPUT)
 
 
 def roles(rules: Sequence[Formalized]) -> Roles | tuple[Diagnostic, ...]:
-    """The role of each variable; or F354 for each that has none, where it stands first."""
-    found: dict[str, Role] = {}
-    missing: dict[str, Diagnostic] = {}
+    """The role of each variable; or what is wrong with each that has none, or has two.
+
+    F354 stands where a variable without a role is read first. F907 is of one that is an input of
+    one component and an output of another one.
+    """
+    found: dict[str, tuple[Role, str]] = {}
+    wrong: dict[str, Diagnostic] = {}
     for rule in rules:
         for name in rule.variables:
-            if name in found or name in missing:
-                continue
-            role = _role(rule, name)
+            role, component = _role(rule, name), rule.sentence.component
+            first, whose = found.get(name, (role, component))
             if role is None:
-                missing[name] = _no_role(rule, name, rules)
+                wrong.setdefault(name, _no_role(rule, name, rules))
+            elif role is not first:
+                wrong.setdefault(name, _two_roles(rule, name, f"{first} of `{whose}`", role))
             else:
-                found[name] = role
-    return tuple(missing.values()) or found
+                found[name] = role, whose
+    return tuple(wrong.values()) or {name: role for name, (role, _) in found.items()}
+
+
+def _two_roles(rule: Formalized, name: str, first: str, second: Role) -> Diagnostic:
+    """F907."""
+    component = rule.sentence.component
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"`{name}` is an {first}, and an {second} of `{component}`: these are two systems",
+        place(rule, name),
+        help=f"ask about one of them: `--component {component}`",
+    )
 
 
 def _role(rule: Formalized, name: str) -> Role | None:
