@@ -92,6 +92,20 @@ def drawn(seed: object, most: int = 3) -> tuple[str, ...]:
     return tuple(sentence(choose) for _ in range(choose.randint(1, most)))
 
 
+def terse(seed: object, most: int = 3) -> tuple[str, ...]:
+    """A few sentences that get into each other's way."""
+    choose = random.Random(repr(seed))
+
+    def one() -> str:
+        timing = choose.choice(
+            ["immediately", "always", "never", "eventually", "within 2 ticks", "for 1 tick"]
+        )
+        condition = choose.choice(["", "whenever a", "whenever !x", "upon y", "whenever x"])
+        return f"{condition} the sw shall {timing} satisfy {choose.choice(['x', '!x', 'y', '!a'])}"
+
+    return tuple(one() for _ in range(choose.randint(1, most)))
+
+
 def assumed(seed: object) -> str:
     """A sentence about inputs alone."""
     return sentence(random.Random(repr(seed)), every=INPUTS, answers=INPUTS)

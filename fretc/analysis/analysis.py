@@ -120,6 +120,7 @@ def jobs(
         for each in by_variables(rules, assumptions, roles)
     ]
     return (
+        *([_promises(assumptions, roles, options)] if assumptions else []),
         *(setting.verdict() for setting in components),
         *(setting.conflicts() for setting in components),
         *(
@@ -128,6 +129,21 @@ def jobs(
             for setting in groups
         ),
     )
+
+
+def _promises(assumptions: Sequence[Formalized], roles: Roles, options: Options) -> Job:
+    """Whether the assumptions can be kept at all: from those that cannot, everything follows."""
+    title = f"can any run keep the assumptions {', '.join(each.id for each in assumptions)}?"
+
+    def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+        for group in by_variables(assumptions, (), roles):
+            setting = stage(group, (), roles)
+            for each in of_runs.consistency(setting, options.seconds):
+                if isinstance(each, Consistency) and each.holds is False:
+                    ids = ", ".join(each.requirements)
+                    yield OpenQuestion("what follows from the assumptions", f"no run keeps {ids}")
+
+    return Job(title, ask, partial(OpenQuestion, title))
 
 
 class _Setting:

@@ -161,7 +161,7 @@ def _remarks(analysis: Analysis) -> Iterator[Line]:
 def _rest(analysis: Analysis) -> Iterator[Line]:
     """What it rests on, and what is open."""
     for each in analysis.open:
-        text = f"{signs.UNKNOWN.glyph} open: {each.question} {each.why}"
+        text = f"{signs.UNKNOWN.glyph} open: {each.question}: {each.why}"
         yield text, signs.UNKNOWN.colour
     for assumption in analysis.assumptions:
         yield f"assumed {assumption.id}: {assumption.text or assumption.sentence}", None

@@ -361,9 +361,7 @@ class _Reader(Fields):
             max_age=self._max_age(table, at),
             footprint=footprint,
             sensor=self._sensor(table, at),
-            role=self._choice(table, (*at, "role"), Role, Role.INTERNAL)
-            if "role" in table
-            else None,
+            role=self._role(table, at),
             aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
             span=self.tables.value(*at, "path"),
         )
@@ -398,12 +396,19 @@ class _Reader(Fields):
             max_age=self._max_age(table, at),
             values=values,
             numbers=numbers,
+            role=self._role(table, at),
             aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
             span=self.tables.value(*at, "path"),
         )
         if values:
             self.signals[name] = signal
         return signal if where is not None and values else None
+
+    def _role(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Role | None:
+        """Of a signal; None where nothing says it."""
+        if "role" not in table:
+            return None
+        return self._choice(table, (*at, "role"), Role, Role.INTERNAL)
 
     def _words(
         self, written: object, at: tuple[str, ...]

@@ -32,6 +32,11 @@ def synthesized(rules: Sequence[Formalized], assumptions: Sequence[Formalized] =
     return bool(spot.solve_game(spot.ltl_to_game(formula, list(OUTPUTS))))
 
 
+def satisfiable(rules: Sequence[Formalized]) -> bool:
+    formulas = (f"({printing.future(rule.ft_infinite)})" for rule in rules)
+    return not spot.translate(" & ".join(formulas)).is_empty()
+
+
 def assert_lost(setting: Stage) -> None:
     """The environment's play breaks something, at its last tick or by never meeting it."""
     game = setting.game(setting.arena.counters, ENDLESS)
@@ -95,7 +100,7 @@ def test_what_inputs_are_assumed_to_keep_is_an_implication_to_spot() -> None:
         sentences, given = drawn(("given", seed), most=5), [assumed((seed, i)) for i in range(2)]
         setting = staged(*sentences, assumed=given)
         assumptions = [rule(f"A{i}", sentence) for i, sentence in enumerate(given, 1)]
-        if not setting.runs((), ENDLESS).is_possible():
+        if not satisfiable(assumptions):
             continue  # nothing follows from assumptions that no run keeps
         solution = setting.game(setting.arena.counters, ENDLESS).solution(traps=True)
         assert solution.is_realizable is synthesized(setting.rules, assumptions), (sentences, given)
