@@ -713,7 +713,7 @@ class _Reader(Fields):
 
     def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
         at = ("variable", name)
-        self._check_keys(table, (*_VARIABLE, "of"), f"[variable.{name}]", *at)
+        self._check_keys(table, _VARIABLE, f"[variable.{name}]", *at)
         of = self._field(table, (*at, "of"), dict, "tables of components") or {}
         if not all(isinstance(each, dict) for each in of.values()):
             self._say(
@@ -885,7 +885,7 @@ def _label_source(name: str, written: object) -> LabelSource | str:
     return LabelSource(True, text) if name in found else f"`{{{name}}}` is not in the pattern"
 
 
-_VARIABLE = ("component", "type", "role", "text", "value", "fret", "modality", "action")
+_VARIABLE = ("component", "type", "role", "text", "value", "fret", "of", "modality", "action")
 _OF_COMPONENT = ("type", "role", "text", "value", "fret")
 _MOST_NAMES = 12
 """Of a circle that a message shows."""
