@@ -19,8 +19,9 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from fretc.analysis.arena.roles import role
 from fretc.analysis.findings import Analysis, Verdict
+from fretc.analysis.reasons import listed
 from fretish.bindings import canonical
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 from fretish.printer import sentence as printed
 
@@ -47,6 +48,9 @@ class Document(Record, frozen=True):
 
     schema: Literal["fretc-analyzed-set-1"]
     fretc: Annotated[str, about("version of the tool")]
+    as_fret: Annotated[
+        bool, about("whether it answers FRET's question: `eventually` means at once")
+    ]
     requirements: Annotated[dict[Name, Member], about("all that were asked about, by their ids")]
     assumptions: Annotated[dict[Name, Member], about("what the environment was taken to keep")]
     analysis: Analysis
@@ -63,10 +67,15 @@ def schema() -> dict[str, Any]:
 
 
 def document(
-    rules: Sequence[Formalized], assumptions: Sequence[Formalized], analysis: Analysis
+    rules: Sequence[Formalized],
+    assumptions: Sequence[Formalized],
+    analysis: Analysis,
+    *,
+    as_fret: bool,
 ) -> Document:
     """The evidence of an analysis of these."""
-    return Document(SCHEMA, __version__, _members(rules), _members(assumptions), analysis)
+    members = _members(rules), _members(assumptions)
+    return Document(SCHEMA, __version__, as_fret, *members, analysis)
 
 
 def _members(rules: Sequence[Formalized]) -> dict[str, Member]:
@@ -100,6 +109,8 @@ def suspicions(
         rules: the requirements in force now.
         assumptions: what the environment is taken to keep now.
     """
+    if known.as_fret:
+        yield "it answers FRET's question, in which `eventually` means at once"
     yield from _changes(known.requirements, _members(rules), "")
     yield from _changes(known.assumptions, _members(assumptions), "assumption ")
 
@@ -112,6 +123,35 @@ def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -
             yield f"{what}{id} was no part of the set"
         elif then[id].sha256 != now[id].sha256:
             yield f"{what}{id} has changed since"
+
+
+def remarks(analysis: Analysis, rules: Sequence[Formalized]) -> Iterator[Diagnostic]:
+    """F561 for each conflict; F562 where nobody knows."""
+    places = {rule.id: rule.requirement.wording for rule in rules}
+    for each in analysis.conflicts:
+        ids = each.requirements
+        what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"
+        yield Diagnostic(
+            Code.UNREALIZABLE,
+            f"{listed(ids)} {what}: {each.because}",
+            places.get(ids[0]),
+            help="look at the run: `fretc analyze`",
+            severity=Severity.WARNING,
+        )
+    if analysis.verdict is Verdict.UNREALIZABLE and not analysis.conflicts:
+        yield Diagnostic(
+            Code.UNREALIZABLE,
+            f"requirements {analysis.why}",
+            help="look at them: `fretc analyze`",
+            severity=Severity.WARNING,
+        )
+    if analysis.verdict is Verdict.NOT_CHECKED:
+        yield Diagnostic(
+            Code.NOT_ANALYZED,
+            f"it is not known whether all requirements can be kept together: {analysis.why}",
+            help="see what is open: `fretc analyze`",
+            severity=Severity.WARNING,
+        )
 
 
 # Files ----------------------------------------------------------------------------------------

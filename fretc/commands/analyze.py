@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
     from compiler.formalization.formalized import Formalized
     from compiler.project.folder import Project
+    from fretc.analysis.analysis import Options
+    from fretc.analysis.arena.roles import Roles
     from fretc.analysis.findings import Analysis
 
 
@@ -79,13 +81,11 @@ def analyze(
     from compiler.files.records import plain
     from compiler.files.templating import to_json
     from compiler.project.paths import companions
-    from fretc.analysis.analysis import Finding, Options, assembled, jobs
+    from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
     from fretc.analysis.evidence import document
     from fretc.analysis.text_output import lines
-    from fretc.analysis.worker import Stopped, findings
-    from fretc.terminal.progress import at_work
     from fretish.printer import sentence as printed
 
     project, first = _project(files, requirements, bindings)
@@ -97,16 +97,8 @@ def analyze(
     chosen = roles([*rules, *assumed])
     if isinstance(chosen, tuple):
         stop(*chosen)
-    options = Options(seconds, as_fret)
-    found: list[Finding] = []
-    stopped = False
-    try:
-        for finding in findings(jobs(rules, chosen, assumed, options), at_work):
-            found.append(finding)
-    except Stopped:
-        stopped = True
-    analysis = assembled(rules, chosen, assumed, options, found)
-    evidence = f"{to_json(plain(document(rules, assumed, analysis)))}\n"
+    analysis, stopped = asked(rules, assumed, chosen, Options(seconds, as_fret))
+    evidence = f"{to_json(plain(document(rules, assumed, analysis, as_fret=as_fret)))}\n"
     if output == "-":
         click.echo(evidence, nl=False)
     elif form == "json":
@@ -120,6 +112,27 @@ def analyze(
             {Path(output): evidence}, [*sources, *companions(sources), *filter(None, [bindings])]
         )
     raise SystemExit(INTERRUPTED if stopped else _status(analysis))
+
+
+def asked(
+    rules: Sequence[Formalized],
+    assumed: Sequence[Formalized],
+    chosen: Roles,
+    options: Options,
+) -> tuple[Analysis, bool]:
+    """What is found of the requirements, and whether Ctrl-C has stopped it."""
+    from fretc.analysis.analysis import Finding, assembled, jobs
+    from fretc.analysis.worker import Stopped, findings
+    from fretc.terminal.progress import at_work
+
+    found: list[Finding] = []
+    stopped = False
+    try:
+        for finding in findings(jobs(rules, chosen, assumed, options), at_work):
+            found.append(finding)
+    except Stopped:
+        stopped = True
+    return assembled(rules, chosen, assumed, options, found), stopped
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> tuple[Project, str]:

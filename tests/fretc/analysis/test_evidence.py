@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from compiler.files.records import plain
+from compiler.files.records import plain, replace
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import load
 from fretc.analysis.analysis import analyze
@@ -63,7 +63,7 @@ def rules_of(
 def analyzed(rules: tuple[Formalized, ...], assumed: tuple[Formalized, ...]) -> Document:
     chosen = roles([*rules, *assumed])
     assert not isinstance(chosen, tuple)
-    return document(rules, assumed, analyze(rules, chosen, assumed))
+    return document(rules, assumed, analyze(rules, chosen, assumed), as_fret=False)
 
 
 @pytest.fixture(scope="module")
@@ -101,6 +101,13 @@ def test_the_set_itself_counts(tmp_path: Path, known: Document) -> None:
         "R2 was part of the set, and is not any more",
         "R3 was no part of the set",
     ]
+
+
+def test_an_answer_to_the_question_of_fret_is_no_answer_to_ours(
+    tmp_path: Path, known: Document
+) -> None:
+    (why,) = suspicions(replace(known, as_fret=True), *rules_of(tmp_path))
+    assert why == "it answers FRET's question, in which `eventually` means at once"
 
 
 def test_words_and_places_do_not_count(tmp_path: Path, known: Document) -> None:

@@ -192,3 +192,30 @@ def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) ->
         "F907 `link` is an output of `sender`, and an input of `receiver`: these are two systems\n"
     )
     assert both.err.endswith("help: ask about one of them: `--component receiver`\n")
+
+
+# `fretc check --analyze` -----------------------------------------------------------------------
+
+
+def test_check_names_each_conflict(fretc: Fretc, folder: Path) -> None:
+    run = fretc("check", str(folder), "--analyze")
+    assert "F561 warning: R1 and R2 cannot be kept together: at tick 2 R1 (since tick 0)" in run.err
+    assert "F561" not in fretc("check", str(folder)).err
+
+
+def test_check_takes_an_answer_only_while_it_is_about_these(fretc: Fretc, tmp_path: Path) -> None:
+    """The answer in the file was changed by hand, so that it shows where it is taken."""
+    good = (FIGHT[0], "upon stop the line shall within 3 ticks satisfy !run")
+    written(tmp_path, good)
+    assert fretc("analyze", str(tmp_path)).status == 0
+    assert "F56" not in fretc("check", str(tmp_path), "--analyze").err
+    text = Path("build/analysis.json").read_text().replace('"realizable"', '"not checked"')
+    Path("build/analysis.json").write_text(text)
+    assert "F562 warning" in fretc("check", str(tmp_path), "--analyze").err
+    written(tmp_path, FIGHT)
+    assert "F561 warning" in fretc("check", str(tmp_path), "--analyze").err
+
+
+def test_check_says_what_has_no_role(fretc: Fretc, folder: Path) -> None:
+    written(folder, FIGHT, {"start": "input", "run": "output"})
+    assert "F354" in fretc("check", str(folder), "--analyze").err
