@@ -45,11 +45,8 @@ def because(
 
 def _known(game: Game, play: Play) -> Function:
     """The state before the last tick, and its inputs."""
-    state = game.transition.start
-    for letter in play.letters[:-1]:
-        state = game.transition.next(bdd.point({**state, **letter}))
     inputs = {number: play.letters[-1][number] for number in game.alphabet.inputs}
-    return bdd.point({**state, **inputs})
+    return bdd.point({**play.state, **inputs})
 
 
 def _begun(rule: Formalized, alphabet: Alphabet, play: Play) -> str:

@@ -756,7 +756,10 @@ class _Reader(Fields):
             )
         return Variable(
             name,
-            **texts,
+            component=texts["component"],
+            type=texts["type"],
+            role=texts["role"],
+            text=texts["text"],
             fret=fret,
             modality=self._modality(table, at),
             action=self._action(table, at),

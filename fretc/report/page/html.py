@@ -103,7 +103,7 @@ def _plays(report: Report) -> dict[str, list[dict[str, Any] | None]]:
     parts = {"conflict": report.analysis.conflicts, "clash": report.analysis.clashes}
     return {
         kind: [
-            drawn and asdict(drawn)
+            asdict(drawn) if drawn else None
             for number, each in enumerate(several, 1)
             for drawn in [_play(each, f"{kind}-{number}", breaks=kind == "conflict")]
         ]
