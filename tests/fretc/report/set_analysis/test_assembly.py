@@ -69,6 +69,18 @@ def test_the_play_is_drawn_and_stands_in_a_table(fretc: Fretc) -> None:
     assert "at tick 2 R1 (since tick 0) demands" in html
 
 
+def test_a_conflict_without_a_run_is_still_one(fretc: Fretc) -> None:
+    """The run of a conflict may take too long to find."""
+    write(FIGHT)
+    fretc("analyze")
+    path = Path("build/analysis.json")
+    content = json.loads(path.read_text())
+    content["analysis"]["conflicts"][0]["play"] = []
+    path.write_text(json.dumps(content))
+    assert "R1 and R2 cannot be kept together." in report(fretc)["front"]["headline"]
+    assert "No run is drawn" in Path("r.html").read_text()
+
+
 def test_a_set_that_can_be_kept_takes_nothing_from_the_headline(fretc: Fretc) -> None:
     write(FREE)
     headline = report(fretc)["front"]["headline"]
