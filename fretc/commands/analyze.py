@@ -5,11 +5,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from fretc.terminal.options import PATH, format_option, path_option, places, requirements_option
+from fretc.terminal.options import (
+    PATH,
+    format_option,
+    output_option,
+    path_option,
+    places,
+    requirements_option,
+)
 from fretc.terminal.output import (
     BAD,
     INTERRUPTED,
@@ -17,6 +25,7 @@ from fretc.terminal.output import (
     SHOWN,
     VIOLATION,
     coloured,
+    deliver,
     say_briefly,
     stop,
 )
@@ -27,6 +36,8 @@ if TYPE_CHECKING:
 
     from compiler.formalization.formalized import Formalized
     from compiler.project.folder import Project
+    from fretc.analysis.analysis import Options
+    from fretc.analysis.arena.roles import Roles
     from fretc.analysis.findings import Analysis
 
 
@@ -47,6 +58,9 @@ if TYPE_CHECKING:
 @requirements_option
 @path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
 @format_option()
+@output_option(
+    default="build/analysis.json", show_default=True, help="Where evidence goes; `-` prints it."
+)
 def analyze(
     files: tuple[str, ...],
     component: str | None,
@@ -55,6 +69,7 @@ def analyze(
     requirements: str,
     bindings: str | None,
     form: str,
+    output: str,
 ) -> None:
     """Say whether requirements can be kept together, which fight, and which say nothing.
 
@@ -65,12 +80,12 @@ def analyze(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from fretc.analysis.analysis import Finding, Options, assembled, jobs
+    from compiler.project.paths import companions
+    from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
+    from fretc.analysis.evidence import document
     from fretc.analysis.text_output import lines
-    from fretc.analysis.worker import Stopped, findings
-    from fretc.terminal.progress import at_work
     from fretish.printer import sentence as printed
 
     project, first = _project(files, requirements, bindings)
@@ -82,7 +97,34 @@ def analyze(
     chosen = roles([*rules, *assumed])
     if isinstance(chosen, tuple):
         stop(*chosen)
-    options = Options(seconds, as_fret)
+    analysis, stopped = asked(rules, assumed, chosen, Options(seconds, as_fret))
+    evidence = f"{to_json(plain(document(rules, assumed, analysis, as_fret=as_fret)))}\n"
+    if output == "-":
+        click.echo(evidence, nl=False)
+    elif form == "json":
+        click.echo(to_json(plain(analysis)))
+    else:
+        sentences = {rule.id: printed(rule.written) for rule in rules}
+        click.echo(coloured([*lines(analysis, sentences)]), nl=False)
+    if output != "-":
+        sources = [requirement.wording.source.name for requirement in project.requirements]
+        deliver(
+            {Path(output): evidence}, [*sources, *companions(sources), *filter(None, [bindings])]
+        )
+    raise SystemExit(INTERRUPTED if stopped else _status(analysis))
+
+
+def asked(
+    rules: Sequence[Formalized],
+    assumed: Sequence[Formalized],
+    chosen: Roles,
+    options: Options,
+) -> tuple[Analysis, bool]:
+    """What is found of the requirements, and whether Ctrl-C has stopped it."""
+    from fretc.analysis.analysis import Finding, assembled, jobs
+    from fretc.analysis.worker import Stopped, findings
+    from fretc.terminal.progress import at_work
+
     found: list[Finding] = []
     stopped = False
     try:
@@ -90,13 +132,7 @@ def analyze(
             found.append(finding)
     except Stopped:
         stopped = True
-    analysis = assembled(rules, chosen, assumed, options, found)
-    if form == "json":
-        click.echo(to_json(plain(analysis)))
-    else:
-        sentences = {rule.id: printed(rule.written) for rule in rules}
-        click.echo(coloured([*lines(analysis, sentences)]), nl=False)
-    raise SystemExit(INTERRUPTED if stopped else _status(analysis))
+    return assembled(rules, chosen, assumed, options, found), stopped
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> tuple[Project, str]:
