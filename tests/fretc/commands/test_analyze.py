@@ -40,7 +40,8 @@ def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
         "  ✘ R1, R2 (about run): the environment wins\n"
         "\n"
         "✘ conflict 1: R1 and R2 cannot be kept together\n"
-        "  at tick 2 R1 (since tick 0) demands `run` and R2 (since tick 0) forbids `run`\n"
+        "  at tick 2 R1 demands `run` (since tick 0, by tick 2), and R2 forbids it "
+        "(since tick 0, up to tick 3)\n"
     )
     assert "    run (output)   0  0  1\n" in run.out
 
