@@ -15,6 +15,9 @@ from fretc.analysis import implications as of_runs
 from fretc.analysis.arena.alphabet import BeyondError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import by_outputs, by_variables
+from fretc.analysis.controllers.circuit import Circuit
+from fretc.analysis.controllers.files import Form
+from fretc.analysis.controllers.moves import Mealy
 from fretc.analysis.findings import (
     SCHEMA,
     Analysis,
@@ -29,7 +32,7 @@ from fretc.analysis.findings import (
 )
 from fretc.analysis.implications import Consistency, Constant, Removable
 from fretc.analysis.stage import Stage, stage
-from fretc.analysis.verdicts import Completeness, component, conflicts, verdict
+from fretc.analysis.verdicts import Completeness, component, conflicts, strategy, verdict
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import deep
 
@@ -58,6 +61,8 @@ Finding = (
     | Vacuity
     | Inconsistency
     | OpenQuestion
+    | Circuit
+    | Mealy
 )
 
 
@@ -146,6 +151,20 @@ def _promises(assumptions: Sequence[Formalized], roles: Roles, options: Options)
     return Job(title, ask, partial(OpenQuestion, title))
 
 
+def controllers(
+    rules: Sequence[Formalized],
+    roles: Roles,
+    assumptions: Sequence[Formalized],
+    options: Options,
+    form: Form,
+) -> tuple[Job, ...]:
+    """For each component: how it can be kept, in such a form; to be asked after its verdict."""
+    return tuple(
+        _Setting(each, roles, assumptions, options).controller(number, form)
+        for number, each in enumerate(by_outputs(rules, assumptions, roles), 1)
+    )
+
+
 class _Setting:
     """Requirements that are looked at together; their arena is built when it is needed first."""
 
@@ -196,6 +215,21 @@ class _Setting:
                 yield Completeness(self._ids)
             else:
                 yield from self._answers(title, conflicts)
+
+        return Job(title, ask, partial(OpenQuestion, title))
+
+    def controller(self, number: int, form: Form) -> Job:
+        """How a component is kept, where it can be."""
+        title = f"how can {self._name} be kept?"
+
+        def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            if any(
+                isinstance(each, Component)
+                and each.requirements == self._ids
+                and each.verdict is Verdict.REALIZABLE
+                for each in known
+            ):
+                yield from self._answers(title, partial(strategy, number=number, form=form))
 
         return Job(title, ask, partial(OpenQuestion, title))
 

@@ -5,11 +5,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from fretc.terminal.options import PATH, format_option, path_option, places, requirements_option
+from fretc.terminal.options import (
+    PATH,
+    format_option,
+    output_option,
+    path_option,
+    places,
+    requirements_option,
+)
 from fretc.terminal.output import (
     BAD,
     INTERRUPTED,
@@ -17,7 +25,9 @@ from fretc.terminal.output import (
     SHOWN,
     VIOLATION,
     coloured,
+    deliver,
     say_briefly,
+    say_line,
     stop,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
@@ -27,6 +37,8 @@ if TYPE_CHECKING:
 
     from compiler.formalization.formalized import Formalized
     from compiler.project.folder import Project
+    from fretc.analysis.analysis import Finding
+    from fretc.analysis.controllers.files import Form
     from fretc.analysis.findings import Analysis
 
 
@@ -43,6 +55,13 @@ if TYPE_CHECKING:
     show_default=True,
     help="Seconds of a processor for each question.",
 )
+@click.option(
+    "--emit",
+    "emitted",
+    type=click.Choice(("python", "hoa", "dot")),
+    help="Write how a system keeps them: a program, or a Mealy machine.",
+)
+@output_option(default="build", show_default=True, help="Folder for `--emit`; `-` prints.")
 @click.option("--as-fret", is_flag=True, help="Answer as FRET does: `eventually` means at once.")
 @requirements_option
 @path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
@@ -51,6 +70,8 @@ def analyze(
     files: tuple[str, ...],
     component: str | None,
     seconds: float,
+    emitted: str | None,
+    output: str,
     as_fret: bool,
     requirements: str,
     bindings: str | None,
@@ -65,9 +86,10 @@ def analyze(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from fretc.analysis.analysis import Finding, Options, assembled, jobs
+    from fretc.analysis.analysis import Options, assembled, controllers, jobs
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
+    from fretc.analysis.controllers.files import Form
     from fretc.analysis.text_output import lines
     from fretc.analysis.worker import Stopped, findings
     from fretc.terminal.progress import at_work
@@ -85,18 +107,67 @@ def analyze(
     options = Options(seconds, as_fret)
     found: list[Finding] = []
     stopped = False
+    questions = [*jobs(rules, chosen, assumed, options)]
+    if emitted is not None:
+        questions.extend(controllers(rules, chosen, assumed, options, Form(emitted)))
     try:
-        for finding in findings(jobs(rules, chosen, assumed, options), at_work):
+        for finding in findings(questions, at_work):
             found.append(finding)
     except Stopped:
         stopped = True
     analysis = assembled(rules, chosen, assumed, options, found)
-    if form == "json":
+    if output == "-" and emitted is not None:
+        pass  # what is printed is the file
+    elif form == "json":
         click.echo(to_json(plain(analysis)))
     else:
         sentences = {rule.id: printed(rule.written) for rule in rules}
         click.echo(coloured([*lines(analysis, sentences)]), nl=False)
+    if emitted is not None and not stopped:
+        _emit(analysis, found, rules, Form(emitted), output)
     raise SystemExit(INTERRUPTED if stopped else _status(analysis))
+
+
+def _emit(
+    analysis: Analysis,
+    found: Sequence[Finding],
+    rules: Sequence[Formalized],
+    form: Form,
+    output: str,
+) -> None:
+    """Write the strategies of all components, or none of them."""
+    from fretc.analysis.controllers.circuit import Circuit
+    from fretc.analysis.controllers.files import Form, automata, controller
+    from fretc.analysis.controllers.moves import Mealy
+    from fretc.analysis.findings import Verdict
+    from fretish.printer import sentence as printed
+
+    if analysis.verdict is not Verdict.REALIZABLE:
+        say_line(f"no strategy is written: {analysis.why}")
+        return
+    circuits = [each for each in found if isinstance(each, Circuit)]
+    machines = [each for each in found if isinstance(each, Mealy)]
+    if len(circuits) + len(machines) < len(analysis.components):
+        (why, *_) = [each.why for each in analysis.open if each.question.startswith("how can ")]
+        stop(Diagnostic(Code.TOO_LARGE, f"no strategy can be written: {why}", help=_smaller(form)))
+    if form is Form.PYTHON:
+        sentences = {rule.id: printed(rule.written) for rule in rules}
+        assumed = {each.id: each.sentence for each in analysis.assumptions}
+        artifacts = [controller(circuits, sentences, assumed)]
+    else:
+        artifacts = [*automata(machines, form)]
+    if output == "-":
+        deliver({Path("-"): "".join(each.text for each in artifacts)})
+    else:
+        deliver({Path(output) / each.path: each.text for each in artifacts})
+
+
+def _smaller(form: Form) -> str:
+    from fretc.analysis.controllers.files import Form
+
+    if form is Form.PYTHON:
+        return "ask for one component with `--component`, or for more time with `--time`"
+    return "`--emit python` has no states, and writes far larger strategies"
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> tuple[Project, str]:

@@ -1,6 +1,8 @@
 """`fretc analyze` as its users meet it."""
 
 import json
+import subprocess
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -135,3 +137,56 @@ def test_as_fret_eventually_means_at_once(fretc: Fretc, tmp_path: Path) -> None:
     folder = str(written(tmp_path, sentences))
     assert fretc("analyze", folder).status == 0
     assert fretc("analyze", folder, "--as-fret").status == 1
+
+
+KEPT = (
+    "whenever start the line shall within 2 ticks satisfy run",
+    "upon stop the line shall immediately satisfy !run",
+)
+
+
+def test_a_strategy_is_a_program_that_runs(fretc: Fretc, tmp_path: Path) -> None:
+    folder, out = written(tmp_path, KEPT), tmp_path / "out"
+    run = fretc("analyze", str(folder), "--emit", "python", "-o", str(out))
+    assert run.status == 0, run.err
+    program = [sys.executable, str(out / "controller.py")]
+    ticks = [{"start": True, "stop": True}] + 2 * [{"start": False, "stop": False}]
+    lines = "".join(f"{json.dumps(tick)}\n" for tick in ticks)
+    done = subprocess.run(program, input=lines, capture_output=True, text=True, check=True)
+    outputs = [json.loads(line)["run"] for line in done.stdout.splitlines()]
+    assert not outputs[0]
+    assert any(outputs)
+    wrong = subprocess.run(program, input="{}\n", capture_output=True, text=True, check=False)
+    assert wrong.returncode == 2
+    assert wrong.stderr == "line 1: the input start is to be true or false at each tick\n"
+
+
+@pytest.mark.parametrize(("form", "begin"), [("hoa", "HOA: v1\n"), ("dot", "digraph ")])
+def test_a_strategy_is_an_automaton_for_each_component(
+    fretc: Fretc, tmp_path: Path, form: str, begin: str
+) -> None:
+    other = "whenever start the lamp shall immediately satisfy glow"
+    folder, out = written(tmp_path, (*KEPT, other), ROLES | {"glow": "output"}), tmp_path / "out"
+    assert fretc("analyze", str(folder), "--emit", form, "-o", str(out)).status == 0
+    texts = [path.read_text() for path in sorted(out.iterdir())]
+    assert [path.name for path in sorted(out.iterdir())] == [f"controller-{i}.{form}" for i in "12"]
+    assert all(text.startswith(begin) for text in texts)
+    assert "glow" in texts[1]
+    printed = fretc("analyze", str(folder), "--emit", form, "-o", "-")
+    assert printed.out == "".join(texts)
+
+
+def test_no_strategy_is_written_where_there_is_none(fretc: Fretc, folder: Path) -> None:
+    run = fretc("analyze", str(folder), "--emit", "python", "-o", str(folder / "out"))
+    assert run.status == 1
+    assert "no strategy is written: cannot be kept together: R1, R2" in run.err
+    assert not (folder / "out").exists()
+
+
+def test_a_strategy_that_is_too_large_is_refused(fretc: Fretc, tmp_path: Path) -> None:
+    folder = written(tmp_path, ["upon start the line shall for 5000 ticks satisfy run"])
+    run = fretc("analyze", str(folder), "--emit", "hoa", "-o", str(tmp_path / "out"))
+    assert run.status == 2
+    assert "F670 no strategy can be written: its automaton has more than 1000 states" in run.err
+    assert not (tmp_path / "out").exists()
+    assert fretc("analyze", str(folder), "--emit", "python", "-o", str(tmp_path)).status == 0
