@@ -1,11 +1,12 @@
-"""Sentences parsed and formalized per second of CPU, and what a long duration costs."""
+"""Sentences parsed and formalized per second of CPU; what long durations and deep ones cost."""
 
 from __future__ import annotations
 
 import json
 import statistics
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from compiler.formalization.formalize import formalize
@@ -52,6 +53,25 @@ def seconds(function: Callable[[], None], runs: int = 5) -> float:
     return statistics.median(times)
 
 
+def nested(template: str, levels: int) -> str:
+    """A sentence with the template within itself."""
+    text = "p"
+    for _ in range(levels):
+        text = template.format(text)
+    return f"whenever p the sw shall within 3 ticks satisfy {text}"
+
+
+SIZED: Mapping[str, Callable[[int], str]] = {
+    "`&` and `|` within each other": lambda size: nested("q & (r | {})", size // 2),
+    "`xor` within each other": lambda size: nested("({}) xor q", size),
+    "predicates within each other": lambda size: nested("preBool(false, {})", size),
+    "disjunctions beside each other": lambda size: nested(
+        " & ".join(f"(p{i} | ! q{i})" for i in range(size)), 1
+    ),
+}
+"""Expressions with so many operators within, or beside, each other."""
+
+
 def main() -> None:
     """Print the table."""
     sentences = mixed(1_000)
@@ -62,6 +82,9 @@ def main() -> None:
     short = seconds(lambda: work_all([template.format(3)] * 300))
     long = seconds(lambda: work_all([template.format(10**6)] * 300))
     print(f"a duration of 10^6 against one of 3: {long / short:.2f} of the time")
+    for name, sized in SIZED.items():
+        half, whole = (seconds(partial(work, sized(size))) for size in (500, 1_000))
+        print(f"{name}, 1 000 against 500: {whole * 1e3:.0f} ms, {whole / half:.2f} of the time")
 
 
 if __name__ == "__main__":

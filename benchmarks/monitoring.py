@@ -8,6 +8,7 @@ Prints tables of CPU time; no test asserts them. Peers are an extra: pip install
 from __future__ import annotations
 
 import argparse
+import gc
 import time
 import tracemalloc
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -28,6 +29,7 @@ from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors.kernel import Column, Monitor, evaluate
 from monitors.kernel.columns import once, reuse_memory
+from monitors.kernel.verdicts import PENDING, VIOLATED, Verdict
 from monitors.loading import load
 
 STEPS = 200_000
@@ -324,6 +326,119 @@ def online() -> None:
     table(f"Single ticks, {STEPS:,} of them", head, rows)
 
 
+class WrittenByHand:
+    """W2 as one may write it: it refuses what is no truth value, and knows its demands."""
+
+    def __init__(self) -> None:
+        self.tick = self.last = self.open = self.broken = -1
+
+    def step(self, *, a: bool, b: bool) -> Verdict:
+        if not isinstance(a, bool) or not isinstance(b, bool):
+            raise TypeError("a truth value is True or False")
+        self.tick += 1
+        if a:
+            self.last = self.tick
+        if b:
+            self.open = -1
+        elif a and self.open < 0:
+            self.open = self.tick
+        if self.broken < 0 <= self.open <= self.tick - 10:
+            self.broken = self.tick
+        return VIOLATED if self.broken >= 0 else PENDING
+
+
+def by_hand() -> None:
+    """A step of W2 against a hand-written one, called in turn."""
+    machine: Any = monitor(workload_rules()["W2"])
+    arrays = WORKLOADS["W2"].columns(STEPS // 10).values()
+    table_rows = list(zip(*(values.tolist() for values in arrays), strict=True))
+    peer = WrittenByHand()
+
+    def calls(step: Callable[..., object]) -> float:
+        start = time.process_time()
+        for a, b in table_rows:
+            step(a=a, b=b)
+        return time.process_time() - start
+
+    pairs = [(calls(machine.step), calls(peer.step)) for _ in range(60)]
+    ours, theirs = (min(each) / len(table_rows) * 1e6 for each in zip(*pairs, strict=True))
+    row = (f"{ours:.3f}", f"{theirs:.3f}", f"{ours / theirs:.2f}")
+    table("A step of W2", ("us", "by hand", "x"), [row])
+
+
+def windows() -> None:
+    """What a long window with both bounds costs, against one of 10: a call is two ticks."""
+    forms = {
+        "only ... after": "only in m mode whenever a sw shall after {n} ticks satisfy b",
+        "occurred": "sw shall always satisfy (a | occurred({half}, {n}, b))",
+    }
+    rows = []
+    for name, form in forms.items():
+        few, many = (_of_window(form.format(n=n, half=n // 2), n) for n in (10, 100_000))
+        rows += [
+            (name, what, f"{first:.2f}", f"{second:.2f}", f"{second / first:.1f}")
+            for what, first, second in zip(_CALLS, few, many, strict=True)
+        ]
+    table("Windows with both bounds, us", ("", "", "bound 10", "100 000", "x"), rows)
+
+
+_CALLS = ("run of two rows", "two steps", "first unknown")
+
+
+def _of_window(sentence: str, bound: int) -> tuple[float, ...]:
+    """Microseconds of `_CALLS`, after each proposition was true at every other tick for long."""
+    machine: Any = monitor(rule(sentence))
+    pair = [(value,) * len(machine.PROPOSITIONS) for value in (False, True)]
+    named = [dict.fromkeys(machine.PROPOSITIONS.values(), value) for value in (False, True, None)]
+    machine.run(pair * bound)
+    calls = [lambda: machine.run(pair), lambda: [machine.step(**row) for row in named[:2]]]
+    spent = [repeated(call) * 1e6 for call in calls]
+    state, first = machine.state(), []
+    for _ in range(5):
+        machine.restore(state)
+        gc.collect()  # restoring has made many objects
+        start = time.process_time()
+        machine.step(**named[2])
+        first.append((time.process_time() - start) * 1e6)
+    return (*spent, min(first))
+
+
+def after_unknown() -> None:
+    """What steps cost once a value was unknown, against those of a monitor that knows all."""
+    rows = []
+    for name, made in workload_rules().items():
+        machine, other = monitor(made), monitor(made)
+        names = tuple(machine.PROPOSITIONS.values())
+        named = [{n: (i + k) % 3 > 0 for k, n in enumerate(names)} for i in range(STEPS // 10)]
+        other.step(**dict.fromkeys(names))  # type: ignore[attr-defined]
+        stepping(other.step, named)  # type: ignore[attr-defined]
+        spent = [stepping(each.step, named) for each in (machine, other)]  # type: ignore[attr-defined]
+        met = "yes" if other.may is other.must else "no"
+        rows.append((name, *(f"{each:.3f}" for each in spent), f"{spent[1] / spent[0]:.2f}", met))
+    head = ("", "step us", "after an unknown", "x", "one rail")
+    table("After an unknown value", head, rows)
+
+
+def wide() -> None:
+    """What each of many propositions costs, by name and by position, against one of ten."""
+    rows = []
+    for count in (10, 100, 2_000):
+        names = [f"p{i}" for i in range(count)]
+        machine: Any = monitor(rule(f"sw shall always satisfy {' | '.join(names)}"))
+        in_order = machine.rows_of(names[::-1])
+        named, row = dict.fromkeys(machine.PROPOSITIONS.values(), True), (True,) * count
+        calls = (
+            lambda m=machine, x=named: m.step(**x),
+            lambda m=machine, f=in_order, x=row: m.run(f([x])),
+            lambda m=machine, f=in_order, x=row: m.run(f([x] * 100)),
+        )
+        spent = [repeated(call) * 1e9 / count for call in calls]
+        spent[-1] /= 100
+        rows.append((f"{count:,}", *(f"{each:.0f}" for each in spent)))
+    head = ("propositions", "step", "run of a row in another order", "of a hundred")
+    table("Many propositions, ns each", head, rows)
+
+
 def peers_online() -> None:
     """The peers that can be stepped from Python, in microseconds a tick."""
     rows = []
@@ -350,31 +465,47 @@ def _peer_step(peer: Peer, name: str) -> float | None:
 def many() -> None:
     """W5, and one file of up to 1 000 requirements: microseconds a tick and requirement."""
     rows = []
-    generator = np.random.default_rng(1)
-    for count in (1, 20, 100, 1_000):
-        rules = mixed(count)
+    for count, names in ((1, 12), (20, 12), (100, 12), (1_000, 12), (1_000, 1_000)):
+        rules = mixed(count, names)
         start = time.process_time()
         made = text(*rules)
         written = time.process_time() - start
-        machine = load("m", made)
-        ticks = max(200, 100_000 // count)
+        machine: Any = load("m", made)
+        ticks = max(50, 50_000 // count)
+        generator = np.random.default_rng(1)
         values = generator.random((ticks, len(machine.PROPOSITIONS))) < 0.3
         table_rows = [tuple(row) for row in values.tolist()]
         spent = seconds(lambda m=machine, x=table_rows: m.run(x), 3) / ticks / count * 1e6
-        names = tuple(machine.PROPOSITIONS.values())
-        named = [dict(zip(names, row, strict=True)) for row in table_rows]
-        single = stepping(machine.step, named) / count
+        named = [dict(zip(machine.PROPOSITIONS, row, strict=True)) for row in table_rows]
+        parts = [load("m", text(*rules[i : i + 20])) for i in range(0, count, 20)]
         rows.append(
             (
                 f"{count:,}",
+                f"{len(machine.PROPOSITIONS):,}",
                 f"{written / count * 1e3:.2f}",
                 f"{len(made) // 1024:,}",
                 f"{spent:.3f}",
-                f"{single:.3f}",
+                *(f"{_steps(each, named) / count:.3f}" for each in ([machine], parts)),
             )
         )
-    head = ("requirements", "ms each to write", "kB", "run us each", "step us each")
+    head = ("requirements", "propositions", "ms each to write", "kB", "run us each", "step us each")
+    head = (*head, "in files of 20")
     table("Many requirements in one file (mixed, bounds to 1 000)", head, rows)
+
+
+def _steps(machines: Sequence[Any], rows: Sequence[Mapping[str, bool]]) -> float:
+    """Microseconds a tick, of monitors that are stepped one after the other."""
+    named = [
+        [{p: row[name] for name, p in machine.PROPOSITIONS.items()} for machine in machines]
+        for row in rows
+    ]
+
+    def calls() -> None:
+        for tick in named:
+            for machine, values in zip(machines, tick, strict=True):
+                machine.step(**values)
+
+    return seconds(calls) / len(rows) * 1e6
 
 
 # Memory and compiling -------------------------------------------------------------------------
@@ -417,6 +548,10 @@ def main() -> None:
             against_peers(ticks, ours)
     bounds(max(options.ticks))
     online()
+    by_hand()
+    windows()
+    wide()
+    after_unknown()
     if not options.no_peers:
         peers_online()
     many()

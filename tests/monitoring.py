@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from textwrap import indent
 from typing import NamedTuple
 
 from compiler.formalization.formalize import formalize
@@ -11,12 +14,14 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.past import Watch
 from compiler.logic import formula as f
 from compiler.targets.python import monitor as target
+from fretc.verification.monitor.statements import below_docstring
+from fretc.verification.monitor.tick_layout import inlined
 from fretish.bindings.declarations import Declarations
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors.kernel import INCONCLUSIVE, Column, Monitor, Outcome, evaluate
-from monitors.kernel.columns import columns_of
+from monitors.kernel.columns import columns_of, pieces_of
 from monitors.kernel.verdicts import Truth, Verdict, truth
 from monitors.loading import load
 
@@ -89,7 +94,7 @@ def step(machine: Monitor, place: int = 0) -> Step:
 
 def packed(columns: Mapping[str, Sequence[Truth]]) -> tuple[int, dict[str, Column]]:
     """The length of the columns, and each as integers."""
-    ticks, made = columns_of(zip(*columns.values(), strict=True), len(columns))
+    ticks, made = columns_of(pieces_of(zip(*columns.values(), strict=True)), len(columns))
     return ticks, dict(zip(columns, made, strict=True))
 
 
@@ -100,6 +105,32 @@ def over(
     ticks, made = packed(columns)
     (outcome,) = evaluate(machine, made, ticks, end)
     return outcome
+
+
+OWN = "# The requirements ---"
+"""Where the code of the requirements begins."""
+_TICK = re.compile(
+    r"( +)rail\.tick = tick = rail\.tick \+ 1\n(?:.*\n)*?(?= +if rail\.\w+_broken >)"
+)
+
+
+def without_step(text: str) -> str:
+    """A monitor's text; of the tick in its step the first line is left."""
+    place = text.index(OWN)
+    return text[:place] + _TICK.sub(r"\1rail.tick = tick = rail.tick + 1\n", text[place:])
+
+
+def with_step(text: str) -> str:
+    """The text with the tick of its `advance` in its step, too, if it has it in there."""
+    place = text.index(OWN)
+    head, own = text[:place], text[place:]
+    try:
+        functions = [n for n in ast.walk(ast.parse(own)) if isinstance(n, ast.FunctionDef)]
+        (advance,) = (node for node in functions if node.name == "advance")
+        tick = inlined(below_docstring(advance))
+    except (SyntaxError, ValueError, StopIteration, AssertionError):
+        return text
+    return head + _TICK.sub(lambda match: indent(tick, match[1]) + "\n", own)
 
 
 def of_formula(formula: f.Formula) -> Monitor:

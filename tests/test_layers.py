@@ -100,6 +100,7 @@ DOORS = {
     "mcap_ros1": {"fretc/logs/messages/decoding.py"},
     "mcap_ros2": {"fretc/logs/messages/decoding.py"},
     "zstandard": {"fretc/logs/mcap/container.py"},
+    "zlib_ng": {"fretc/logs/mcap/container.py"},
     "lz4": {"fretc/logs/mcap/container.py"},
     "wcwidth": {"fretc/terminal/screen.py"},
     "click": CLICK,

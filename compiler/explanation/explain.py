@@ -20,6 +20,7 @@ from compiler.targets import ltl
 from fretish import syntax as s
 from fretish.diagnostics import signs
 from fretish.diagnostics.rendering import visible
+from fretish.reading.recursion import deep
 
 SCHEMA = "fretc-explanation-1"
 
@@ -59,6 +60,7 @@ class Explanation:
     notes: tuple[str, ...]
 
 
+@deep
 def explanation(rule: Formalized) -> Explanation:
     """Explain a formalized requirement; every trace in it has been checked."""
     found = examples(rule)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 import platform
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 
 __version__ = "0.1.0"
 PACKAGE = f"pkg:pypi/fretc@{__version__}"
 """The address of this version of the tool, as a package URL."""
+_SITE = Path(__file__).parents[2]
 _ROOMS = ("fretish", "monitors", "compiler", "fretc")
 _LIBRARIES = ("lz4", "mcap", "mcap-ros1-support", "mcap-ros2-support", "numpy", "zstandard")
 """That have a part in a verdict: they read logs."""
@@ -26,7 +26,7 @@ def edition() -> str:
     for library in _LIBRARIES:
         digest.update(f" {library} {_version(library)}".encode())
     for room in _ROOMS:
-        root = Path(str(files(room)))
+        root = _SITE / room
         for path in sorted(root.rglob("*")):
             if path.suffix in (".py", ".lark", ".gz"):
                 text = path.read_bytes()

@@ -12,26 +12,23 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.obligation import atom, variable
+from compiler.formalization.obligation import atom
 from fretish import expressions as e
 from fretish import units
 from fretish.bindings.canonical import expression as meaning
 from fretish.bindings.comparisons import FUNCTIONS, bound, is_measured
 from fretish.bindings.declarations import Declarations, Proposition, Signal
-from fretish.checking import conditions
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.source import Source, Span
-from fretish.parser import parse
+from fretish.diagnostics.source import Span
 from fretish.printer import identifier
 from fretish.reading.toml_text import as_key
-from fretish.syntax import Sentence
 
 _MIRRORED: Mapping[str, e.ComparisonOperator] = {**e.MIRRORED, "=": "=", "!=": "!="}
 
 
 def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
     """F524 for each comparison of the sentence that is bound to another one."""
-    stated = _stated(rule.sentence)
+    stated = rule.stated
     terms = _Terms.of_signals(declarations)
     for name in rule.watched:
         proposition = declarations.propositions.get(name)
@@ -42,33 +39,6 @@ def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diag
             yield _drifted(rule, name, stated[name], proposition)
         else:
             terms = agreed
-
-
-def _stated(sentence: Sentence) -> Mapping[str, e.Expression]:
-    """The comparisons and calls of a sentence, by the names that formulas give them.
-
-    So is a name in quotes that reads as a comparison.
-    """
-    found: dict[str, e.Expression] = {}
-    waiting = list(conditions(sentence))
-    while waiting:
-        part = waiting.pop()
-        if isinstance(part, e.Comparison | e.Call):
-            found[atom(part)] = part
-        elif isinstance(part, e.Name):
-            quoted = _quoted(part)
-            found |= {variable(part.id): quoted} if quoted is not None else {}
-        waiting.extend(e.children(part))
-    return found
-
-
-def _quoted(name: e.Name) -> e.Comparison | None:
-    """What the letters of a name in quotes say, where that is a comparison."""
-    if not any(sign in name.id for sign in "<>="):
-        return None
-    read = parse(Source("name", f"the component shall satisfy ({name.id})").span())
-    response = read.response if isinstance(read, Sentence) else None
-    return response if isinstance(response, e.Comparison) else None
 
 
 def _agreed(
@@ -209,7 +179,7 @@ def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic
     is proposed in its place: the nearest name may be another safety claim.
     """
     for name in rule.watched:
-        mistakes = _mistakes(rule, name, declarations)
+        mistakes = _mistakes(name, rule.stated.get(name), declarations)
         yield from mistakes
         if mistakes or name in declarations.propositions:
             continue
@@ -221,9 +191,10 @@ def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic
         )
 
 
-def _mistakes(rule: Formalized, name: str, declarations: Declarations) -> list[Diagnostic]:
+def _mistakes(
+    name: str, stated: e.Expression | None, declarations: Declarations
+) -> list[Diagnostic]:
     """Those of its own table, and of the signals that it compares."""
-    stated = _stated(rule.sentence).get(name)
     read = [("signal", each.id) for each in e.names(stated)] if stated is not None else []
     parts = [("proposition", name), *read]
     return [mistake for part in parts for mistake in declarations.mistakes.get(part, ())]
@@ -234,7 +205,7 @@ def missing_signals(rule: Formalized, name: str, signals: Mapping[str, Signal]) 
 
     Beside `=` and `!=` a second name is taken for a word of the first.
     """
-    stated = _stated(rule.sentence).get(name)
+    stated = rule.stated.get(name)
     if not isinstance(stated, e.Comparison) or atom(stated) != name:
         return ()
     calls = {part.name for part in e.parts(stated) if isinstance(part, e.Call)}
@@ -264,11 +235,7 @@ def _way_out(rule: Formalized, name: str, declarations: Declarations) -> str:
 
 def place(rule: Formalized, name: str) -> Span:
     """Where the sentence names it first: the name, or the comparison or the call that it is of."""
-    compared: Span | None = getattr(_stated(rule.sentence).get(name), "span", None)
+    compared: Span | None = getattr(rule.stated.get(name), "span", None)
     if compared is not None and compared.source is rule.requirement.wording.source:
         return compared
-    for expression in conditions(rule.sentence):
-        for mention in e.names(expression):
-            if mention.id == name and mention.span is not None:
-                return mention.span
-    return rule.requirement.wording
+    return rule.mentions.get(name, rule.requirement.wording)

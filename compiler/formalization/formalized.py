@@ -6,20 +6,24 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 
-from compiler.formalization.obligation import obligation
+from compiler.formalization.obligation import atom, obligation, variable
 from compiler.formalization.past import Watch
 from compiler.formalization.predicates import Past
 from compiler.logic.formula import Formula, atoms
+from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Variable
 from fretish.bindings.definitions import Definitions
-from fretish.checking import conditions
+from fretish.checking import LOOK_BACK, conditions
 from fretish.clock import Clock
-from fretish.diagnostics.source import Source
+from fretish.diagnostics.source import Source, Span
 from fretish.documents import Requirement
 from fretish.expressions import Name, names
+from fretish.parser import parse
 from fretish.printer import canonical, expression
 from fretish.printer import sentence as printed
+from fretish.reading.recursion import deep
 from fretish.syntax import Sentence
 
 
@@ -92,6 +96,37 @@ class Formalized:
         return tuple(dict.fromkeys(name.id for name in sorted(found, key=_place)))
 
     @cached_property
+    @deep
+    def stated(self) -> Mapping[str, e.Expression]:
+        """The comparisons and calls of the sentence, by the names that formulas give them.
+
+        So is a name in quotes that reads as a comparison. A predicate that looks back is none of
+        them within another call: it is never an atom there.
+        """
+        found: dict[str, e.Expression] = {}
+        waiting = [(expression, False) for expression in conditions(self.sentence)]
+        while waiting:
+            part, inside = waiting.pop()
+            expanded = inside and isinstance(part, e.Call) and part.name in LOOK_BACK
+            if isinstance(part, e.Comparison | e.Call) and not expanded:
+                found[atom(part)] = part
+            elif isinstance(part, e.Name):
+                quoted = _quoted(part)
+                found |= {variable(part.id): quoted} if quoted is not None else {}
+            inside |= isinstance(part, e.Call)
+            waiting.extend((each, inside) for each in e.children(part))
+        return found
+
+    @cached_property
+    def mentions(self) -> Mapping[str, Span]:
+        """Where the sentence first has each variable."""
+        found: dict[str, Span] = {}
+        for name in chain.from_iterable(map(names, conditions(self.sentence))):
+            if name.span is not None:
+                found.setdefault(name.id, name.span)
+        return found
+
+    @cached_property
     def fingerprint(self) -> str:
         """SHA-256 of the canonical sentence: white space and wording of key words do not count.
 
@@ -100,6 +135,15 @@ class Formalized:
         lines = [canonical(self.written)]
         lines += [f"{name} = {expression(value)}" for name, value in self.definitions.items()]
         return hashlib.sha256("\n".join(lines).encode()).hexdigest()
+
+
+def _quoted(name: Name) -> e.Comparison | None:
+    """What the letters of a name in quotes say, where that is a comparison."""
+    if not any(sign in name.id for sign in "<>="):
+        return None
+    read = parse(Source("name", f"the component shall satisfy ({name.id})").span())
+    response = read.response if isinstance(read, Sentence) else None
+    return response if isinstance(response, e.Comparison) else None
 
 
 def _place(name: Name) -> int:

@@ -13,7 +13,7 @@ of the past, 1985; Koymans, Specifying real-time properties with metric temporal
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from dataclasses import dataclass
 from typing import assert_never
 
@@ -260,19 +260,32 @@ def or_(*args: Formula) -> Formula:
 
 def _flat(kind: type[And] | type[Or], args: tuple[Formula, ...]) -> list[Formula]:
     """The arguments in their order, each once; compared, not hashed: unequal trees differ early."""
+    parts = [part for arg in args for part in (arg.args if isinstance(arg, kind) else (arg,))]
+    levels = _GLANCE if len(parts) > _FEW else 0
     flat: list[Formula] = []
-    atoms: set[Atom] = set()
-    others: list[Formula] = []
-    for arg in args:
-        for part in arg.args if isinstance(arg, kind) else (arg,):
-            if part in (atoms if isinstance(part, Atom) else others):
-                continue
+    alike: dict[Hashable, list[Formula]] = {}
+    for part in parts:
+        others = alike.setdefault(_glance(part, levels), [])
+        if part not in others:
             flat.append(part)
-            if isinstance(part, Atom):
-                atoms.add(part)
-            else:
-                others.append(part)
+            others.append(part)
     return flat
+
+
+_FEW, _GLANCE = 8, 3
+"""Above so many formulas only those are compared that have this many levels in common."""
+
+
+def _glance(f: Formula, levels: int) -> Hashable:
+    """What equal formulas have in common, at a cost that does not grow with them.
+
+    Of an operator that is its first operands, some levels deep.
+    """
+    if isinstance(f, Atom):
+        return f.name
+    if levels == 0:
+        return type(f).__name__
+    return type(f).__name__, *(_glance(part, levels - 1) for part in children(f)[:2])
 
 
 def xor(left: Formula, right: Formula) -> Formula:

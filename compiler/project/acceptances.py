@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from compiler.files.settings import Settings
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
-from fretish.diagnostics.explanations import ACCEPTANCES, explanations
+from fretish.diagnostics.explanations import ACCEPTANCES, explanation
 from fretish.diagnostics.source import Span
 from fretish.documents import Requirement
 
@@ -42,7 +42,7 @@ class Acceptance:
     @property
     def about(self) -> str:
         """What a warning of the code is about: a key of `ACCEPTANCES`."""
-        return explanations()[self.code.number].accept
+        return explanation(self.code).accept
 
 
 def acceptances(
@@ -85,7 +85,7 @@ def _acceptance(
             f"did you mean `{near}`?" if near else "write the number that the warning begins with"
         )
         return _bad(f"`{number}` is no code of fretc", place, mend)
-    about = explanations()[number].accept
+    about = explanation(code).accept
     if not about:
         mend = f"mend what it is about: `fretc explain {number}` says how"
         return _bad(f"{number} cannot be accepted: {code.summary}", place, mend)

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from compiler.files.settings import Settings, settings
 from compiler.files.text_files import read
@@ -16,14 +17,15 @@ from compiler.project.acceptances import Acceptance, acceptances, answered
 from compiler.project.ancestry import circles, unknown_parents
 from compiler.project.hazards import Hazard
 from compiler.project.hazards import hazards as read_hazards
-from compiler.project.parents import Parent
-from compiler.project.parents import parents as read_parents
 from compiler.project.paths import BINDINGS, HAZARDS, beside, beside_first, requirement_files
 from compiler.project.stated_numbers import disagreements
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.documents import Requirement, requirements
+
+if TYPE_CHECKING:
+    from compiler.project.parents import Parent
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +213,11 @@ def _above(
     """The parents that live in other tools, by the settings of the project."""
     if isinstance(chosen, Diagnostic):
         return {}, (chosen,)
-    return read_parents(chosen) if chosen is not None else ({}, ())
+    if chosen is None:
+        return {}, ()
+    from compiler.project.parents import parents  # with archives and XML, which few projects have
+
+    return parents(chosen)
 
 
 def _reason(remarks: Sequence[Diagnostic]) -> Diagnostic:

@@ -109,16 +109,16 @@ def _removable(setting: Stage, redundant: Sequence[str], budget: Budget) -> tupl
 def _implying(
     setting: Stage, counter: Counter, others: Sequence[Counter], budget: Budget
 ) -> tuple[str, ...] | None:
-    """A minimal set of others that imply a counter: none, one of them, or some of all."""
+    """A minimal set of others that imply a counter, one of them if that is enough; None: none."""
 
     def implied(ids: Sequence[str]) -> bool:
         return _is_implied(setting, counter, setting.counters(ids), budget)
 
-    for ids in ([], *([each.id] for each in others)):
-        if implied(ids):
-            return tuple(ids)
     every = [each.id for each in others]
-    return minimal(every, implied) if implied(every) else None
+    if not implied(every):
+        return None
+    single = next((ids for ids in ([], *([id] for id in every)) if implied(ids)), None)
+    return tuple(single) if single is not None else minimal(every, implied)
 
 
 def _is_implied(
@@ -226,7 +226,7 @@ def _inconsistency(
     clash = each_alone - runs.lasting()
     if clash == bdd.false():
         return None
-    letters = runs.path(clash, runs.going_on(each_alone))
+    letters = runs.path(clash, each_alone)
     if letters is None:
         return None
     ids = sorted(each.id for each in members)

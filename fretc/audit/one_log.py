@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache, partial
+from functools import cache
 from statistics import median
 
 import numpy as np
@@ -135,9 +135,9 @@ def audit(
         for name in names
     }
     phases_of = phases(declarations, recording, [each.monitor for each in requirements])
-    found = health(recording)
+    found, at = health(recording), _moments(truths.timeline)
     evidence = [
-        _evidence(recording, declarations, truths, margins_of, each, engine, found)
+        _evidence(recording, declarations, truths, at, margins_of, each, engine, found)
         for each in requirements
     ]
     return tuple(_phased(each, phases_of.get(each.requirement)) for each in evidence)
@@ -157,6 +157,7 @@ def _evidence(
     recording: Recording,
     declarations: Declarations,
     truths: Trace,
+    at: Callable[[int], Moment],
     margins_of: Mapping[str, tuple[Margin, ...]],
     requirement: MonitoredRequirement,
     engine: Engine,
@@ -175,7 +176,6 @@ def _evidence(
         engine=engine,
     )
     outcome = judgement.outcome
-    at = cache(partial(_moment, truths.timeline))  # a tick may be a trigger, an answer and more
     signals = signals_of(declarations, requirement.propositions)
     answers = tuple((at(t), at(k)) for t, k in outcome.answers)
     evidence = Evidence(
@@ -244,9 +244,15 @@ def hash_of_messages(recording: Recording) -> Mapping[str, str]:
     return {} if messages is None else {"messages": messages}
 
 
-def _moment(timeline: Timeline, tick: int) -> Moment:
-    ns = int(timeline.times[tick])
-    return Moment(tick, ns, round((ns - int(timeline.times[0])) / 1e9, 9))
+def _moments(timeline: Timeline) -> Callable[[int], Moment]:
+    """The moment of each tick; triggers, answers and states ask for the same ones."""
+    times: list[int] = timeline.times.tolist()
+
+    @cache
+    def at(tick: int) -> Moment:
+        return Moment(tick, times[tick], round((times[tick] - times[0]) / 1e9, 9))
+
+    return at
 
 
 def _reason(evidence: Evidence, recording: Recording, declarations: Declarations) -> str:

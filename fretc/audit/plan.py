@@ -43,8 +43,8 @@ class Plan:
     """How the monitors are run: a key of `fretc.audit.many_logs.EVALUATIONS`."""
     integrity: Integrity
     """How closely a log is read."""
-    key: str
-    """SHA-256 of all of it to the letter that one log is judged by, and of the fretc that does."""
+    digest: str
+    """SHA-256 of all of it to the letter that one log is judged by."""
     confidence: float = odds.CONFIDENCE
     """Of the bounds of a probability over all logs."""
     refused: tuple[RefusedRequirement, ...] = field(default=(), compare=False, repr=False)
@@ -53,6 +53,11 @@ class Plan:
     """What the command says of all runs. No audit of a log depends on it: the key does not."""
     selection: Selection | None = field(default=None, compare=False, repr=False)
     """Which of the named logs are audited, for the evidence; None: all."""
+
+    @property
+    def key(self) -> str:
+        """SHA-256 of that, and of the fretc that judges by it."""
+        return sha256(f"{edition()} {self.digest}")
 
     @property
     def named(self) -> tuple[Claim | RefusedRequirement, ...]:
@@ -93,9 +98,9 @@ def planned(
     claims = tuple(_claim(rule, basis_of[id(rule.requirement)]) for rule in rules)
     refused = tuple(_refused(basis_of, requirement, why) for requirement, why in unauditable)
     used = declarations.reading(name for rule in rules for name in rule.watched)
-    key = _key(claims, refused, used, evaluation, integrity)
+    digest = _digest(claims, refused, used, evaluation, integrity)
     one_each = tuple({each.id: each for each in reversed(refused)}.values())[::-1]
-    return Plan(claims, used, evaluation, integrity, key, confidence, one_each)
+    return Plan(claims, used, evaluation, integrity, digest, confidence, one_each)
 
 
 def _refused(
@@ -116,7 +121,7 @@ def _claim(rule: Formalized, basis: Basis) -> Claim:
 
 
 @deep
-def _key(
+def _digest(
     claims: Sequence[Claim],
     refused: Sequence[RefusedRequirement],
     declarations: Declarations,
@@ -127,7 +132,7 @@ def _key(
     digest = hashlib.sha256(pickle.dumps(declarations, protocol=5))
     texts = [(c.id, c.sentence, dict(c.basis), c.monitor, astuple(c.demand)) for c in claims]
     reasons = [(r.id, r.sentence, dict(r.basis), [d.message for d in r.why]) for r in refused]
-    parts = [SCHEMA, edition(), evaluation, integrity, texts, reasons]
+    parts = [SCHEMA, evaluation, integrity, texts, reasons]
     digest.update(json.dumps(parts).encode())
     return digest.hexdigest()
 

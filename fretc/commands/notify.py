@@ -6,7 +6,6 @@ The command gets one JSON object on standard input; `text` is for a person, as c
 from __future__ import annotations
 
 import shlex
-import subprocess
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -39,6 +38,8 @@ def words(command: str) -> list[str]:
 
 def notify(command: Sequence[str], summary: Mapping[str, Any]) -> None:
     """Give the summary to the command, and say how that ended: it changes nothing else."""
+    import subprocess
+
     from compiler.files.processes import shield
     from compiler.files.templating import to_json
 

@@ -1,14 +1,15 @@
 """Payloads of one stream → the numbers of its signals, many messages at once.
 
 Fields are read from their places in the payloads. The official decoder, slower and the reference,
-also decodes made-up messages and the first real ones; where it disagrees, it reads the whole
-stream.
+also decodes made-up messages, and of the first real ones some whose numbers are held against those
+that were read of all at once; where it disagrees, it reads the whole stream.
 """
 
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.payloads import Payloads, Places
 from fretc.logs.messages.decoding import Decode, constants, decoder, is_single, shape, stamp
-from fretc.logs.messages.layouts import Group, Layout, Layouts, Location, Shape, Where
+from fretc.logs.messages.layouts import Layout, Layouts, Location, Shape, Where
 from fretc.logs.messages.probes import trusted
 from fretc.logs.messages.vectorized import nearest, samples, siblings
 from fretc.logs.signals.samples import EXACT, Numbers, Times, Values, widest
@@ -30,8 +31,9 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 _CHECKED = 8
 """Layouts of a stream that are compared with the official decoder on three messages."""
-_SHORT = 128
-"""Of fewer messages of a layout one is compared: decoding three would cost more than the rest."""
+_FEW_ROWS, _LARGE = 128, 1024
+"""Of fewer messages of a layout that have more bytes one is compared: decoding three would cost
+more than the rest."""
 _BLOCK = 2**17
 """Numbers of an array field in one block: the passes over them stay within the cache."""
 _FEW = 512
@@ -110,6 +112,10 @@ class Extract:
             return None
         return Foreign(int(rows.sum()), int(rows.argmax()), self.texts[name][1])
 
+    def is_foreign(self, name: str, row: int) -> bool:
+        """Whether one message holds none of the words of a signal."""
+        return name in self.foreign and bool(self.foreign[name][row])
+
     def near(self, signal: Signal, least: float | None) -> None:
         """Note the least distance that some messages state."""
         if least is not None:
@@ -132,8 +138,10 @@ class Extraction:
             self._single = frozenset(s.name for s in signals if is_single(stream, s.path.fields))
             self._name_numbers(stream)
         self._shape = _shape(stream, self._decode)
-        self._sought: tuple[Where, ...] | None = None
-        """The fields of the present layouts: fewer, once a signal was refused."""
+        self._sought: tuple[str, ...] | None = None
+        """The signals of the present layouts: fewer, once one was refused."""
+        self._layouts: Layouts | None = None
+        """None where not every wanted field has a place."""
         if isinstance(decode, str):
             for signal in signals:
                 self._refuse(signal, log_diagnostics.unknown_encoding(signal, decode))
@@ -155,6 +163,9 @@ class Extraction:
                 slow = slow[1:]
             if self._placed(self._shape):
                 slow = self._at_once(payloads, extract)
+            if self._shape is None:
+                extract = Extract.empty(len(payloads), self.signals, self._single)
+                slow = range(len(payloads))
         for row in slow:
             self._one_by_one(row, bytes(payloads.payload(row)), extract)
         return extract
@@ -212,21 +223,37 @@ class Extraction:
 
     def _placed(self, shape: Shape) -> bool:
         """Whether every wanted field has a place; if not, each message must be decoded."""
+        names = tuple(signal.name for signal in self.signals)
+        if names != self._sought:
+            self._sought = names
+            placed = self._are_placed(shape)
+            self._layouts = Layouts(shape, self._wanted(shape)) if placed else None
+        return self._layouts is not None
+
+    def _are_placed(self, shape: Shape) -> bool:
         return all(_reads(shape, signal) for signal in self.signals) and all(
             field is not None and field.type in _SECONDS
             for field in map(shape.number, _stamp_places(shape))
         )
 
     def _at_once(self, payloads: Payloads, extract: Extract) -> Sequence[int]:
-        """Read all messages that fit a layout; returns the remaining rows."""
-        assert self._shape is not None
-        wanted = self._wanted(self._shape)
-        if wanted != self._sought:
-            self._sought, self._layouts = wanted, Layouts(self._shape, wanted)
+        """Read all messages that fit a layout; returns the remaining rows.
+
+        Where the official decoder reads one of them otherwise, there is no shape any more.
+        """
+        assert self._layouts is not None
         rest: list[int] = []
         for group in self._layouts.groups(payloads):
-            if not self._read_group(payloads, group, extract):
+            if group.layout is None:
                 rest.extend(group.rows.tolist())
+                continue
+            self._fill(payloads, group.rows, group.layout, extract)
+            if group.new and self._checks:
+                self._checks -= 1
+                rows = _telling(group.rows, payloads)
+                if not all(self._agrees(row, payloads, group.layout, extract) for row in rows):
+                    self._shape = None
+                    break
         return sorted(rest)
 
     def _wanted(self, shape: Shape) -> tuple[Where, ...]:
@@ -239,42 +266,41 @@ class Extraction:
         wanted.update(dict.fromkeys(_stamp_places(shape)))
         return tuple(wanted)
 
-    def _read_group(self, payloads: Payloads, group: Group, extract: Extract) -> bool:
-        """Read the messages of one layout, unless the official decoder reads them otherwise."""
-        if group.layout is None or self._shape is None:
-            return False
-        if group.new and self._checks:
-            self._checks -= 1
-            rows = _telling(group.rows, payloads)
-            if not all(self._agrees(row, payloads, group.layout) for row in rows):
-                self._shape = None
-                return False
-        self._fill(payloads, group.rows, group.layout, group.rows, extract)
-        return True
-
-    def _agrees(self, row: int, payloads: Payloads, layout: Layout) -> bool:
-        """Whether both ways read the same of one message."""
-        slow, fast = (Extract.empty(1, self.signals, self._single) for _ in range(2))
+    def _agrees(self, row: int, payloads: Payloads, layout: Layout, extract: Extract) -> bool:
+        """Whether the official decoder reads of one message what the extract has of it."""
+        official = Extract.empty(1, self.signals, self._single)
         before = len(self.diagnostics)
-        self._one_by_one(0, bytes(payloads.payload(row)), slow)
-        if len(self.diagnostics) != before or not slow.decoded[0]:
+        self._one_by_one(0, bytes(payloads.payload(row)), official)
+        if len(self.diagnostics) != before or not official.decoded[0]:
             return False
-        self._fill(payloads, np.array([row]), layout, np.zeros(1, np.int64), fast)
         return (
             all(
-                np.array_equal(slow.values[s.name], fast.values[s.name], equal_nan=True)
+                _alike(official.values[s.name][0], extract.values[s.name][row])
+                and (s.name in official.foreign) == extract.is_foreign(s.name, row)
                 for s in self.signals
             )
-            and bool(slow.stamped[0] == fast.stamped[0])
-            and bool(slow.stamps[0] == fast.stamps[0])
-            and slow.nearest == fast.nearest
+            and bool(official.stamped[0] == extract.stamped[row])
+            and bool(official.stamps[0] == extract.stamps[row])
+            and official.nearest == self._nearest(row, payloads, layout)
         )
 
-    def _fill(
-        self, payloads: Payloads, rows: Places, layout: Layout, to: Places, extract: Extract
-    ) -> None:
-        """Put the contents of the messages `rows` at the places `to` of the extract."""
-        extract.decoded[to] = True
+    def _nearest(self, row: int, payloads: Payloads, layout: Layout) -> dict[str, float]:
+        """The least distances that one message states."""
+        single = Extract.empty(1, ())
+        place = layout.locations.get((RANGE_MIN,))
+        if place is not None and place.count is None:
+            stated = _numbers(payloads.gathered(np.array([row]), place.at, place.dtype, None))
+            self._note_nearest(stated, single)
+        return single.nearest
+
+    def _note_nearest(self, range_min: Numbers, extract: Extract) -> None:
+        for signal in self.signals:
+            if signal.reduce in (Reduce.MIN, Reduce.OUTLINE):
+                extract.near(signal, nearest(signal, range_min))
+
+    def _fill(self, payloads: Payloads, rows: Places, layout: Layout, extract: Extract) -> None:
+        """Put the contents of some messages into the extract."""
+        extract.decoded[rows] = True
         locations = layout.locations
         single = {
             where: payloads.gathered(rows, field.at, field.dtype, None)
@@ -290,16 +316,16 @@ class Extraction:
             else:
                 values = self._reduced(signal, payloads, rows, field, sibling_values)
             if signal.values:
-                extract.put_words(signal, to, values)
+                extract.put_words(signal, rows, values)
             else:
-                extract.put(signal, to, values)
-            if (RANGE_MIN,) in single and signal.reduce in (Reduce.MIN, Reduce.OUTLINE):
-                extract.near(signal, nearest(signal, _numbers(single[RANGE_MIN,])))
+                extract.put(signal, rows, values)
+        if (RANGE_MIN,) in single:
+            self._note_nearest(_numbers(single[RANGE_MIN,]), extract)
         places = _stamp_places(self._shape) if self._shape is not None else ()
         if places:
             seconds, nanoseconds = (single[place].astype(np.int64) for place in places)
-            extract.stamps[to] = seconds * 10**9 + nanoseconds
-            extract.stamped[to] = True
+            extract.stamps[rows] = seconds * 10**9 + nanoseconds
+            extract.stamped[rows] = True
 
     def _reduced(
         self,
@@ -327,12 +353,13 @@ def _shape(stream: Stream, decode: Decode | None) -> Shape | None:
 
 
 def _telling(rows: Places, payloads: Payloads) -> set[int]:
-    """The rows to compare: the first, the middle and the last; of few only the one that says most.
+    """The rows to compare: the first, the middle and the last.
 
-    Two places that hold the same byte are not told apart.
+    Of few large ones only that of the three which has most different bytes: two places that hold
+    the same byte are not told apart.
     """
     chosen = {int(rows[i]) for i in (0, (len(rows) - 1) // 2, -1)}
-    if len(rows) >= _SHORT:
+    if len(rows) >= _FEW_ROWS or payloads.sizes[rows[0]] <= _LARGE:
         return chosen
     return {max(sorted(chosen), key=lambda row: len(set(bytes(payloads.payload(row)))))}
 
@@ -345,6 +372,10 @@ def _reads(shape: Shape, signal: Signal) -> bool:
         and field.many == (path.each or path.index is not None)
         and all(shape.has((name,)) for name in siblings(signal))
     )
+
+
+def _alike(one: np.floating[Any], other: np.floating[Any]) -> bool:
+    return bool(one == other) or bool(np.isnan(one) and np.isnan(other))
 
 
 def _matrix(numbers: NDArray[np.generic]) -> Values:

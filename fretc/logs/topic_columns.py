@@ -314,9 +314,11 @@ class Columns:
         column = self.topics.get(signal.path.topic)
         if column is None or signal.name not in column.values:
             return np.zeros(0, np.int64), np.zeros(0)
-        times = np.array(column.times, np.int64)
+        times, numbers = column.stamps(), column.numbers(signal)
+        if (times[1:] >= times[:-1]).all():
+            return times, numbers
         order = np.argsort(times, kind="stable")
-        return times[order], column.numbers(signal)[order]
+        return times[order], numbers[order]
 
     def ticks(self) -> Times:
         """Times of the clock's topic, where the clock ticks by message."""
@@ -330,10 +332,12 @@ class Columns:
         than the bound ones count by log time only: an index knows no other time of them.
         """
         columns = [column for column in self.topics.values() if column.placed]
-        times = [c.times for c in columns if c.bound]
+        times = [c.stamps() for c in columns if c.bound]
         if not times and self.clock.time is TimeSource.LOG_TIME:
-            times = [c.times for c in columns]
-        return (min(map(min, times)), max(map(max, times))) if times else log
+            times = [c.stamps() for c in columns]
+        if not times:
+            return log
+        return min(int(some.min()) for some in times), max(int(some.max()) for some in times)
 
     def on_clock(self, gap: Gap) -> Gap:
         """A span of log times, on the declared clock: between the messages around it."""

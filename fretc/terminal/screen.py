@@ -10,8 +10,6 @@ import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from wcwidth import wcswidth
-
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.signs import SIGNS
 
@@ -64,6 +62,10 @@ def screen() -> Screen:
 
 def width(text: str) -> int:
     """The columns that a text without control characters takes."""
+    if text.isascii() and text.isprintable():
+        return len(text)
+    from wcwidth import wcswidth
+
     return max(0, wcswidth(text))
 
 

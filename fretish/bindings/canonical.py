@@ -25,6 +25,7 @@ from fretish.clock import Clock
 from fretish.reading.recursion import deep
 
 
+@deep
 def digest(value: Any) -> str:
     """SHA-256 of plain values; the order of keys does not count."""
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()

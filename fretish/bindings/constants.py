@@ -21,12 +21,13 @@ def constants(expression: e.Expression) -> set[Exact]:
     without.
     """
     numbers: set[Exact] = set()
+    measured = _measured(expression)
     waiting = [expression]
     while waiting:
         part = waiting.pop()
         if isinstance(part, e.Persistence):
             numbers.add((units.SECOND.dimension, Fraction(part.duration, 10**9)))
-        exact = constant(part)
+        exact = None if id(part) in measured else _constant(part)
         if exact is not None:
             numbers.add(exact)
         if exact is None or isinstance(part, e.Negation):
@@ -34,10 +35,18 @@ def constants(expression: e.Expression) -> set[Exact]:
     return numbers
 
 
-def constant(expression: e.Expression) -> Exact | None:
-    """What is computed of numbers alone; None for a truth, a word, and for what is measured."""
-    if isinstance(expression, e.Word) or any(e.names(expression)) or binding.ticks_back(expression):
-        return None
+def _measured(expression: e.Expression) -> set[int]:
+    """The `id` of each part that is a word, has a name in it, or looks back."""
+    measured: set[int] = set()
+    for part in reversed([*e.parts(expression)]):  # operands before their operators
+        own = isinstance(part, e.Word | e.Name) or binding.looks_back(part)
+        if own or any(id(operand) in measured for operand in e.children(part)):
+            measured.add(id(part))
+    return measured
+
+
+def _constant(expression: e.Expression) -> Exact | None:
+    """What is computed of numbers alone, of no measured part; None for a truth."""
     dimension = binding.dimension(expression, {}, Source("", "").span())
     assert not isinstance(dimension, Diagnostic), "the reader of bindings refuses the expression"
     value = number(expression) if dimension is not None else None

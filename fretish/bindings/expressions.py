@@ -315,6 +315,11 @@ _PRE = frozenset({"pre", "preReal", "preInt"})
 
 
 @remembered
+def looks_back(part: e.Expression) -> bool:
+    """Whether it is a call of `pre`."""
+    return isinstance(part, e.Call) and part.name in _PRE
+
+
 def ticks_back(expression: e.Expression) -> int:
     """By how many ticks its value looks back: calls of `pre` within each other.
 
@@ -324,7 +329,7 @@ def ticks_back(expression: e.Expression) -> int:
     waiting = [(expression, 0)]
     while waiting:
         part, back = waiting.pop()
-        back += isinstance(part, e.Call) and part.name in _PRE
+        back += looks_back(part)
         deepest = max(deepest, back)
         waiting.extend((child, back) for child in e.children(part))
     return deepest

@@ -673,7 +673,8 @@ class _Reader(Fields):
                 "compare it: `min_range < 5 cm`",
             )
         else:
-            percents = {n for n, signal in self.signals.items() if signal.unit == units.PERCENT}
+            known = {name.id: self.signals.get(name.id) for name in e.names(expression)}
+            percents = {n for n, each in known.items() if each and each.unit == units.PERCENT}
             self.diagnostics.extend(binding.plain_percents(expression, percents, place))
         return expression if kind is None else None
 

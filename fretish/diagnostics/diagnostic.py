@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
-from difflib import get_close_matches
 from enum import Enum, StrEnum
 
 from fretish.diagnostics.mends import Mend
@@ -280,6 +279,8 @@ def suggestion(word: str, known: Iterable[str], cutoff: float = 0.6) -> str | No
         known: what may be written.
         cutoff: how near, from 0 (anything) to 1 (equal), as `difflib` measures it.
     """
+    from difflib import get_close_matches  # where something is misspelt
+
     by_folded = {name.casefold(): name for name in known if _claim(name) == _claim(word)}
     near = get_close_matches(word.casefold(), by_folded, n=1, cutoff=cutoff)
     return by_folded[near[0]] if near else None

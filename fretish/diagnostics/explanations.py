@@ -9,7 +9,7 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from fretish.diagnostics.diagnostic import Code
@@ -48,12 +48,21 @@ ACCEPTANCES = {
 @cache
 def explanations() -> dict[str, Explanation]:
     """All of them, by the number of the code."""
-    by_number: dict[str, Explanation] = {}
-    for file in files("fretish.diagnostics").joinpath("codes").iterdir():
-        if file.name.endswith(".toml"):
-            tables = tomllib.loads(file.read_text(encoding="utf-8"))
-            by_number |= {number: Explanation(**fields) for number, fields in tables.items()}
-    return by_number
+    kinds = dict.fromkeys(code.number[1] for code in Code)
+    return {number: each for kind in kinds for number, each in _of_kind(kind).items()}
+
+
+def explanation(code: Code) -> Explanation:
+    """That of one code: those of other kinds are not read."""
+    return _of_kind(code.number[1])[code.number]
+
+
+@cache
+def _of_kind(kind: str) -> dict[str, Explanation]:
+    """Those of the codes whose number begins with a digit, from the file of that digit."""
+    (file,) = (Path(__file__).parent / "codes").glob(f"{kind}_*.toml")
+    tables = tomllib.loads(file.read_text(encoding="utf-8"))
+    return {number: Explanation(**fields) for number, fields in tables.items()}
 
 
 def text(code: Code) -> str:

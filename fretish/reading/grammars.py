@@ -11,7 +11,8 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from importlib.resources import files
+from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import lark
@@ -53,17 +54,21 @@ class Grammar:
         return gzip.compress(text.encode(), mtime=0)
 
     def _kept(self) -> Mapping[str, Any] | None:
-        file = files(self.package).joinpath(self.tables_file)
+        file = self._folder / self.tables_file
         if not file.is_file():
             return None
         tables: Mapping[str, Any] = json.loads(gzip.decompress(file.read_bytes()))
         return tables if tables["key"] == self._key() else None
 
+    @property
+    def _folder(self) -> Path:
+        return Path(import_module(self.package).__path__[0])
+
     def _new(self) -> Lark:
         return Lark(self._text(), parser="lalr", **self.options)
 
     def _text(self) -> str:
-        file = files(self.package).joinpath(f"{self.name}.lark")
+        file = self._folder / f"{self.name}.lark"
         return file.read_text(encoding="utf-8") + self.addition
 
     def _key(self) -> str:

@@ -6,6 +6,7 @@ import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import tomli_w
@@ -25,7 +26,23 @@ _VALUE = re.compile(
     re.VERBOSE | re.MULTILINE,
 )
 
-_ANY_HEADER = re.compile(r"^[ \t]*\[", re.MULTILINE)
+_HEADER = re.compile(r"^[ \t]*\[", re.MULTILINE)
+_PART = re.compile(
+    r"""[ \t]*(?P<name>"(?P<text>[^"\n]*)"|'(?P<literal>[^'\n]*)'|(?P<bare>[\w-]+))
+        [ \t]*(?P<then>[\].])""",
+    re.VERBOSE,
+)
+"""A part of a header's name, and whether another one follows."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Header:
+    """`[a.b]`, or the `[a.` that it begins with."""
+
+    name: tuple[int, int]
+    """Where its name stands."""
+    table: tuple[int, int]
+    """Where everything behind it stands, up to the next header."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,11 +54,12 @@ class Tables:
 
     def place(self, *path: str) -> Span:
         """Where the last key of the path stands; the whole text's start where it is not found."""
+        header = _headers(self.text.text).get(path)
+        if header is not None:
+            return self.text.part(*header.name)
         *tables, key = path
         start, end = self._table(tables) or self._inline(tables)
         match = _key(key).search(self.text.text, start, end)
-        if match is None:
-            match = _header(path).search(self.text.text)
         if match is None and tables:
             return self.place(*tables)
         return self.text.part(*match.span("key")) if match else self.text.part(0, 0)
@@ -49,12 +67,11 @@ class Tables:
     def value(self, *path: str) -> Span:
         """Where the value behind the last key of the path stands, up to the end of its line."""
         key = self.place(*path)
-        rest = self.text.source.text[key.end : self.text.end]
-        match = _VALUE.match(rest)
+        match = _VALUE.match(key.source.text, key.end, self.text.end)
         if match is None:
             return key
-        start, end = match.start("value"), match.start("value") + len(match["value"].rstrip())
-        return Span(key.source, key.end + start, key.end + end)
+        start = match.start("value")
+        return Span(key.source, start, start + len(match["value"].rstrip()))
 
     def _inline(self, tables: list[str]) -> tuple[int, int]:
         """Where the braces of an inline table stand."""
@@ -64,20 +81,26 @@ class Tables:
         return span.start - self.text.start, span.end - self.text.start
 
     def _table(self, tables: Iterable[str]) -> tuple[int, int] | None:
-        path = tuple(tables)
-        if not path:
-            first = _ANY_HEADER.search(self.text.text)
-            return 0, first.start() if first else len(self.text.text)
-        header = _header(path).search(self.text.text)
-        if header is None:
-            return None
-        following = _ANY_HEADER.search(self.text.text, header.end())
-        return header.end(), following.start() if following else len(self.text.text)
+        header = _headers(self.text.text).get(tuple(tables))
+        return None if header is None else header.table
 
 
-def _header(path: Iterable[str]) -> re.Pattern[str]:
-    name = r"[ \t]*\.[ \t]*".join(f"[\"']?{re.escape(part)}[\"']?" for part in path)
-    return re.compile(rf"^[ \t]*\[[ \t]*(?P<key>{name})[ \t]*[\].]", re.MULTILINE)
+@lru_cache(8)
+def _headers(text: str) -> Mapping[tuple[str, ...], _Header]:
+    """The first header that has a path or begins with it; the empty path stands for the root."""
+    begins = [match.span() for match in _HEADER.finditer(text)]
+    ends = [start for start, _ in begins[1:]] + [len(text)]
+    found: dict[tuple[str, ...], _Header] = {}
+    found[()] = _Header((0, 0), (0, begins[0][0] if begins else len(text)))
+    for (_, begin), end in zip(begins, ends, strict=False):
+        path: tuple[str, ...] = ()
+        part = first = _PART.match(text, begin)
+        while part is not None and first is not None:
+            path = (*path, part["text"] or part["literal"] or part["bare"] or "")
+            name = first.start("name"), part.end("name")
+            found.setdefault(path, _Header(name, (part.end(), end)))
+            part = _PART.match(text, part.end()) if part["then"] == "." else None
+    return found
 
 
 def _key(key: str) -> re.Pattern[str]:

@@ -6,9 +6,9 @@ log2 of the bound. Sources: `since` by the carry of an addition: Reynolds, in Wa
 Delight, 2013, section 2; windows by doubling: van Herk, Pattern Recognition Letters 13 (1992).
 """
 
+import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
-from itertools import chain
 from typing import NamedTuple
 
 from monitors.kernel.verdicts import Truth, boolean
@@ -67,38 +67,113 @@ def code(value: Truth) -> int:
     return int(boolean(value))
 
 
-def columns_of(rows: Iterable[Sequence[Truth]], count: int) -> tuple[int, tuple[Column, ...]]:
-    """The length and the columns of a table with `count` truth values in each row, one row a tick.
+class Tape:
+    """A column that grows: bits in whole bytes, and the codes of up to seven ticks after them."""
+
+    __slots__ = ("rest", "true", "unknown")
+
+    def __init__(self) -> None:
+        self.true, self.unknown = bytearray(), bytearray()
+        self.rest = b""
+
+    def append(self, codes: bytes) -> None:
+        """Go on with one code a tick."""
+        codes = self.rest + codes
+        size = len(codes) // 8
+        true, unknown = column(codes[: 8 * size])
+        if unknown:  # as long as all is known, that takes no memory
+            self.unknown += bytes(len(self.true) - len(self.unknown))
+            self.unknown += unknown.to_bytes(size, "little")
+        self.true += true.to_bytes(size, "little")
+        self.rest = codes[8 * size :]
+
+    def column(self) -> Column:
+        """All of it."""
+        ticks, last = 8 * len(self.true), column(self.rest)
+        return Column(
+            int.from_bytes(self.true, "little") | last.true << ticks,
+            int.from_bytes(self.unknown, "little") | last.unknown << ticks,
+        )
+
+
+class Piece(NamedTuple):
+    """Some ticks of a trace."""
+
+    ticks: int
+    codes: Sequence[bytes]
+    """Of each proposition, one a tick."""
+
+
+def pieces_of(rows: Iterable[Sequence[Truth]]) -> Iterator[Piece]:
+    """Truth values, one row a tick, in pieces.
 
     Raises:
         TypeError: a value is not True, False or None.
-        ValueError: a row has more or fewer values.
+        ValueError: a row has more or fewer values than others.
     """
-    codes = [bytearray() for _ in range(count)]
+    waiting = iter(rows)
+    while some := list(itertools.islice(waiting, _AT_ONCE)):
+        columns = zip(*some, strict=True)
+        yield Piece(len(some), [bytes(map(code, values)) for values in columns])
+
+
+_AT_ONCE = 512
+"""Rows of a piece: there may be thousands of values in each."""
+
+
+def columns_of(pieces: Iterable[Piece], count: int) -> tuple[int, tuple[Column, ...]]:
+    """The length and the columns of a trace of `count` propositions.
+
+    Raises:
+        ValueError: a piece has more or fewer of them.
+    """
+    tapes = [Tape() for _ in range(count)]
     ticks = 0
-    for row in rows:
-        ticks += 1
-        for values, value in zip(codes, row, strict=True):
-            values.append(code(value))
-    return ticks, tuple(map(column, codes))
+    for piece in pieces:
+        ticks += piece.ticks
+        for tape, codes in zip(tapes, piece.codes, strict=True):
+            tape.append(codes)
+    return ticks, tuple(tape.column() for tape in tapes)
 
 
 def truths(column: Column, ticks: int) -> list[Truth]:
     """The truth value at each tick."""
-    true, unknown = set(ticks_of(column.true)), set(ticks_of(column.unknown))
-    return [None if tick in unknown else tick in true for tick in range(ticks)]
+    true, unknown = (f"{bits:0{ticks}b}"[::-1][:ticks] for bits in column)
+    if not column.unknown:
+        return [bit == "1" for bit in true]
+    return [None if doubt == "1" else bit == "1" for bit, doubt in zip(true, unknown, strict=True)]
+
+
+def rows_of(columns: Sequence[Column], ticks: int) -> Iterator[tuple[Truth, ...]]:
+    """The truth value of each column, tick by tick."""
+    if not columns:
+        yield from itertools.repeat((), ticks)
+        return
+    size = (ticks + 7) // 8
+    data = [[bits.to_bytes(size, "little") for bits in column] for column in columns]
+    for first in range(0, size, _STRETCH):
+        parts = [
+            Column(*(int.from_bytes(bits[first : first + _STRETCH], "little") for bits in column))
+            for column in data
+        ]
+        few = min(8 * _STRETCH, ticks - 8 * first)
+        yield from zip(*(truths(part, few) for part in parts), strict=True)
+
+
+_STRETCH = 64
+"""Bytes of a column whose truth values are in memory at once."""
 
 
 def ticks_of(column: int) -> Iterator[int]:
     """The ticks at which it is true, in order; the cost is that of its memory and of these."""
-    return chain.from_iterable(_pieces_of(column))
+    return itertools.chain.from_iterable(_tick_lists(column))
 
 
 _PIECE_BYTES = 512
 _BITS = tuple(tuple(bit for bit in range(8) if byte >> bit & 1) for byte in range(256))
 
 
-def _pieces_of(column: int) -> Iterator[list[int]]:
+def _tick_lists(column: int) -> Iterator[list[int]]:
     """The same in pieces: a list of ticks takes less time than a generator that yields each."""
     data = column.to_bytes((column.bit_length() + 7) // 8, "little")
     for start in range(0, len(data), _PIECE_BYTES):

@@ -8,20 +8,19 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from typing import TextIO
 
-from monitors.kernel.columns import columns_of
+from monitors.kernel.columns import Piece, columns_of
 from monitors.kernel.outcomes import Outcome, evaluate, stepped
 from monitors.kernel.stepping import Monitor
-from monitors.kernel.tables import InputError, read_rows, visible
+from monitors.kernel.tables import InputError, read_pieces, visible
 from monitors.kernel.verdicts import (
     EXIT_STATUS,
     INCONCLUSIVE,
     VIOLATED,
-    Truth,
     Verdict,
 )
 
-Read = Callable[[TextIO, str, argparse.Namespace], Iterable[Sequence[Truth]]]
-"""Gives the truth of the propositions, a row a tick, from a table, its source and the options."""
+Read = Callable[[TextIO, str, argparse.Namespace], Iterable[Piece]]
+"""Gives the truth of the propositions, from a table, its source and the options."""
 
 
 def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
@@ -34,7 +33,7 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
     return judge(
         monitor,
         _parser(monitor),
-        lambda text, source, options: read_rows(text, names, source),
+        lambda text, source, options: read_pieces(text, names, source),
         arguments,
     )
 

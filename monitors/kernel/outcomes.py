@@ -7,7 +7,8 @@ The text below the imports is copied into every generated monitor to the letter,
 included: a change of it changes all of them.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -15,15 +16,15 @@ from typing import Any
 from monitors.kernel.columns import (
     LARGE,
     Column,
-    column,
+    Tape,
     first_of,
     reuse_memory,
+    rows_of,
     ticks_of,
-    truths,
     until,
 )
 from monitors.kernel.listings import Listing, run_list, tick_list
-from monitors.kernel.stepping import Monitor, finite_verdict, literals_of
+from monitors.kernel.stepping import Monitor, Rail, Row, finite_verdict, literals_of
 from monitors.kernel.verdicts import (
     INCONCLUSIVE,
     NO_DATA,
@@ -114,25 +115,50 @@ def stepped(
     Args, raises: as for `evaluate`.
     """
     monitor.reset()
-    table = [truths(columns[name], ticks) for name in monitor.PROPOSITIONS]
-    must: list[tuple[Signals[bool], ...]] = []
-    may: list[tuple[Signals[bool], ...]] = []
-    for tick in range(ticks):
-        monitor.advance([tuple(values[tick] for values in table)])
-        must.append(monitor.must.signals())
-        may.append(monitor.may.signals())
+    rows = rows_of([columns[name] for name in monitor.PROPOSITIONS], ticks)
+    must, may = _Record(monitor), _Record(monitor)
+    while some := list(itertools.islice(rows, _TICKS)):
+        if any(None in row for row in some):
+            monitor._fork()
+        certain = _signal_codes(monitor.must, some)
+        must.append(certain)
+        may.append(certain if monitor.may is monitor.must else _signal_codes(monitor.may, some))
+    rails = zip(must.columns(), may.columns(), strict=True)
     return tuple(
-        _outcome(requirement, ticks, _gathered(must, i), _gathered(may, i), end)
-        for i, requirement in enumerate(monitor.REQUIREMENTS)
+        _outcome(requirement, ticks, certain, possible, end)
+        for requirement, (certain, possible) in zip(monitor.REQUIREMENTS, rails, strict=True)
     )
 
 
-def _gathered(steps: Sequence[tuple[Signals[bool], ...]], place: int) -> Signals[int]:
-    """The signals of one requirement at each tick, as columns."""
-    if not steps:
-        return Signals(*(0 for _ in Signals._fields))
-    values = zip(*(step[place] for step in steps), strict=True)
-    return Signals(*(column(bytes(value)).true for value in values))
+_TICKS = 512
+"""Ticks over which the signals of one rail are gathered, and then those of the other."""
+
+
+def _signal_codes(rail: Rail, rows: Iterable[Row]) -> bytes:
+    """The codes of all signals after each row, one row after the other."""
+    values: list[bool] = []
+    for row in rows:
+        rail.advance((row,))
+        for signals in rail.signals():
+            values += signals
+    return bytes(values)
+
+
+class _Record:
+    """The signals of a rail, tick by tick, as columns that grow."""
+
+    def __init__(self, monitor: Monitor) -> None:
+        self._tapes = [Tape() for _ in monitor.REQUIREMENTS for _ in Signals._fields]
+
+    def append(self, codes: bytes) -> None:
+        """Go on with all signals of some ticks, one tick after the other."""
+        for place, tape in enumerate(self._tapes):
+            tape.append(codes[place :: len(self._tapes)])
+
+    def columns(self) -> Iterator[Signals[int]]:
+        """Those of each requirement."""
+        columns = (tape.column().true for tape in self._tapes)
+        return map(Signals, *[columns] * len(Signals._fields))
 
 
 def _outcome(

@@ -10,16 +10,12 @@ logic).
 import hashlib
 import itertools
 import json
-from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import itemgetter
 from typing import Any, ClassVar, NamedTuple, Protocol
 
 from monitors.kernel.columns import Column
 from monitors.kernel.verdicts import (
-    PENDING,
-    SATISFIED,
-    VIOLATED,
     Requirement,
     Signals,
     Truth,
@@ -73,38 +69,140 @@ class Rail(Protocol):
         """What is remembered, for each requirement."""
 
 
-class Window:
-    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window."""
+class _Run:
+    """Ticks without a gap at which `right` of a window held, and the run after it."""
 
-    __slots__ = ("hi", "lo", "now", "runs")
+    __slots__ = ("end", "next", "start")
+
+    def __init__(self, start: int, end: int) -> None:
+        self.start, self.end = start, end
+        self.next: _Run | None = None
+
+
+class Window:
+    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window.
+
+    Copies share the runs that have ended, so a copy costs the same for any number of them: they are
+    linked from the oldest to the youngest, a window goes no further than its own last one, and what
+    a fork adds branches off. The run that may still grow is `start` and `end`.
+    """
+
+    __slots__ = ("branch", "end", "first", "hi", "last", "lo", "now", "start", "turn")
 
     def __init__(self, lo: int, hi: int) -> None:
         self.lo, self.hi = lo, hi
         self.now = -1
-        self.runs: deque[list[int]] = deque()
+        self._clear()
+
+    def _clear(self) -> None:
+        """No run."""
+        self.start = self.end = _NONE
+        self.first: _Run | None = None
+        self.last: _Run | None = None
+        self.turn: _Run | None = None
+        self.branch: _Run | None = None
 
     def step(self, left: bool, right: bool) -> bool:
         """Whether right held `lo..hi` ticks ago, and left ever since."""
         self.now += 1
+        now = self.now
         if not left:
-            self.runs.clear()
+            self._clear()
         if right:
-            if self.runs and self.runs[-1][1] == self.now - 1:
-                self.runs[-1][1] = self.now
-            else:
-                self.runs.append([self.now, self.now])
-        while self.runs and self.runs[0][1] < self.now - self.hi:
-            self.runs.popleft()
-        return bool(self.runs) and self.runs[0][0] <= self.now - self.lo
+            if self.end != now - 1:
+                if self.end != _NONE:
+                    self._add(_Run(self.start, self.end))
+                self.start = now
+            self.end = now
+        while self.first is not None and self.first.end < now - self.hi:
+            self._drop(self.first)
+        if self.first is not None:
+            return self.first.start <= now - self.lo
+        if self.end < now - self.hi:
+            self.start = self.end = _NONE
+        return 0 <= self.start <= now - self.lo
+
+    def _add(self, run: _Run) -> None:
+        """The run has ended."""
+        if self.last is None:
+            self.first = run
+        elif self.last is self.turn:
+            self.branch = run
+        else:
+            self.last.next = run
+        self.last = run
+
+    def _after(self, run: _Run) -> _Run | None:
+        if run is self.last:
+            return None
+        return self.branch if run is self.turn else run.next
+
+    def _drop(self, oldest: _Run) -> None:
+        self.first = self._after(oldest)
+        if self.first is None:
+            self.last = None
+        if oldest is self.turn:  # it leads to all runs of the other window
+            self.turn = self.branch = None
+
+    def copy(self) -> "Window":
+        """As it is now; only one of both can go on."""
+        other = Window(self.lo, self.hi)
+        for name in self.__slots__:
+            setattr(other, name, getattr(self, name))
+        return other
+
+    def fork(self) -> "Window":
+        """As it is now; both can go on. A fork has none of its own."""
+        assert self.turn is None
+        other = self.copy()
+        other.turn = self.last
+        return other
+
+    def _runs(self) -> Iterator[tuple[int, int]]:
+        """The oldest first."""
+        run = self.first
+        while run is not None:
+            yield run.start, run.end
+            run = self._after(run)
+        if self.end != _NONE:
+            yield self.start, self.end
 
     def state(self) -> tuple[tuple[int, int], ...]:
         """The runs, each as ages (oldest, youngest); ages above `hi` are all one."""
-        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self.runs)
+        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._runs())
+
+    def is_like(self, other: "Window") -> bool:
+        """Both have one state; their clocks agree. What a fork shares is not looked at again."""
+        mine, theirs, shared = self.first, other.first, other.turn
+        youngest = (self.start, self.end), (other.start, other.end)
+        if mine is None or theirs is None:
+            return mine is theirs and self._same(*youngest)
+        if mine is theirs and shared is not None:
+            mine, theirs = shared, shared
+        elif not self._same((mine.start, mine.end), (theirs.start, theirs.end)):
+            return False
+        mine, theirs = self._after(mine), other._after(theirs)
+        while mine and theirs and (mine.start, mine.end) == (theirs.start, theirs.end):
+            mine, theirs = self._after(mine), other._after(theirs)
+        return mine is theirs is None and youngest[0] == youngest[1]
+
+    def _same(self, one: tuple[int, int], other: tuple[int, int]) -> bool:
+        """Both are one run, as far as the window reaches."""
+        reach = self.now - self.hi
+        return one[1] == other[1] and max(one[0], reach) == max(other[0], reach)
 
     def restore(self, state: Sequence[Sequence[int]]) -> None:
         """Go back to a state."""
+        self._clear()
         self.now = self.hi
-        self.runs = deque([self.now - a, self.now - b] for a, b in state)
+        for oldest, youngest in state:
+            if self.end != _NONE:
+                self._add(_Run(self.start, self.end))
+            self.start, self.end = self.now - oldest, self.now - youngest
+
+
+_NONE = -2
+"""No tick, and none before one."""
 
 
 class Standing(NamedTuple):
@@ -122,12 +220,13 @@ class Standing(NamedTuple):
     """The last tick at which that can be decided; None where there is no deadline."""
 
 
-_PIECE, _FEW = 4096, 64
-"""Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy."""
+_PIECE, _FEW, _SOON = 4096, 64, 64
+"""Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy;
+ticks after which two rails are compared first."""
 
 
 class Monitor:
-    """Steps propositions and gives verdicts; a generated class adds `step` and `run`."""
+    """Steps propositions; a generated class adds `step`, `run` and `verdicts`."""
 
     PROGRAM: ClassVar[str]
     """SHA-256 of the generated code: a state fits no other."""
@@ -137,11 +236,14 @@ class Monitor:
     LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
     """Each parameter of `columns`, with its proposition, and False where it is negated."""
     RAIL: ClassVar[type[Rail]]
+    verdicts: Callable[..., tuple[Verdict, ...]]
+    """Of each requirement, whatever follows: satisfied or violated; or pending."""
     columns: Callable[..., tuple[Signals[int], ...]]
     """The signals of whole traces, for each requirement: of `every`, the column that is true at
     every tick, and a keyword for each of `LITERALS`."""
 
     def __init__(self) -> None:
+        self._values = _picked(tuple(self.PROPOSITIONS.values()))
         self.reset()
 
     def reset(self) -> None:
@@ -158,7 +260,7 @@ class Monitor:
         content = {
             "program": self.PROGRAM,
             "must": _saved(self.must),
-            "may": _saved(self.may) if self.may is not self.must else None,
+            "may": None if self._is_one() else _saved(self.may),
         }
         return {**content, "sha256": _digest(content)}
 
@@ -178,7 +280,9 @@ class Monitor:
         _restored(must, content["must"])
         if content["may"] is not None:
             _restored(may, content["may"])
-        self.must, self.may = must, must if content["may"] is None else may
+        self.must = self.may = must
+        if content["may"] is not None:
+            self._part(may)
 
     def standings(self) -> tuple[Standing, ...]:
         """The standing of each requirement."""
@@ -197,7 +301,44 @@ class Monitor:
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
-            self.may = _copied(self.must, doubt=True)
+            self._part(_forked(self.must))
+
+    def _step(self, row: Row) -> None:
+        """Step both rails, or one as long as all is known."""
+        if self.may is self.must and None in row:
+            self._fork()
+        must, may = self.must, self.may
+        must.advance((row,))
+        if may is not must:
+            may.advance((row,))
+            self._meet()
+
+    def _part(self, may: Rail) -> None:
+        self.may = may
+        self._apart = self.tick
+        self._due = self.tick + _SOON
+
+    def _meet(self) -> None:
+        """One rail again if both remember the same; looked at ever less often: it may take long."""
+        tick = self.tick
+        if tick < self._due:
+            return
+        if self._is_one():
+            self.may = self.must
+        self._due = tick + max(_SOON, tick - self._apart)
+
+    def _is_one(self) -> bool:
+        """Both rails remember the same; windows, which may be long, are looked at last."""
+        if self.may is self.must:
+            return True
+        windows = []
+        for name in self.RAIL.__slots__:
+            must, may = getattr(self.must, name), getattr(self.may, name)
+            if isinstance(must, Window):
+                windows.append((must, may))
+            elif must != may and name != "doubt":
+                return False
+        return all(must.is_like(may) for must, may in windows)
 
     def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
         """Step every row, in pieces of some thousand: one rail after the other.
@@ -224,42 +365,90 @@ class Monitor:
         if self.may is not self.must:
             self.must.advance(block)
             self.may.advance(block)
+            self._meet()
         elif len(block) < _FEW:
             if any(None in row for row in block):
                 self._fork()
                 self.may.advance(block)
             self.must.advance(block)
         else:
-            before = _copied(self.must, doubt=True)
+            before = _forked(self.must)
             if not self.must.advance(block):
-                self.may = before
+                self._part(before)
                 before.advance(block)
 
     def _copies(self) -> tuple[Rail, Rail]:
         """Both rails as they are now."""
-        must = _copied(self.must, doubt=False)
-        return must, must if self.may is self.must else _copied(self.may, doubt=True)
+        must = _copied(self.must)
+        return must, must if self.may is self.must else _copied(self.may)
 
     def _in_order(self, rows: list[Any]) -> list[Row]:
         """Rows by name as rows in the order of `PROPOSITIONS`."""
         if not isinstance(rows[0], Mapping):
             return rows
-        names = tuple(self.PROPOSITIONS)
-        if len(names) < 2:
-            return [tuple(row[name] for name in names) for row in rows]
-        return list(map(itemgetter(*names), rows))
+        return list(map(_picked(tuple(self.PROPOSITIONS)), rows))
 
-    def verdicts(self) -> tuple[Verdict, ...]:
-        """Of each requirement, whatever follows: satisfied or violated; or pending."""
-        readings = zip(self.must.marks(), self.may.marks(), self.must.signals(), strict=True)
-        return tuple(
-            VIOLATED
-            if must.violated >= 0
-            else SATISFIED
-            if certain.settled and may.violated < 0
-            else PENDING
-            for must, may, certain in readings
-        )
+    def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Row]], Iterable[Row]]:
+        """What makes rows for `run` of rows whose values are in the order of `names`.
+
+        Raises:
+            ValueError: the names are not those of `PROPOSITIONS`, each once.
+        """
+        return rows_in_order(tuple(names), tuple(self.PROPOSITIONS))
+
+    def _row(self, arguments: Mapping[str, Truth]) -> Row:
+        """The arguments of a step that has too many parameters for Python to look for each.
+
+        Raises:
+            TypeError: as Python does, where one is missing or is no parameter.
+        """
+        parameters = tuple(self.PROPOSITIONS.values())
+        if len(arguments) == len(parameters):
+            try:
+                return self._values(arguments)
+            except KeyError:
+                pass
+        where = f"{type(self).__name__}.step()"
+        for name in arguments:
+            if name not in parameters:
+                raise TypeError(f"{where} got an unexpected keyword argument {name!r}")
+        missing = ", ".join(repr(name) for name in parameters if name not in arguments)
+        raise TypeError(f"{where} missing required keyword-only arguments: {missing}")
+
+
+def rows_in_order(
+    names: tuple[str, ...], order: tuple[str, ...]
+) -> Callable[[Iterable[Sequence[Any]]], Iterable[Sequence[Any]]]:
+    """What puts rows of values in the order of `names` into another order.
+
+    Raises:
+        ValueError: the names are not the same, each once.
+    """
+    places = {name: place for place, name in enumerate(names)}
+    missing, unknown = {*order} - places.keys(), places.keys() - {*order}
+    for wrong, why in ((missing, "is missing"), (unknown, "is no name of this monitor")):
+        if wrong:
+            raise ValueError(f"`{min(wrong)}` {why}")
+    if len(places) < len(names):
+        raise ValueError("a name comes more than once")
+    if names == order:
+        return lambda rows: rows
+    pick = _picked([places[name] for name in order])
+
+    def in_order(rows: Iterable[Sequence[Any]]) -> Iterator[Sequence[Any]]:
+        for row in rows:
+            if len(row) != len(names):
+                raise ValueError(f"a row has {len(row)} values for {len(names)} names")
+            yield pick(row)
+
+    return in_order
+
+
+def _picked(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
+    """What gives the values under all keys."""
+    if len(keys) < 2:
+        return lambda values: tuple(values[key] for key in keys)
+    return itemgetter(*keys)
 
 
 def _standing(
@@ -304,15 +493,22 @@ def literals_of(
     return found
 
 
-def _copied(rail: Rail, *, doubt: bool) -> Rail:
-    """A rail in the same state, on which an unknown counts as `doubt`."""
+def _copied(rail: Rail) -> Rail:
+    """A rail in the same state; only one of both can go on."""
+    return _with_windows(rail, rail.doubt, Window.copy)
+
+
+def _forked(rail: Rail) -> Rail:
+    """A rail in the same state, on which an unknown counts as true; both can go on."""
+    return _with_windows(rail, True, Window.fork)
+
+
+def _with_windows(rail: Rail, doubt: bool, made: Callable[[Window], Window]) -> Rail:
     copy = type(rail)(doubt=doubt)
     for name in rail.__slots__:
-        there, value = getattr(copy, name), getattr(rail, name)
-        if isinstance(there, Window):
-            there.restore(value.state())
-        elif name != "doubt":
-            setattr(copy, name, value)
+        if name != "doubt":
+            value = getattr(rail, name)
+            setattr(copy, name, made(value) if isinstance(value, Window) else value)
     return copy
 
 
@@ -340,4 +536,4 @@ def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
         if isinstance(there, Window):
             there.restore(value)
         else:
-            setattr(rail, name, value)
+            setattr(rail, name, tuple(value) if isinstance(value, list) else value)

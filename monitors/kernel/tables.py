@@ -1,12 +1,14 @@
 """Reading tables of propositions: CSV with a header, or JSON lines; one row a tick."""
 
 import csv
+import io
 import itertools
 import json
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any
+from typing import Any, NamedTuple, TextIO
 
+from monitors.kernel.columns import Piece, code, pieces_of
 from monitors.kernel.verdicts import Truth
 
 
@@ -25,10 +27,8 @@ def visible(text: str) -> str:
 _WORDS: dict[str, Truth] = {"": None, "0": False, "1": True, "false": False, "true": True}
 
 
-def read_rows(
-    text: Iterable[str], names: Sequence[str], source: str
-) -> Iterator[tuple[Truth, ...]]:
-    """The rows of a table: CSV with a header, or JSON lines where the first line is an object.
+def read_pieces(text: TextIO, names: Sequence[str], source: str) -> Iterator[Piece]:
+    """A table, in pieces: CSV with a header, or JSON lines where the first line is an object.
 
     Values are 0, 1, true, false, or nothing (null in JSON): unknown. A column `tick` may count
     the rows; it must grow by one from row to row. Other columns are passed over.
@@ -36,8 +36,12 @@ def read_rows(
     Raises:
         InputError: a column is missing, a value is no truth value, ticks jump.
     """
-    for place, row in placed_rows(text, names, source):
-        yield tuple(_truth(row[name], name, place) for name in names)
+    lines, number, is_json = _beginning(text, source)
+    if is_json:
+        rows = _in_order(_json_rows(lines, names, source, number), names)
+        return pieces_of(_truths(rows, names))
+    header, line = _header(lines, names, source, number)
+    return _csv_pieces(text, header, names, source, line)
 
 
 def placed_rows(
@@ -48,17 +52,30 @@ def placed_rows(
     Raises:
         InputError: a column is missing, ticks jump.
     """
+    lines, number, is_json = _beginning(text, source)
+    if is_json:
+        return _in_order(_json_rows(lines, names, source, number), names)
+    header, line = _header(lines, names, source, number)
+    return _in_order(_csv_rows(lines, header, source, line), names)
+
+
+def _beginning(text: Iterable[str], source: str) -> tuple[Iterator[str], int, bool]:
+    """The lines from the first one that is not empty, its number, and whether it is JSON."""
     lines = iter(text)
     lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
     number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
     if not number:
         raise InputError(f"{source}: the trace is empty")
-    lines = itertools.chain([first], lines)
     is_json = re.match(r'\s*\{\s*["}]', first) is not None
-    read = _json_rows if is_json else _csv_rows
-    tick: int | None = None
+    return itertools.chain([first], lines), number, is_json
+
+
+def _in_order(
+    rows: Iterable[tuple[str, dict[str, Any]]], names: Sequence[str], tick: int | None = None
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The rows, where a column `tick` grows by one, from the tick before the first row on."""
     has_tick: bool | None = None
-    for place, row in read(lines, names, source, number):
+    for place, row in rows:
         if "tick" not in names:
             if has_tick not in (None, "tick" in row):
                 raise InputError(f"{place}: some rows have a `tick` and some have none")
@@ -68,15 +85,34 @@ def placed_rows(
         yield place, row
 
 
-def _csv_rows(
+def _truths(
+    rows: Iterable[tuple[str, dict[str, Any]]], names: Sequence[str]
+) -> Iterator[tuple[Truth, ...]]:
+    for place, row in rows:
+        yield tuple([_truth(row[name], name, place) for name in names])
+
+
+def _header(
     lines: Iterable[str], names: Sequence[str], source: str, number: int
-) -> Iterator[tuple[str, dict[str, Any]]]:
+) -> tuple[list[str], int]:
+    """The columns of CSV that begins in that line, and the line in which its header ends."""
     table = csv.reader(lines, strict=True)
     try:
         header = [name.strip() for name in next(table)]
-        _check_columns(header, names, f"{source}:{number}")
+    except csv.Error as error:
+        raise InputError(f"{source}:{number - 1 + table.line_num}: {error}") from None
+    _check_columns(header, names, f"{source}:{number}")
+    return header, number - 1 + table.line_num
+
+
+def _csv_rows(
+    lines: Iterable[str], header: Sequence[str], source: str, before: int
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The rows of CSV below its header, of which so many lines are before these."""
+    table = csv.reader(lines, strict=True)
+    try:
         for values in table:
-            place = f"{source}:{number - 1 + table.line_num}"
+            place = f"{source}:{before + table.line_num}"
             if not values and len(header) > 1:
                 continue  # an empty line; in a table of one column it is an unknown value
             values = values or [""]
@@ -84,7 +120,7 @@ def _csv_rows(
                 raise InputError(f"{place}: {len(values)} values for {len(header)} columns")
             yield place, dict(zip(header, values, strict=True))
     except csv.Error as error:
-        raise InputError(f"{source}:{number - 1 + table.line_num}: {error}") from None
+        raise InputError(f"{source}:{before + table.line_num}: {error}") from None
 
 
 def _json_rows(
@@ -94,7 +130,7 @@ def _json_rows(
         if not line.strip():
             continue
         try:
-            row = json.loads(line, object_pairs_hook=_distinct)
+            row = _JSON.decode(line)
         except (ValueError, RecursionError) as error:
             raise InputError(f"{source}:{number}: not JSON: {error}") from None
         if not isinstance(row, dict):
@@ -108,6 +144,9 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(found) < len(pairs):
         raise ValueError("a key comes twice")
     return found
+
+
+_JSON = json.JSONDecoder(object_pairs_hook=_distinct)
 
 
 def _check_columns(keys: Iterable[str], names: Sequence[str], place: str) -> None:
@@ -143,10 +182,105 @@ def _truth(value: Any, name: str, place: str) -> Truth:
 
 def _next_tick(value: Any, before: int | None, place: str) -> int:
     text = str(value)
-    if not re.fullmatch(r"\s*-?[0-9]{1,18}\s*", text):
+    if not _WHOLE.fullmatch(text):
         raise InputError(f"{place}: column `tick`: `{_short(text)}` is no whole number")
     tick = int(text)
     if before is not None and tick != before + 1:
         fault = "goes back" if tick <= before else "leaves ticks out"
         raise InputError(f"{place}: column `tick` {fault}: {before}, then {tick}")
     return tick
+
+
+_WHOLE = re.compile(r"\s*-?[0-9]{1,18}\s*")
+
+
+# Whole pieces of CSV, where they leave no doubt ------------------------------------------------
+
+_CHARACTERS, _MOST_CHARACTERS = 1 << 12, 1 << 22
+"""Of the text of a piece for each column, and at most; it ends with the line that they end in."""
+
+
+class _Block(NamedTuple):
+    """The lines of a text, as a piece of the trace."""
+
+    lines: int
+    tick: int | None
+    """In the last row, by the column `tick`."""
+    piece: Piece
+
+
+def _csv_pieces(
+    text: TextIO, header: Sequence[str], names: Sequence[str], source: str, line: int
+) -> Iterator[Piece]:
+    """CSV below its header, which ends in that line.
+
+    Where a piece leaves a doubt it is read row by row, and so is all that follows: that is slower,
+    and finds what is wrong, and where.
+    """
+    tick: int | None = None
+    size = min(_CHARACTERS * len(header), _MOST_CHARACTERS)
+    while part := text.read(size) + text.readline():
+        try:
+            block = _block(part, header, names, tick)
+        except (csv.Error, KeyError, ValueError):
+            lines = itertools.chain(io.StringIO(part, newline=""), text)
+            rows = _in_order(_csv_rows(lines, header, source, line), names, tick)
+            yield from pieces_of(_truths(rows, names))
+            return
+        line, tick = line + block.lines, block.tick
+        yield block.piece
+
+
+def _block(part: str, header: Sequence[str], names: Sequence[str], tick: int | None) -> _Block:
+    """Whole lines of CSV, which follow the row with that tick.
+
+    Raises:
+        csv.Error, KeyError, ValueError: there is a doubt.
+    """
+    width, has_tick = len(header), "tick" in header and "tick" not in names
+    codes = None if has_tick else _digits(part, width)
+    if codes:
+        named = dict(zip(header, codes, strict=True))
+        rows = len(codes[0])
+        return _Block(rows, None, Piece(rows, [named[name] for name in names]))
+    table = csv.reader(io.StringIO(part, newline=""), strict=True)
+    values = [row or [""] for row in table if row or width == 1]
+    columns = list(zip(*values, strict=True)) or [()] * width
+    cells = dict(zip(header, columns, strict=True))
+    if has_tick:
+        tick = _last_tick(cells["tick"], tick)
+    piece = Piece(len(values), [_codes(cells[name]) for name in names])
+    return _Block(table.line_num, tick, piece)
+
+
+def _digits(part: str, width: int) -> list[bytes] | None:
+    """The codes of every column, if each cell is one digit: 0 or 1."""
+    text = part.encode().replace(b"\r\n", b"\n").removesuffix(b"\n") + b"\n"
+    cells, separators = text[::2], text[1::2]
+    rows = len(separators) // width
+    if separators != (b"," * (width - 1) + b"\n") * rows or cells.strip(b"01"):
+        return None
+    codes = cells.translate(_CODES)
+    return [codes[place::width] for place in range(width)]
+
+
+_CODES = bytes.maketrans(b"01", b"\0\1")
+
+
+def _codes(words: Sequence[str]) -> bytes:
+    """The codes of truth values."""
+    known = {word: code(_WORDS[word.strip().lower()]) for word in set(words)}
+    return bytes(map(known.__getitem__, words))
+
+
+def _last_tick(words: Sequence[str], before: int | None) -> int | None:
+    """The last of ticks that grow by one and are written without superfluous zeros."""
+    if not words:
+        return before
+    if not (_WHOLE.fullmatch(words[0]) and _WHOLE.fullmatch(words[-1])):
+        raise ValueError
+    first = int(words[0]) if before is None else before + 1
+    after = first + len(words)
+    if list(map(str.strip, words)) != list(map(str, range(first, after))):
+        raise ValueError
+    return after - 1

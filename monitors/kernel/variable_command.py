@@ -4,11 +4,11 @@ import argparse
 from collections.abc import Iterable, Sequence
 from typing import TextIO
 
+from monitors.kernel.columns import Piece, pieces_of
 from monitors.kernel.command import _literal, _parser, judge
-from monitors.kernel.tables import read_rows
+from monitors.kernel.tables import read_pieces
 from monitors.kernel.variable_tables import read_variables
 from monitors.kernel.variables import VariableMonitor, rows_of_truth
-from monitors.kernel.verdicts import Truth
 
 
 def main_by_variables(
@@ -20,10 +20,11 @@ def main_by_variables(
         As `judge`.
     """
 
-    def read(text: TextIO, source: str, options: argparse.Namespace) -> Iterable[Sequence[Truth]]:
+    def read(text: TextIO, source: str, options: argparse.Namespace) -> Iterable[Piece]:
         if options.propositions:
-            return read_rows(text, tuple(monitor.PROPOSITIONS), source)
-        return rows_of_truth(monitor, read_variables(text, monitor.VARIABLES, source))
+            return read_pieces(text, tuple(monitor.PROPOSITIONS), source)
+        rows = read_variables(text, monitor.VARIABLES, source)
+        return pieces_of(rows_of_truth(monitor, rows))
 
     return judge(monitor, _parser_by_variables(monitor), read, arguments)
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 from monitors.kernel.readings import Reading, Single
-from monitors.kernel.stepping import Monitor, _digest
+from monitors.kernel.stepping import Monitor, _digest, rows_in_order
 from monitors.kernel.verdicts import Truth
 
 Value = float | str | bool | None
@@ -64,6 +64,14 @@ class VariableMonitor(Monitor):
             except BaseException:
                 self.kept = kept
                 raise
+
+    def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Any]], Iterable[Any]]:
+        """What makes rows for `run` of rows whose values are in the order of `names`.
+
+        Raises:
+            ValueError: the names are not those of `VARIABLES`, each once.
+        """
+        return rows_in_order(tuple(names), tuple(self.VARIABLES))
 
     def _by_variable(self, rows: list[Any]) -> Iterator[Sequence[Value]]:
         """Rows by name as rows in the order of `VARIABLES`."""

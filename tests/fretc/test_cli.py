@@ -397,23 +397,6 @@ def test_a_number_of_a_binding_is_what_is_computed_of_its_numbers(
     assert ("F310" in run.err) == drifts
 
 
-# Speed, as what is not imported -------------------------------------------------------------------
-
-
-def test_the_version_needs_nothing_heavy() -> None:
-    code = (
-        "import sys\nsys.argv = ['fretc', '--version']\n"
-        "from fretc.cli import main\n"
-        "try:\n    main()\nexcept SystemExit:\n    pass\n"
-        "heavy = {'lark', 'jinja2', 'spot', 'numpy', 'mcap', 'mujoco'} & sys.modules.keys()\n"
-        "print(sorted(heavy))"
-    )
-    run = subprocess.run(
-        [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert run.stdout == "fretc 0.1.0\n[]\n"
-
-
 def test_an_empty_name_is_no_folder(fretc: Fretc) -> None:
     """It is what an unset shell variable gives."""
     write("a.fret", R1)

@@ -23,6 +23,7 @@ from compiler.logic import printing
 from compiler.targets.python.comparisons import ANNOTATIONS, NAMES, Front, Writer, front
 from compiler.targets.python.program import (
     MARKS,
+    SIGNALS,
     Program,
     locals_of,
     marks_of,
@@ -45,7 +46,7 @@ def refuse(rule: Formalized) -> Diagnostic | None:
     F601: Python reads no more than 200 parentheses within each other; and one run cannot show
     a probability.
     """
-    if max(map(depth, conditions(rule.sentence))) > _MOST_LEVELS:
+    if not is_readable(rule):
         return not_expressible(
             "Python",
             rule,
@@ -80,6 +81,11 @@ def refuse(rule: Formalized) -> Diagnostic | None:
         rule.sentence.timing_span,
         help='declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks',
     )
+
+
+def is_readable(rule: Formalized) -> bool:
+    """Whether Python reads the monitor: it takes no more than 200 parentheses within each other."""
+    return max(map(depth, conditions(rule.sentence))) <= _MOST_LEVELS
 
 
 _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
@@ -147,6 +153,9 @@ def text(*rules: Formalized) -> str:
         tick=str(rules[0].clock) if rules[0].clock else "not declared",
         inputs=inputs,
         row=_tuple([p.name for p in inputs]),
+        by_mapping=len(inputs) > MOST_PARAMETERS,
+        inlined=is_inlined(len(rules), len(inputs)),
+        settled=SIGNALS.index("settled"),
         program=code,
         front=lines,
         digest=_digest(code, rules, lines),
@@ -157,6 +166,11 @@ def text(*rules: Formalized) -> str:
         imports=runtime.imports,
         kernel=runtime.text,
     )
+
+
+def is_inlined(requirements: int, inputs: int) -> bool:
+    """Whether a step has the code of a tick in it: a call would cost as much as the tick."""
+    return requirements == 1 and inputs <= MOST_PARAMETERS
 
 
 def _digest(code: Program, rules: Sequence[Formalized], front: _Lines | None) -> str:
@@ -289,11 +303,14 @@ def prefixes_of(ids: Iterable[str]) -> dict[str, str]:
 
 
 _MOST_LEVELS = 60
+MOST_PARAMETERS = 60
+"""Python compares each argument of a call with one parameter after the other: a step with more
+parameters takes them as a mapping."""
 _SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
 _RESERVED = frozenset(
-    "self every known doubt tick rows row must may first kept_first boolean Signals Marks previous "
-    "weak_previous once historically since released since_from since_between released_between "
-    "SATISFIED VIOLATED PENDING".split()
+    "self every known doubt tick rows row rail must may first kept_first boolean Signals Marks "
+    "previous weak_previous once historically since released since_from since_between "
+    "released_between SATISFIED VIOLATED PENDING".split()
 )
 """Names in the generated functions: their locals and the functions that they call."""
 

@@ -128,7 +128,7 @@ def negation(parameter: str) -> str:
 
 def marks_of(prefix: str) -> frozenset[str]:
     """The names that a rail keeps for a requirement."""
-    return frozenset(f"{prefix}_{name}" for name in (*SIGNALS, *MARKS))
+    return frozenset(f"{prefix}_{name}" for name in (*MARKS, "signals"))
 
 
 class _Text(NamedTuple):

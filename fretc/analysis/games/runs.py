@@ -38,9 +38,9 @@ class Runs:
         """Ticks that break nothing and lead to one of the states."""
         return self.safe & self.transition.moved(states)
 
-    def before(self, ticks: Function) -> Function:
-        """The states from which such a tick can come."""
-        return bdd.some(ticks, self._letters)
+    def preceding(self, states: Function) -> Function:
+        """The states from which a tick that breaks nothing leads to one of these."""
+        return bdd.some_of_both(self.safe, self.transition.moved(states), self._letters)
 
     def lasting(self, within: Function | None = None) -> Function:
         """The states from which all that is kept can be kept for ever.
@@ -51,7 +51,7 @@ class Runs:
         states = bdd.true() if within is None else within
         while True:
             self._budget.check()
-            left = states & self.before(self.going_on(states))
+            left = states & self.preceding(states)
             for fair in self._fair:
                 left = left & self._leading(fair & left, left)
             if left == states:
@@ -63,7 +63,7 @@ class Runs:
         found = bdd.false()
         while True:
             self._budget.check()
-            more = found | (through & self.before(self.going_on(target | found)))
+            more = found | (through & self.preceding(target | found))
             if more == found:
                 return found
             found = more
@@ -79,14 +79,13 @@ class Runs:
             ticks: over a state and a letter.
             lasting: of these runs.
         """
-        on = self.going_on(lasting)
-        initial = self.transition.initial
-        found = self.before(on & ticks)
+        initial, moved = self.transition.initial, self.transition.moved
+        found = bdd.some_of_both(self.safe & ticks, moved(lasting), self._letters)
         while True:
             self._budget.check()
             if (initial & found) != bdd.false():
                 return True
-            more = found | self.before(on & self.transition.moved(found))
+            more = found | self.preceding(found)  # what leads to such a state can last, too
             if more == found:
                 return False
             found = more
@@ -105,29 +104,28 @@ class Runs:
         starving = self.lasting(lasting - counter.fair)
         return self.can_reach(self.transition.moved(starving), lasting)
 
-    def path(self, goal: Function, step: Function) -> tuple[dict[int, bool], ...] | None:
+    def path(self, goal: Function, through: Function) -> tuple[dict[int, bool], ...] | None:
         """The letters of a shortest run into a goal; None: there is none.
 
         Args:
             goal: states.
-            step: the ticks that such a run may have.
+            through: the only states, those of the goal among them, that such a run may have.
         """
         levels = [goal]
         while (self.transition.initial & levels[-1]) == bdd.false():
             self._budget.check()
-            more = levels[-1] | self.before(step & self.transition.moved(levels[-1]))
+            more = levels[-1] | (through & self.preceding(levels[-1]))
             if more == levels[-1]:
                 return None
             levels.append(more)
-        return tuple(self._letters_down(levels, step))
+        return tuple(self._descent(levels))
 
-    def _letters_down(
-        self, levels: Sequence[Function], step: Function
-    ) -> Iterator[dict[int, bool]]:
+    def _descent(self, levels: Sequence[Function]) -> Iterator[dict[int, bool]]:
+        """Letters that lead from the initial state down from level to level."""
         state = self.transition.start
         for level in reversed(levels[:-1]):
             known = bdd.point(state)
-            ticks = bdd.at(step, known) & self.transition.moved_from(level, known)
+            ticks = bdd.at(self.safe, known) & self.transition.moved_from(level, known)
             letter = {**dict.fromkeys(bdd.support(self._letters), False), **bdd.witness(ticks)}
             yield letter
             state = self.transition.next(bdd.point({**state, **letter}))

@@ -60,8 +60,13 @@ def basis(
         CLOCK: digest(clock(declarations.clock)) if declarations else "",
         TOPICS: digest(sorted(set(topics))) if declarations else "",
         BINDINGS: of_bindings(rule, declarations),
-        MONITOR: monitor_sha256 or sha256(monitor.text(rule) if rule else ""),
+        MONITOR: monitor_sha256 or _of_monitor(rule),
     }
+
+
+def _of_monitor(rule: Formalized | None) -> str:
+    """Of an empty text where there is no rule, or its monitor would be too deep for Python."""
+    return sha256(monitor.text(rule) if rule and monitor.is_readable(rule) else "")
 
 
 def of_bindings(rule: Formalized | None, declarations: Declarations | None) -> str:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from fretc.logs.signals.past_values import PastValues, Places, past_values
 from fretc.logs.signals.propositions import UNKNOWN, States, Steps, evaluate, truth_values
-from fretc.logs.signals.samples import Recording, Times
+from fretc.logs.signals.samples import Recording, Times, distinct
 from fretc.logs.signals.traces import combined, complete_from, first_before, origin, packed
 from fretish.bindings.declarations import Declarations, Proposition
 from monitors.kernel import Column
@@ -85,7 +85,7 @@ class Sliding:
 
     def starts(self, slides: Sequence[Slide], breaks: Sequence[int]) -> Times:
         """Shape (classes,): each phase from which on anything is another one, in order."""
-        return np.unique(np.concatenate([np.array(breaks, np.int64), *(s.phases for s in slides)]))
+        return distinct(np.concatenate([np.array(breaks, np.int64), *(s.phases for s in slides)]))
 
 
 def sliding(
@@ -187,7 +187,7 @@ def _cut_of_past(past: PastValues, start: int, length: int, period: int) -> Seen
     phases = np.sort(np.append((lasts - start) % period, whole))
     counts = np.minimum((length - phases) // period + 1, past.back)
     states = np.empty(len(phases), np.int8)
-    for count in np.unique(counts).tolist():
+    for count in distinct(counts).tolist():
         here = counts == count
         last = end - (length - phases[here]) % period
         before = _places(past, last, count - 1, period) if count else []

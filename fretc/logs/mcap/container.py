@@ -9,7 +9,6 @@ Source: MCAP specification, https://mcap.dev/spec
 from __future__ import annotations
 
 import struct
-import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
@@ -20,6 +19,11 @@ import numpy as np
 from mcap.data_stream import ReadDataStream
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, Schema, Statistics
+
+try:  # more than ten times as fast as that of `zlib`
+    from zlib_ng.zlib_ng import crc32 as crc32
+except ImportError:  # an environment that is older than this dependency
+    from zlib import crc32 as crc32
 
 if TYPE_CHECKING:
     from zstandard import ZstdDecompressor
@@ -32,6 +36,8 @@ CHUNK = struct.Struct("<QQQII")
 """The head of a chunk: its times, its size, its CRC, the length of its compression's name."""
 _CHUNK_INDEX = struct.Struct("<QQQQI")
 """The head of a chunk index: times, place, length, and the bytes of its message indexes."""
+_INDEXES, _SIZES = struct.Struct("<QI"), struct.Struct("<QQ")
+"""In it: bytes of the message indexes, and of the name of the compression; then the sizes."""
 _PLACE = struct.Struct("<HQ")
 """A channel, and the byte at which its message index begins."""
 MAGIC = b"\x89MCAP0\r\n"
@@ -144,7 +150,7 @@ def unpacked(chunk: Chunk) -> bytes:
         raise BrokenError("a chunk does not decompress") from error
     if len(data) != size:
         raise BrokenError("a chunk has another size than it states")
-    if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
+    if chunk.uncompressed_crc and crc32(data) != chunk.uncompressed_crc:
         raise BrokenError("a chunk has another CRC than it states")
     return data
 
@@ -275,8 +281,8 @@ def _summary(stream: BufferedReader, at: int, footer: bytes) -> Summary:
         return damaged
     stream.seek(start)
     data = stream.read(at - start)
-    covered = zlib.crc32(HEAD.pack(Opcode.FOOTER, len(footer)), zlib.crc32(data))
-    if crc and crc != zlib.crc32(footer[: _FOOTER.size - 4], covered):
+    covered = crc32(HEAD.pack(Opcode.FOOTER, len(footer)), crc32(data))
+    if crc and crc != crc32(footer[: _FOOTER.size - 4], covered):
         return damaged
     result = Summary(start, sound=True, footer=at, after=after)
     try:
@@ -312,10 +318,10 @@ def _chunk_index(content: bytes) -> ChunkIndex:
         start, end, at, length, size = _CHUNK_INDEX.unpack_from(content)
         names = _CHUNK_INDEX.size + size
         places = dict(_PLACE.iter_unpack(content[_CHUNK_INDEX.size : names]))
-        index_length, name = struct.unpack_from("<QI", content, names)
-        sizes = names + 12 + name
-        compression = content[names + 12 : sizes].decode()
-        packed, unpacked = struct.unpack_from("<QQ", content, sizes)
+        index_length, name = _INDEXES.unpack_from(content, names)
+        sizes = names + _INDEXES.size + name
+        compression = content[names + _INDEXES.size : sizes].decode()
+        packed, unpacked = _SIZES.unpack_from(content, sizes)
     except (struct.error, UnicodeDecodeError) as error:
         raise BrokenError("a record cannot be read") from error
     return ChunkIndex(

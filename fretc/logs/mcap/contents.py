@@ -7,12 +7,11 @@ record is read: that shows damaged places and their times.
 from __future__ import annotations
 
 import hashlib
-import zlib
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from io import BufferedReader
 
-from fretc.logs.mcap.container import BLOCK, HEAD, BrokenError, summary
+from fretc.logs.mcap.container import BLOCK, HEAD, BrokenError, crc32, summary
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.index import Index, indexed
 from fretc.logs.mcap.messages import Sink
@@ -93,20 +92,28 @@ def _by_index(stream: BufferedReader, index: Index, sink: Sink, integrity: Integ
     if integrity is Integrity.HASH:
         checked, identity = projection.checked, ""
     else:
-        checked, identity = replace(projection.checked, hashed=False), _identity(stream, index)
+        checked = replace(projection.checked, hashed=False)
+        identity = _identity(stream, index, projection.crcs)
     return Contents((), span, None, checked, unprotected, identity, index.described)
 
 
-def _identity(stream: BufferedReader, index: Index) -> str:
+def _identity(stream: BufferedReader, index: Index, crcs: Mapping[int, int]) -> str:
     """SHA-256 of all that follows the data, and of the CRC that each chunk states.
 
     A summary says where messages are, and not what they hold: with values of the same length it is
     the same for another log. What the CRCs say covers the messages.
+
+    Args:
+        stream: the file.
+        index: its index.
+        crcs: of the chunks that were read, by the byte at which each begins.
     """
     digest = hashlib.sha256()
     for chunk in index.chunks:
-        stream.seek(chunk.chunk_start_offset + HEAD.size + _CHUNK_CRC)
-        digest.update(stream.read(4))
+        known = crcs.get(chunk.chunk_start_offset)
+        if known is None:
+            stream.seek(chunk.chunk_start_offset + HEAD.size + _CHUNK_CRC)
+        digest.update(stream.read(4) if known is None else known.to_bytes(4, "little"))
     stream.seek(index.data_end)  # the CRC of the data, if one is stated, is what follows first
     while block := stream.read(BLOCK):
         digest.update(block)
@@ -122,6 +129,6 @@ def _crc32(stream: BufferedReader, size: int) -> int:
     stream.seek(0)
     crc = 0
     while size > 0 and (block := stream.read(min(size, BLOCK))):
-        crc = zlib.crc32(block, crc)
+        crc = crc32(block, crc)
         size -= len(block)
     return crc

@@ -100,10 +100,8 @@ def _is_usual(chunk: ChunkIndex) -> bool:
         and chunk.uncompressed_size <= LARGEST
         and chunk.compression in ("", "lz4", "zstd")
         and first + chunk.compressed_size < last
-        and all(
-            last <= at < last + chunk.message_index_length
-            for at in chunk.message_index_offsets.values()
-        )
+        and last <= min(chunk.message_index_offsets.values())
+        and max(chunk.message_index_offsets.values()) < last + chunk.message_index_length
     )
 
 

@@ -12,8 +12,11 @@ from numpy.typing import NDArray
 from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.payloads import Bytes, Payloads, Places
 
-_HEAD = np.dtype([("channel", "<u2"), ("sequence", "<u4"), ("log", "<u8"), ("publish", "<u8")])
+_FIELDS = [("channel", "<u2"), ("sequence", "<u4"), ("log", "<u8"), ("publish", "<u8")]
+_HEAD = np.dtype(_FIELDS)
 """What each message begins with."""
+_RECORD_HEAD = np.dtype([("opcode", "u1"), ("length", "<u8"), *_FIELDS])
+"""What the record of each message begins with."""
 
 FileTimes = NDArray[np.uint64]
 """Nanoseconds, as they stand in the file: any number."""
@@ -44,16 +47,12 @@ class Messages:
     @classmethod
     def at(cls, data: Bytes, starts: Places, ends: Places) -> Messages:
         """With the heads of the messages, which lie within the data."""
-        places = len(data) - _HEAD.itemsize + 1
-        heads = np.ndarray((places,), _HEAD, data.data, 0, (1,))[starts]
-        return cls(
-            data,
-            starts,
-            ends,
-            heads["channel"],
-            heads["log"],
-            heads["publish"],
-        )
+        return cls.behind(_gathered(data, starts, _HEAD), data, starts, ends)
+
+    @classmethod
+    def behind(cls, heads: NDArray[np.void], data: Bytes, starts: Places, ends: Places) -> Messages:
+        """With heads that have been gathered."""
+        return cls(data, starts, ends, heads["channel"], heads["log"], heads["publish"])
 
     def of_channel(self, id: int) -> Messages:
         """Those of one channel."""
@@ -78,6 +77,20 @@ class Messages:
         """What follows the head of each message."""
         size = _HEAD.itemsize
         return Payloads(self.data, self.starts + size, self.ends - self.starts - size)
+
+
+def record_heads(data: Bytes, places: Places) -> NDArray[np.void]:
+    """Opcode, length and head of each message whose record begins at a place, gathered at once.
+
+    Behind each place there must be as many bytes.
+    """
+    return _gathered(data, places, _RECORD_HEAD)
+
+
+def _gathered(data: Bytes, places: Places, kind: np.dtype[np.void]) -> NDArray[np.void]:
+    """As plain bytes: fields would be copied one by one."""
+    size = kind.itemsize
+    return np.ndarray((len(data) - size + 1,), f"V{size}", data.data, 0, (1,))[places].view(kind)
 
 
 class Sink(Protocol):

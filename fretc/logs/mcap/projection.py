@@ -10,7 +10,7 @@ Source: MCAP specification, Message Index (op=0x07), Chunk Index (op=0x08).
 
 from __future__ import annotations
 
-import zlib
+import struct
 from collections import Counter, defaultdict
 from collections.abc import Container
 from dataclasses import dataclass, field
@@ -23,17 +23,17 @@ from numpy.typing import NDArray
 
 from fretc.logs.mcap.arena import SIZE, Arena
 from fretc.logs.mcap.container import (
-    CHUNK,
     ENTRY,
     HEAD,
     INDEX,
     BrokenError,
     Stream,
+    crc32,
     is_absurd,
 )
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.index import Index, is_known
-from fretc.logs.mcap.messages import Messages, Sink
+from fretc.logs.mcap.messages import FileTimes, Messages, Sink, record_heads
 from fretc.logs.mcap.payloads import Places
 from fretc.logs.signals.integrity import Checked
 
@@ -45,17 +45,28 @@ _BLOCK = 2**17
 """Bytes that a codec unpacks at once."""
 
 
+_HEAD = struct.Struct("<BQQQQII")
+"""The record of a chunk up to the name of its compression: `HEAD` and `CHUNK`."""
+_PLACE = struct.Struct("<8xQ")
+"""That of an entry of a message index, behind its time."""
+_INDEX_RECORD = struct.Struct("<BQHI")
+"""The record of a message index up to its entries: `HEAD` and `INDEX`."""
+
 _NOWHERE: Places = np.zeros(0, np.int64)
 Entries = NDArray[np.uint64]
 """Of a message index: time, place, time, place, ..."""
+
+
+def _numbers(entries: bytes) -> Entries:
+    return np.frombuffer(entries, "<u8")
 
 
 @dataclass(slots=True)
 class _Batch:
     """Messages of one channel in the arena."""
 
-    entries: list[Entries] = field(default_factory=list)
-    """Of each chunk."""
+    entries: list[bytes] = field(default_factory=list)
+    """Of each chunk, as its message index has them."""
     limits: list[tuple[int, int, int, int, int]] = field(default_factory=list)
     """Of each chunk: how many messages, where it begins and ends, and between which times."""
 
@@ -72,7 +83,9 @@ class Projection:
         self._longest: Counter[int] = Counter(dict.fromkeys(self._wanted, _SLACK))
         self._batches: defaultdict[int, _Batch] = defaultdict(_Batch)
         self._counts: Counter[int] = Counter()
-        self._unpacked = self._crc_checked = self._without_crc = 0
+        self._crc_checked = self._without_crc = 0
+        self.crcs: dict[int, int] = {}
+        """The CRC that each unpacked chunk states, by the byte at which it begins; 0: none."""
         some = [each.schema for each in streams.values() if each.schema is not None]
         self._schemas = {schema.id: schema for schema in some}
         self._channels = {id: each.channel for id, each in streams.items()}
@@ -90,7 +103,7 @@ class Projection:
             chunks=chunks,
             crc_checked=self._crc_checked,
             without_crc=self._without_crc,
-            skipped=chunks - self._unpacked,
+            skipped=chunks - len(self.crcs),
         )
 
     def run(self) -> None:
@@ -120,15 +133,15 @@ class Projection:
         entries = self._entries(chunk, self._wanted)
         if not entries:
             return
-        crc = self._head(chunk)
-        size, base = chunk.uncompressed_size, self._arena.used
+        size = chunk.uncompressed_size
         last, final = max((last, id) for id, _, last in entries)
-        places = _NOWHERE if crc else self._places(chunk)
-        needed = last + HEAD.size + self._longest[final]
+        needed, places = last + HEAD.size + self._longest[final], None
         while True:
             whole = needed > size // 2
             needed = size if whole else needed
-            self._unpack(chunk, needed, whole=whole)
+            base, crc = self._unpack(chunk, needed, whole=whole)
+            if places is None:
+                places = _NOWHERE if crc else self._places(chunk)
             end = self._end(final, base, last, needed)
             if end <= needed and not crc:
                 wall = int(min(places[places > last], default=size))
@@ -139,14 +152,15 @@ class Projection:
                 raise BrokenError("a message is cut off")
             needed = end
         if whole and crc:
-            if zlib.crc32(self._arena.target(needed)) != crc:
+            if crc32(self._arena.data.data[base : base + needed]) != crc:
                 raise BrokenError("a chunk has another CRC than it states")
             self._crc_checked += 1
         self._without_crc += not crc
-        self._unpacked += 1
+        self.crcs[chunk.chunk_start_offset] = crc
         if crc:
-            firsts = [int(some[1::2].min()) for id, some, _ in entries if id not in self._met]
-            self._met.update(id for id, _, _ in entries)
+            new = {id: some for id, some, _ in entries if id not in self._met}
+            self._met.update(new)
+            firsts = (int(_numbers(some)[1::2].min()) for some in new.values())
             self._declared(base, needed, max(firsts, default=0))
         else:
             self._tiled(base, needed, size, places)
@@ -154,8 +168,8 @@ class Projection:
         for id, some, _ in entries:
             batch = self._batches[id]
             batch.entries.append(some)
-            batch.limits.append((len(some) // 2, base, base + needed, *span))
-        self._arena.used += needed
+            batch.limits.append((len(some) // ENTRY.itemsize, base, base + needed, *span))
+        self._arena.used = base + needed
 
     def _declared(self, base: int, needed: int, until: int) -> None:
         """Compare declarations of a chunk with the summary: at its beginning, and `until` a place.
@@ -184,7 +198,7 @@ class Projection:
     def _places(self, chunk: ChunkIndex) -> Places:
         """Where the messages of a chunk begin, by its index, in the order of the file."""
         entries = self._entries(chunk, chunk.message_index_offsets.keys())
-        return np.sort(np.concatenate([some[1::2] for _, some, _ in entries]).astype(np.int64))
+        return np.sort(_numbers(b"".join([some for _, some, _ in entries]))[1::2].astype(np.int64))
 
     def _tiled(self, base: int, needed: int, size: int, places: Places) -> None:
         """Compare the unpacked records of a chunk that no CRC protects with its index.
@@ -217,8 +231,8 @@ class Projection:
                 raise BrokenError("the records of a chunk are not where its index says")
             self._as_declared(opcode, bytes(data[start:at]))
 
-    def _entries(self, chunk: ChunkIndex, ids: Container[int]) -> list[tuple[int, Entries, int]]:
-        """Each of the channels in the chunk: its number, its index, and its last place."""
+    def _entries(self, chunk: ChunkIndex, ids: Container[int]) -> list[tuple[int, bytes, int]]:
+        """Each of the channels in the chunk: its number, its entries, and its last place."""
         begin = chunk.chunk_start_offset + chunk.chunk_length
         self._stream.seek(begin)
         data = self._stream.read(chunk.message_index_length)
@@ -227,72 +241,73 @@ class Projection:
             if id not in ids:
                 continue
             at = place - begin
-            if at + HEAD.size + INDEX.size > len(data):
+            start = at + _INDEX_RECORD.size
+            if start > len(data):
                 raise BrokenError("a record is cut off")
-            opcode, length = HEAD.unpack_from(data, at)
-            channel, size = INDEX.unpack_from(data, at + HEAD.size)
-            start = at + HEAD.size + INDEX.size
+            opcode, length, channel, size = _INDEX_RECORD.unpack_from(data, at)
             if (opcode, channel, size % ENTRY.itemsize) != (Opcode.MESSAGE_INDEX, id, 0):
                 raise BrokenError("the index of a chunk is not there")
             if INDEX.size + size > length or start + size > len(data):
                 raise BrokenError("a record is cut off")
             if size:
-                some = np.frombuffer(data, "<u8", size // 8, start)
-                places = some[1::2]
-                last = max(places.tolist()) if len(places) < _FEW else int(places.max())
+                some = data[start : start + size]
+                few = size < _FEW * ENTRY.itemsize
+                last = max(_PLACE.iter_unpack(some))[0] if few else int(_numbers(some)[1::2].max())
                 if last >= chunk.uncompressed_size:
                     raise BrokenError("the index of a chunk names a place outside of it")
                 entries.append((id, some, last))
         return entries
 
-    def _head(self, chunk: ChunkIndex) -> int:
-        """The CRC that a chunk states; its other statements must agree with its index."""
-        self._stream.seek(chunk.chunk_start_offset)
-        compression = chunk.compression.encode()
-        size = HEAD.size + CHUNK.size + len(compression) + 8
-        head = self._stream.read(size)
-        if len(head) < size:
-            raise BrokenError("a record is cut off")
-        start, end, unpacked, crc, length = CHUNK.unpack_from(head, HEAD.size)
-        record = (*HEAD.unpack_from(head), start, end, unpacked, length)
-        if record != (
-            Opcode.CHUNK,
-            chunk.chunk_length - HEAD.size,
-            chunk.message_start_time,
-            chunk.message_end_time,
-            chunk.uncompressed_size,
-            len(compression),
-        ):
-            raise BrokenError("a chunk is not what its index says")
-        tail = compression + chunk.compressed_size.to_bytes(8, "little")
-        if head[-len(tail) :] != tail or chunk.chunk_length < size + chunk.compressed_size:
-            raise BrokenError("a chunk is not what its index says")
-        return int(crc)
+    def _unpack(self, chunk: ChunkIndex, size: int, *, whole: bool) -> tuple[int, int]:
+        """Put the first `size` bytes of a chunk behind those in use.
 
-    def _unpack(self, chunk: ChunkIndex, size: int, *, whole: bool) -> None:
-        """Put the first `size` bytes of a chunk behind those in use."""
-        packed = chunk.compressed_size
-        at = chunk.chunk_start_offset + HEAD.size + CHUNK.size + len(chunk.compression) + 8
+        Returns:
+            Where in the arena they begin, and the CRC that the chunk states.
+        """
+        packed, used = chunk.compressed_size, self._arena.used
+        before = _HEAD.size + len(chunk.compression) + 8
         if not chunk.compression:
             if packed != chunk.uncompressed_size:
                 raise BrokenError("a chunk has another size than it states")
-            self._fill(at, self._arena.target(size))
-            return
+            return used + before, self._fill(chunk, self._arena.target(before + size))
         if is_absurd(chunk.uncompressed_size, packed):
             raise BrokenError("a chunk states an absurd size")
         for length in (packed,) if whole else (_share(chunk, size), packed):
-            if length > len(self._packed):
-                self._packed = bytearray(length)
-            some = memoryview(self._packed)[:length]
-            self._fill(at, some)
-            if self._arena.unpack(chunk.compression, some, size, whole=whole):
-                return
+            if before + length > len(self._packed):
+                self._packed = bytearray(before + length)
+            some = memoryview(self._packed)[: before + length]
+            crc = self._fill(chunk, some)
+            if self._arena.unpack(chunk.compression, some[before:], size, whole=whole):
+                return used, crc
         raise BrokenError("a chunk has another size than it states")
 
-    def _fill(self, at: int, target: memoryview) -> None:
-        self._stream.seek(at)
+    def _fill(self, chunk: ChunkIndex, target: memoryview) -> int:
+        """Read the beginning of a chunk, with its head, in one step; gives the CRC that it states.
+
+        Its other statements must agree with its index.
+        """
+        self._stream.seek(chunk.chunk_start_offset)
         if self._stream.readinto(target) != len(target):
             raise BrokenError("a chunk is cut off")
+        *stated, crc, name = _HEAD.unpack_from(target)
+        compression = chunk.compression.encode()
+        tail = compression + chunk.compressed_size.to_bytes(8, "little")
+        before = _HEAD.size + len(tail)
+        if (
+            (*stated, name)
+            != (
+                Opcode.CHUNK,
+                chunk.chunk_length - HEAD.size,
+                chunk.message_start_time,
+                chunk.message_end_time,
+                chunk.uncompressed_size,
+                len(compression),
+            )
+            or target[_HEAD.size : before] != tail
+            or chunk.chunk_length < before + chunk.compressed_size
+        ):
+            raise BrokenError("a chunk is not what its index says")
+        return int(crc)
 
     def _end(self, id: int, base: int, last: int, needed: int) -> int:
         """Where in its chunk the last message of a channel ends, as far as it is unpacked."""
@@ -320,36 +335,49 @@ class Projection:
     def _messages(self, id: int) -> Messages:
         """The messages of one channel, in the order of the file."""
         batch = self._batches[id]
-        entries = np.concatenate(batch.entries)
+        entries = _numbers(b"".join(batch.entries))
         counts, *of_chunks = np.array(batch.limits, np.uint64).T
-        bases, limits, first, last = (
-            np.repeat(some, counts.astype(np.int64)) for some in of_chunks
-        )
+        bases, limits = (np.repeat(some, counts.astype(np.int64)) for some in of_chunks[:2])
         times, places = entries[::2], (entries[1::2] + bases).astype(np.int64)
+        if not _in_time(times, counts, *of_chunks[2:]):
+            raise BrokenError("the index of a chunk names other messages than are in it")
         if (places[1:] < places[:-1]).any():  # some writers sort the index by time
             order = np.argsort(places)
-            places, times = places[order], times[order]
-            limits, first, last = limits[order], first[order], last[order]
+            places, times, limits = places[order], times[order], limits[order]
         data = self._arena.data
-        lengths = np.ndarray((len(data) - 8,), "<u8", data.data, 1, (1,))[places]
-        contents = places + HEAD.size
+        heads = record_heads(data, places)
+        lengths, contents = heads["length"].astype(np.uint64), places + HEAD.size
         if (
-            (data[places] != Opcode.MESSAGE).any()
+            (heads["opcode"] != Opcode.MESSAGE).any()
             or (places[1:] == places[:-1]).any()
-            or (lengths > len(data)).any()
+            or lengths.max() > len(data)
             or (contents.astype(np.uint64) + lengths > limits).any()
-            or (lengths < Messages.HEAD).any()
+            or lengths.min() < Messages.HEAD
         ):
             raise BrokenError("the index of a chunk names what is no message")
-        messages = Messages.at(data, contents, contents + lengths.astype(np.int64))
-        if (
-            (messages.channels != id).any()
-            or (messages.logs != times).any()
-            or ((times < first) | (times > last) | (times >= LATEST)).any()
-        ):
+        messages = Messages.behind(heads, data, contents, contents + lengths.astype(np.int64))
+        if (messages.channels != id).any() or (messages.logs != times).any():
             raise BrokenError("the index of a chunk names other messages than are in it")
         self._counts[id] += len(messages)
         return messages
+
+
+def _in_time(times: FileTimes, counts: Entries, first: Entries, last: Entries) -> bool:
+    """Whether the messages of each chunk are within the times that it states, and before `LATEST`.
+
+    Args:
+        times: of all messages, chunk by chunk.
+        counts: how many are in each chunk: some.
+        first: time that each chunk states.
+        last: another one.
+    """
+    begins = (np.cumsum(counts) - counts).astype(np.intp)
+    latest = np.maximum.reduceat(times, begins)
+    return bool(
+        (np.minimum.reduceat(times, begins) >= first).all()
+        and (latest <= last).all()
+        and (latest < LATEST).all()
+    )
 
 
 def _share(chunk: ChunkIndex, size: int) -> int:

@@ -7,7 +7,6 @@ place. Times are nanoseconds, log times.
 from __future__ import annotations
 
 import struct
-import zlib
 from bisect import bisect_right
 from collections import Counter
 from collections.abc import Callable, Collection
@@ -30,6 +29,7 @@ from fretc.logs.mcap.container import (
     PADDING,
     BrokenError,
     Stream,
+    crc32,
     frames,
     no_summary,
     parse,
@@ -40,7 +40,7 @@ from fretc.logs.mcap.damage import LATEST, Damage, Damages
 from fretc.logs.mcap.messages import Messages, Sink
 from fretc.logs.mcap.metadata import Described, described, together
 from fretc.logs.signals.integrity import Checked
-from fretc.logs.signals.samples import Gap
+from fretc.logs.signals.samples import Gap, distinct
 from fretish.diagnostics.diagnostic import Code
 
 _MESSAGE = struct.Struct("<HIQQ")
@@ -195,7 +195,7 @@ class Walk:
     def _take(self, length: int) -> bytes:
         data = self._stream.read(length)
         if self._crc is not None:
-            self._crc = zlib.crc32(data, self._crc)
+            self._crc = crc32(data, self._crc)
         return data
 
     def _skip(self, length: int) -> None:
@@ -352,12 +352,12 @@ class Walk:
         times = messages.logs
         if ((times < span[0]) | (times > span[1])).any():
             raise BrokenError("a message is of another time than its chunk states")
-        if any(id not in self._streams for id in np.unique(messages.channels).tolist()):
+        if any(id not in self._streams for id in distinct(messages.channels).tolist()):
             raise BrokenError("a message is of a topic that is not declared")
 
     def _at_once(self, messages: Messages) -> bool:
         """Pass on all messages of a chunk, topic by topic; not where one of them is odd."""
-        ids = np.unique(messages.channels).tolist()
+        ids = distinct(messages.channels).tolist()
         streams = [self._streams[id] for id in ids if id in self._streams]
         topics = {stream.channel.topic for stream in streams}
         if len(topics) < len(ids) or (messages.logs >= LATEST).any():

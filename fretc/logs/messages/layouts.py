@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from fretc.logs.mcap.payloads import Payloads, Places
 from fretc.logs.messages.definitions import CARRIED, NUMBERS, TEXTS, Field, Types
+from fretc.logs.signals.samples import distinct
 
 Where = tuple[str, ...]
 """The names of fields from the message down."""
@@ -244,7 +245,7 @@ class Layouts:
         """All messages, those of one layout together."""
         rest = np.arange(len(payloads))
         if self._count:
-            for size in np.unique(payloads.sizes).tolist():
+            for size in distinct(payloads.sizes).tolist():
                 for layout in self._layouts.get(size, ()):
                     same = _same(payloads, rest, layout)
                     yield from _split(payloads, rest[same], layout, new=False)
@@ -282,8 +283,11 @@ def _same(payloads: Payloads, rows: Places, layout: Layout) -> NDArray[np.bool_]
     same: NDArray[np.bool_] = payloads.sizes[rows] == layout.size
     if len(layout.marks) > _MOST_CHECKS:
         return np.zeros(len(rows), bool)
+    some = rows[same]
+    agree = np.ones(len(some), bool)
     for at, dtype, value in layout.marks:
-        same[same] = payloads.gathered(rows[same], at, dtype, None) == value
+        agree &= payloads.gathered(some, at, dtype, None) == value
+    same[same] = agree
     return same
 
 

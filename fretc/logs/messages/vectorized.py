@@ -5,7 +5,8 @@ Numbers are in the unit of the field, clearances in metres; NaN is unknown.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,12 +20,13 @@ from fretc.logs.signals.signals import clearance, unrounded
 from fretish import expressions as e
 from fretish.bindings.declarations import Invalid, Reading, Reduce, Signal
 from fretish.expressions import MIRRORED
+from fretish.reading.memory import remembered
 
 Truths = NDArray[np.bool_]
-Between = Callable[["Values", slice | NDArray[np.intp]], Truths]
-"""From values and the messages that they belong to: which elements are measurements."""
+Singles = NDArray[np.float32]
 
 
+@remembered
 def siblings(signal: Signal) -> tuple[str, ...]:
     """Further fields that the signal needs beside its own."""
     names = {name.id for name in e.names(signal.valid)} - {"x"} if signal.valid else set()
@@ -72,35 +74,52 @@ def _plain(
     """
     if signal.reduce not in (Reduce.MIN, Reduce.MAX):
         return np.zeros(len(values), bool)
-    between = _between(signal, sibling_values, len(values))
-    if between is None or (signal.valid is not None and values.dtype != np.float32):
+    limits = _limits(signal, sibling_values, len(values))
+    if limits is None or (signal.valid is not None and values.dtype != np.float32):
         return np.zeros(len(values), bool)
     unknown, stronger = (np.zeros(len(values), bool) for _ in range(2))
-    for reading, chosen in _classes(signal.invalid, values, between):
+    for reading, chosen in _classes(signal.invalid, values, lambda: limits.hold(values)):
         if reading is Reading.UNKNOWN:
             unknown |= chosen().any(axis=1)
         elif reading not in (Reading.DROP, _WEAKER[signal.reduce]):
             stronger |= chosen().any(axis=1)
-    ends, measured = _ends(signal.reduce, values, between)
+    ends, measured = _ends(signal.reduce, values, limits)
     plain: Truths = unknown | (measured & ~stronger)
     result[plain] = np.where(unknown, np.nan, ends.astype(result.dtype) + 0.0)[plain]
     return plain
 
 
-def _ends(reduce: Reduce, values: Values, between: Between) -> tuple[Values, Truths]:
+def _ends(reduce: Reduce, values: Values, limits: _Limits) -> tuple[Values, Truths]:
     """The least or the greatest measurement of each message, and whether there is one."""
-    least = reduce is Reduce.MIN
+    least, band = reduce is Reduce.MIN, limits.band()
+    if band is not None and values.dtype == np.float32:
+        return _ends_within(band, values.view(np.uint32), least=least)
     # Where the least of all numbers is a measurement, no other element has to be looked at.
     ends = (np.fmin if least else np.fmax).reduce(values, axis=1)
-    measured = between(ends[:, None], slice(None))[:, 0]
+    measured = limits.hold(ends[:, None])[:, 0]
     rows = np.flatnonzero(~measured)
     if len(rows):
         some = values[rows]
-        accepted = between(some, rows)
+        accepted = limits.hold(some, rows)
         np.copyto(some, np.inf if least else -np.inf, where=~accepted)
         ends[rows] = some.min(axis=1) if least else some.max(axis=1)
         measured[rows] = accepted.any(axis=1)
     return ends, measured
+
+
+def _ends_within(
+    band: tuple[Singles, Singles], patterns: NDArray[np.uint32], *, least: bool
+) -> tuple[Singles, Truths]:
+    """`_ends` of the bit patterns of 32-bit floats, where a measurement lies in a band above 0.
+
+    The patterns of floats above 0 are in the order of the floats. Less than that of the lower end,
+    modulo 2^32, those of all other floats (below it, negative, NaN) are beyond that of the upper
+    end: so the least difference is that of the least measurement.
+    """
+    low, high = (end.view(np.uint32) for end in band)
+    apart = (patterns - low if least else high - patterns).min(axis=1)
+    ends = low[:, 0] + apart if least else high[:, 0] - apart
+    return ends.view(np.float32), apart <= (high - low)[:, 0]
 
 
 _WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
@@ -108,26 +127,56 @@ _WEAKER = {Reduce.MIN: Reading.FAR, Reduce.MAX: Reading.NEAR}
 
 
 def _classes(
-    invalid: Invalid, values: Values, between: Between
+    invalid: Invalid, values: Values, valid: Callable[[], Truths]
 ) -> Iterator[tuple[Reading, Callable[[], Truths]]]:
     """Each kind of element that is no measurement: its meaning, and its elements."""
     yield invalid.nan, lambda: np.isnan(values)
     yield invalid.positive_infinity, lambda: np.isposinf(values)
     yield invalid.negative_infinity, lambda: np.isneginf(values)
-    yield invalid.other, lambda: np.isfinite(values) & ~between(values, slice(None))
+    yield invalid.other, lambda: np.isfinite(values) & ~valid()
 
 
-def _between(signal: Signal, sibling_values: Mapping[str, Numbers], count: int) -> Between | None:
-    """A test for measurements among 32-bit floats, by comparison with such floats.
+@dataclass(frozen=True, slots=True)
+class _Limits:
+    """A test for measurements among 32-bit floats: each is finite, and compares as it should."""
 
-    None where that is not enough.
-    """
+    compared: Sequence[tuple[str, Singles]]
+    """Operators and bounds: shape (messages, 1), or (1, 1) for all messages."""
+
+    def hold(self, values: Values, rows: slice | NDArray[np.intp] = slice(None)) -> Truths:
+        """Which elements are measurements, of all messages or of some."""
+        accepted: Truths = np.isfinite(values)
+        for op, bound in self.compared:
+            accepted &= COMPARE[op](values, bound if len(bound) == 1 else bound[rows])
+        return accepted
+
+    def band(self) -> tuple[Singles, Singles] | None:
+        """The least and the greatest float that is a measurement; None unless both are above 0."""
+        low, high = np.zeros((1, 1), np.float32), np.full((1, 1), _GREATEST)
+        for op, bound in self.compared:
+            match op:
+                case ">=":
+                    low = np.maximum(low, bound)
+                case ">":
+                    low = np.maximum(low, np.nextafter(bound, np.float32(np.inf)))
+                case "<=":
+                    high = np.minimum(high, bound)
+                case _:
+                    high = np.minimum(high, np.nextafter(bound, np.float32(-np.inf)))
+        return (low, high) if ((low > 0) & (low <= high)).all() else None
+
+
+_GREATEST = np.finfo(np.float32).max
+
+
+def _limits(signal: Signal, sibling_values: Mapping[str, Numbers], count: int) -> _Limits | None:
+    """The test for measurements; None where comparisons with 32-bit floats are not enough."""
     bounds = [] if signal.valid is None else _bounds(signal.valid)
     if bounds is None:
         return None
     scope = Scope(count, sibling_values, signal.unit)
     field = Measure(np.zeros(1, np.float32))
-    compared: list[tuple[str, NDArray[np.float32]]] = []
+    compared: list[tuple[str, Singles]] = []
     for op, side in bounds:
         _, numbers, _ = together(field, term(side, scope))
         narrow = numbers.astype(np.float32)
@@ -135,16 +184,10 @@ def _between(signal: Signal, sibling_values: Mapping[str, Numbers], count: int) 
             return None
         same = bool((narrow == narrow[:1]).all())
         compared.append((op, narrow[:1, None] if same else narrow[:, None]))
-
-    def between(values: Values, rows: slice | NDArray[np.intp]) -> Truths:
-        accepted: Truths = np.isfinite(values)
-        for op, bound in compared:
-            accepted &= COMPARE[op](values, bound if len(bound) == 1 else bound[rows])
-        return accepted
-
-    return between
+    return _Limits(compared)
 
 
+@remembered
 def _bounds(valid: e.Expression) -> list[tuple[str, e.Expression]] | None:
     """`x >= range_min and x <= range_max`: the operators and what `x` is compared with.
 
@@ -207,7 +250,7 @@ def _readings(signal: Signal, values: Values, valid: Truths) -> tuple[Values, Tr
     """The elements with infinities for far and near; and which messages are unknown."""
     invalid = signal.invalid
     readings, unknown = values.copy(), np.zeros(len(values), bool)
-    for reading, chosen in _classes(invalid, values, lambda _, __: valid):
+    for reading, chosen in _classes(invalid, values, lambda: valid):
         if reading is Reading.UNKNOWN:
             unknown |= chosen().any(axis=1)
         else:

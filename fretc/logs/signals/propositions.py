@@ -6,7 +6,7 @@ the rest decides. Times are nanoseconds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import reduce
@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fretc.logs.signals.measures import ExpressionError, Scope, Term, compared, term
-from fretc.logs.signals.samples import Recording, Samples, Times, Values
+from fretc.logs.signals.samples import Recording, Samples, Times, Values, distinct
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.bindings.expressions import ticks_back
+from fretish.reading.memory import remembered
 
 States = NDArray[np.int8]
 """One of `FALSE`, `UNKNOWN`, `TRUE` each: `and` is the least of them, `or` the greatest."""
@@ -75,8 +76,9 @@ def evaluate(proposition: Proposition, declarations: Declarations, recording: Re
     if known is not None:
         return known[1]
     steps = _steps(proposition.expression, history_of(signals, recording))
-    in_time = steps.times <= max(recording.end_ns, recording.start_ns)
-    steps = Steps(steps.times[in_time], steps.states[in_time])
+    last = max(recording.end_ns, recording.start_ns)
+    count = int(np.searchsorted(steps.times, last, "right"))
+    steps = Steps(steps.times[:count], steps.states[:count])
     if len(steps.times) <= _KEPT:
         recording.derived[key] = proposition, steps  # what is kept keeps its identity
     return steps
@@ -166,7 +168,11 @@ class History:
 
     def with_times(self, times: Sequence[Times]) -> History:
         """The same with further events at these times."""
-        extra = np.setdiff1d(np.concatenate([self.times[:0], *times]), self.times)
+        if not any(map(len, times)):
+            return self
+        extra = distinct(np.concatenate(times))
+        before = np.searchsorted(self.times, extra), np.searchsorted(self.times, extra, "right")
+        extra = extra[before[0] == before[1]]
         if not len(extra):
             return self
         in_force = np.searchsorted(self.times, extra, "right") - 1
@@ -198,8 +204,8 @@ def history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
     return history
 
 
-_KEPT = 2**14
-"""Events: of so many it costs more to compute them again than to read them again."""
+_KEPT = 2**17
+"""Events: what would take more memory than this is computed again."""
 
 
 def _read(signals: Mapping[str, Signal]) -> tuple[object, ...]:
@@ -211,7 +217,7 @@ def _history_of(signals: Mapping[str, Signal], recording: Recording) -> History:
     samples = {name: recording.samples.get(name, _NONE) for name in signals}
     gaps = _merged(recording.gaps)
     fixed = [recording.start_ns, *(edge for gap in gaps for edge in gap)]
-    sources = [np.unique(np.array(fixed, np.int64))]
+    sources = [distinct(np.array(fixed, np.int64))]
     for name, signal in signals.items():
         sources += [samples[name].times, _expiries(samples[name].times, signal.max_age)]
     times, places = _events(sources)
@@ -258,7 +264,7 @@ def _events(sources: Sequence[Times]) -> tuple[Times, list[NDArray[np.intp]]]:
     """
     times = np.concatenate(sources)
     ranks = np.concatenate([_ranks(source) for source in sources])
-    order = np.lexsort((ranks, times))
+    order = np.lexsort((ranks, times)) if ranks.any() else np.argsort(times, kind="stable")
     times, ranks = times[order], ranks[order]
     new = np.ones(len(times), bool)
     new[1:] = (times[1:] != times[:-1]) | (ranks[1:] != ranks[:-1])
@@ -269,8 +275,12 @@ def _events(sources: Sequence[Times]) -> tuple[Times, list[NDArray[np.intp]]]:
 
 
 def _ranks(times: Times) -> NDArray[np.intp]:
-    """How many equal times stand before each one."""
-    return np.arange(len(times)) - np.searchsorted(times, times, "left")
+    """How many equal times stand before each one; the times are in order."""
+    places = np.arange(len(times))
+    new = times[1:] != times[:-1]
+    if new.all():
+        return places * 0
+    return places - np.maximum.accumulate(places * np.append(True, new))
 
 
 def _values_at(
@@ -284,7 +294,9 @@ def _values_at(
     sample_times, values = samples.times, samples.values
     if not len(sample_times):
         return np.full(len(times), np.nan)
-    last = np.searchsorted(places, np.arange(len(times)), "right") - 1
+    here = np.zeros(len(times), np.intp)
+    here[places] = 1
+    last = here.cumsum() - 1
     sample_times, values = sample_times[last], values[last]
     unknown = last < 0
     if max_age is not None:
@@ -313,17 +325,18 @@ def with_persistences(
         part: _persistence(_steps(part.arg, history), part.duration)
         for part in _durations(expression)
     }
+    if not persistences:
+        return history, {}
     history = history.with_times([steps.times for steps in persistences.values()])
     return history, {part: _at(steps, history.times) for part, steps in persistences.items()}
 
 
-def _durations(expression: e.Expression) -> Iterator[e.Persistence]:
+@remembered
+def _durations(expression: e.Expression) -> tuple[e.Persistence, ...]:
     """The outermost `... for 200 ms` in it."""
     if isinstance(expression, e.Persistence):
-        yield expression
-        return
-    for part in e.children(expression):
-        yield from _durations(part)
+        return (expression,)
+    return tuple(found for part in e.children(expression) for found in _durations(part))
 
 
 def _at(steps: Steps, times: Times) -> States:
@@ -339,7 +352,7 @@ def _persistence(arg: Steps, duration: int) -> Steps:
     """
     ends = np.append(arg.times[1:], _FOREVER)
     begins = np.append(arg.times[:1], ends[:-1])  # where it can begin to be true
-    times = np.unique(np.concatenate([arg.times, begins + duration]))
+    times = distinct(np.concatenate([arg.times, begins + duration]))
     states = np.full(len(times), TRUE, np.int8)
     states[times < arg.times[0] + duration] = UNKNOWN
     for state in (UNKNOWN, FALSE):

@@ -35,6 +35,15 @@ Gap = tuple[int, int]
 
 
 _Number = TypeVar("_Number", float, Numbers)
+_Whole = TypeVar("_Whole", bound=np.integer[Any])
+
+
+def distinct(values: NDArray[_Whole]) -> NDArray[_Whole]:
+    """Each value once, in order. NumPy's `unique` would import its masked arrays, for 9 ms."""
+    ordered = np.sort(values)
+    first = np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]
+    once: NDArray[_Whole] = ordered[first]
+    return once
 
 
 def scaled(value: _Number, scale: Fraction) -> _Number:

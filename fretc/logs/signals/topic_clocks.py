@@ -89,6 +89,8 @@ def clock_offset(log_times: Times, times: Times) -> ClockOffset | None:
     if not len(times):
         return None
     offsets = times - log_times
+    if not offsets.any():  # the declared times are the log times: most often
+        return ClockOffset(0, 0, 0)
     steps = np.abs(np.diff(offsets))
     jumps = steps[steps > JUMP]
     return ClockOffset(len(jumps), int(jumps.max(initial=0)), int(np.median(offsets)))

@@ -163,7 +163,7 @@ def first_before(steps: Steps, begun: tuple[int, int], upto: NDArray[np.intp]) -
 
     It is the first step that is known or counts as unknown; if there is none, the last one.
     """
-    first = int(np.searchsorted(steps.times, begun[0], "left"))
+    first = int(steps.times.searchsorted(begun[0], "left"))
     informative = (steps.states[first:] != UNKNOWN) | (steps.times[first:] >= begun[1])
     start = first + int(np.argmax(informative)) if informative.any() else len(steps.times)
     return np.where(start < upto, start, np.maximum(first, upto - 1))
@@ -196,6 +196,8 @@ def _some(
     chosen: NDArray[np.bool_], before: NDArray[np.intp], upto: NDArray[np.intp]
 ) -> NDArray[np.bool_]:
     """Whether any of the steps `before <= i < upto` is chosen."""
+    if not chosen.any():
+        return np.zeros(len(upto), bool)
     counts = np.concatenate([[0], np.cumsum(chosen)])
     return np.asarray(counts[upto] > counts[before])
 
@@ -206,11 +208,13 @@ def _windows(times: Times, ticks: Times) -> tuple[NDArray[np.intp], NDArray[np.i
     Ticks with the same time share the steps of that time: the first tick has the first of them,
     the last tick has all that are left.
     """
-    rank = np.arange(len(ticks)) - np.searchsorted(ticks, ticks, "left")
-    upto = np.searchsorted(times, ticks, "right")
-    more = np.append(ticks[1:] == ticks[:-1], False)
-    shared = np.searchsorted(times, ticks, "left") + rank + 1
-    upto = np.where(more, np.minimum(shared, upto), upto)
-    before = np.roll(upto, 1)
-    before[:1] = np.searchsorted(times, ticks[:1], "left")
+    upto = times.searchsorted(ticks, "right")
+    same = ticks[1:] == ticks[:-1]
+    if same.any():
+        rank = np.arange(len(ticks)) - ticks.searchsorted(ticks, "left")
+        shared = times.searchsorted(ticks, "left") + rank + 1
+        upto = np.where(np.append(same, False), np.minimum(shared, upto), upto)
+    before = np.empty_like(upto)
+    before[1:] = upto[:-1]
+    before[:1] = times.searchsorted(ticks[:1], "left")
     return before, upto

@@ -5,7 +5,6 @@ The only module that imports aiohttp, through which fsspec speaks to `http` and 
 
 from __future__ import annotations
 
-import asyncio
 import re
 from typing import Any
 from urllib.parse import urlsplit
@@ -73,6 +72,8 @@ class Stream:
         self._loop.call_soon_threadsafe(self._answer.close)
 
     def _wait(self, ask: Any, *arguments: object) -> Any:
+        import asyncio  # where there is a server: most logs are files
+
         future = asyncio.run_coroutine_threadsafe(ask(*arguments), self._loop)
         try:
             return future.result(PATIENCE)

@@ -6,6 +6,7 @@ answer. The process is started anew, not forked: it holds nothing but what the f
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import resource
 import signal
@@ -44,6 +45,9 @@ class Limits:
 
 
 DEFAULT = Limits()
+_RARELY = (100_000, 50, 50)
+"""How many new objects Python looks through for cycles that are no longer used: a search keeps all
+that it makes, and would be looked through again and again for a third of its time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,5 +142,6 @@ def _serve(
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_CPU, (limits.seconds, limits.seconds + 5))
     resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
+    gc.set_threshold(*_RARELY)
     with suppress(OSError):
         connection.send(reply(function, *args, **kwargs))

@@ -137,6 +137,7 @@ class InterceptorMachine:
             Event.RING: self._core.call(module.TimerRang),
         }
         self._steps: dict[tuple[State, Event], tuple[State, Output]] = {}
+        self._blocks: dict[State, bool] = {}
         self._raw: dict[State, Any] = {}
         """A raw state for each encoded one that was met."""
         self.initial = self._encoded(self._core.initial())
@@ -154,9 +155,11 @@ class InterceptorMachine:
 
         The scan comes first so that the watchdog of the sensor alone does not count as a stop.
         """
-        scanned, _ = self.step(state, Event.SCAN)
-        _, output = self.step(scanned, Event.MOVE)
-        return not output
+        if state not in self._blocks:
+            scanned, _ = self.step(state, Event.SCAN)
+            _, output = self.step(scanned, Event.MOVE)
+            self._blocks[state] = not output
+        return self._blocks[state]
 
     def raw_initial(self) -> Any:
         """The raw state before the first message."""

@@ -15,7 +15,8 @@ from itertools import product
 from typing import Any, NamedTuple, Protocol
 
 from compiler.logic.kripke import TooManyStatesError
-from fretc.verification.loop.model import Channel, Loop, Node, Tick
+from fretc.verification.loop.drive import Channel, Queue
+from fretc.verification.loop.model import Loop, Node, Tick
 
 NONE, ARRIVED = -1, -2
 """In place of the age of a request: none is in flight; one has arrived."""
@@ -200,25 +201,37 @@ def covered(loop: Loop, limit: int, longest: int) -> Coverage:
     begin = INITIAL._replace(still=channel.stands)
     visited: set[tuple[Node, int, int]] = {(loop.initial, begin.open, begin.age)}
     allowed: dict[tuple[Numbers, Numbers], bool] = {}
+    ended: dict[tuple[Numbers, Node, bool, bool | None], int] = {}
     waiting, steps, most = list(visited), 0, -1
     for node, open_, age in waiting:
         now = _numbers(open_, age, node)
-        for tick, after in loop.steps(node):
+        for tick, begun in loop.begins(node):
             if tick.violated:
                 continue
-            steps += 1
-            then = _followed(now, tick, after, channel)
-            if (now, then) not in allowed:
-                allowed[now, then] = _is_step(now, then, times)
-            if not allowed[now, then]:
-                return Coverage(steps, most, (now, then))
-            most = max(most, then.open)
-            key = (after, then.open, then.age)
-            if key not in visited and then.open <= longest:
-                if len(visited) >= limit:
-                    raise TooManyStatesError(limit)
-                visited.add(key)
-                waiting.append(key)
+            case = now, begun, tick.owed, tick.sent
+            if case in ended:  # the same steps, of another letter
+                steps += ended[case]
+                continue
+            before = steps
+            follow: dict[tuple[int, Queue], Numbers] = {}
+            for after in loop.ends(begun):
+                steps += 1
+                wheels = after.wheels.still, after.wheels.queue
+                then = follow.get(wheels)
+                if then is None:  # the interceptor's own state is nothing to the twin
+                    then = follow[wheels] = _followed(now, tick, after, channel)
+                    most = max(most, then.open)
+                    if (now, then) not in allowed:
+                        allowed[now, then] = _is_step(now, then, times)
+                    if not allowed[now, then]:
+                        return Coverage(steps, most, (now, then))
+                key = (after, then.open, then.age)
+                if key not in visited and then.open <= longest:
+                    if len(visited) >= limit:
+                        raise TooManyStatesError(limit)
+                    visited.add(key)
+                    waiting.append(key)
+            ended[case] = steps - before
     return Coverage(steps, most, None)
 
 

@@ -38,7 +38,7 @@ from fretc.verification.loop.abstraction import (
     times_of,
 )
 from fretc.verification.loop.closed_loop import Setup, artefacts, assumptions, case
-from fretc.verification.loop.model import Channel
+from fretc.verification.loop.drive import Channel, Drive
 from fretc.verification.loop.search import Case, NotALoopError, Parts, as_table, reach
 from fretc.verification.monitor.statements import is_same
 from fretish import syntax as s
@@ -168,7 +168,9 @@ def search(query: Question) -> Answer:
     if find_spec("z3") is None:
         return Answer(not_checked(INSTALL), not_checked(INSTALL))
     try:
-        steps, loops = _covered(query)
+        endless = _endless(query)
+        parts = Parts.of(endless)
+        longest, steps, loops = _covered(query, endless, parts)
         obstacle, version = _proved(times_of(query.case.channel))
         if obstacle is not None:
             return Answer(not_checked(obstacle), not_checked(obstacle), version)
@@ -177,34 +179,44 @@ def search(query: Question) -> Answer:
         )
         if query.unknown is not None:
             answered = not_checked(query.unknown)
-        return Answer(answered, _least(query), version)
+        return Answer(answered, _least(query, longest + 1, parts.loop.drive), version)
     except (NotALoopError, NotAnInterceptorError, TooManyStatesError) as error:
         return Answer(not_checked(str(error)), not_checked(str(error)))
 
 
-def _covered(query: Question) -> tuple[int, int]:
-    """How many steps of how many loops were compared with the twin.
+def _covered(query: Question, endless: Case, parts: Parts) -> tuple[int, int, int]:
+    """Compare loops with the twin.
+
+    Args:
+        query: the question.
+        endless: its case without a bound, so that no run ends at a deadline.
+        parts: those of the endless case.
+
+    Returns:
+        For how many ticks a demand of the endless case is open at most, -1 if there is none; how
+        many steps were compared, and of how many loops.
 
     Raises:
-        NotALoopError: one of them is no step of the twin.
+        NotALoopError: one of the steps is no step of the twin.
     """
-    endless = _endless(query)
     small = _short(query.case.settings)
-    cases = [
-        query.case,
-        endless,
-        *(
-            replace(endless, settings=small, channel=_channel(query.case.channel, *numbers))
-            for numbers in _SMALL
-        ),
+    cases = (
+        replace(endless, settings=small, channel=_channel(query.case.channel, *numbers))
+        for numbers in _SMALL
+    )
+    loops = [
+        parts.loop,
+        Parts.of(query.case, parts.loop.drive).loop,
+        *(Parts.of(case).loop for case in cases),
     ]
-    steps = 0
-    for each in cases:
-        coverage = covered(Parts.of(each).loop, each.limit, longest=_formula(each.channel) + 1)
+    longest, steps = [], 0
+    for loop in loops:
+        coverage = covered(loop, endless.limit, longest=_formula(loop.channel) + 1)
         if coverage.uncovered is not None:
             raise NotALoopError("the loop does what its model in whole numbers does not")
+        longest.append(coverage.longest)
         steps += coverage.steps
-    return steps, len(cases)
+    return longest[0], steps, len(loops)
 
 
 def _channel(declared: Channel, cells: int, latency: int, lost: int, braking: int) -> Channel:
@@ -250,23 +262,25 @@ def _with(query: Question, timing: s.Timing) -> Case:
     return replace(query.case, safety=monitor, observer=monitor, formula=rule.ft_infinite)
 
 
-def _least(query: Question) -> Outcome:
-    """Whether the bound is enough, with the least bound that is."""
-    endless = _endless(query)
-    coverage = covered(Parts.of(endless).loop, endless.limit, longest=_formula(endless.channel) + 1)
-    least = coverage.longest + 1
+def _least(query: Question, least: int, drive: Drive) -> Outcome:
+    """Whether the bound is enough.
+
+    Args:
+        query: the question.
+        least: ticks, the least bound that is enough; 0: no demand is ever open.
+        drive: of the case.
+    """
     if least == 0:
         return not_checked("no demand is ever open")
     detail = f"the least that is kept is {_ticks(least)} ({in_words(least * query.tick)})"
     before = _with(query, _bound(least - 1))
-    parts = Parts.of(before)
-    violation = reach(parts.loop, before.limit).violation
+    violation = reach(Parts.of(before, drive).loop, before.limit).violation
     assert violation is not None, "a demand is open for longer than it can be"
     if query.ticks is None:
         return proved(detail)
     if query.ticks >= least:
         return proved(f"{detail}; with one tick less a run of {_ticks(len(violation))} violates it")
-    trace = _violating(query)
+    trace = _violating(query, drive)
     return refuted(detail, trace)
 
 
@@ -274,10 +288,10 @@ def _bound(ticks: int) -> s.Timing:
     return s.Within(s.Duration(ticks, "tick")) if ticks else s.Immediately()
 
 
-def _violating(query: Question) -> Any:
+def _violating(query: Question, drive: Drive) -> Any:
     """The shortest run that violates the sentence as it is."""
     assert query.ticks is not None
-    parts = Parts.of(_with(query, _bound(query.ticks)))
+    parts = Parts.of(_with(query, _bound(query.ticks)), drive)
     violation = reach(parts.loop, query.case.limit).violation
     assert violation is not None
     trace, violated = as_table(parts, violation)

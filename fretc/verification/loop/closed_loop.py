@@ -23,7 +23,7 @@ from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.file import otherwise
-from fretc.verification.loop.model import Channel
+from fretc.verification.loop.drive import Channel
 from fretc.verification.loop.search import Case, Results, search
 from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
 from fretish.clock import in_words

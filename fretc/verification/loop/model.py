@@ -27,50 +27,9 @@ from typing import NamedTuple
 
 from compiler.formalization.letters import Valuation
 from compiler.logic.orders import Exclusion, only_possible
-from fretc.verification.interceptor.machine import Event, InterceptorMachine, State
+from fretc.verification.interceptor.machine import Event
+from fretc.verification.loop.drive import Drive, Wheels, Word
 from fretc.verification.monitor.machine import Stepped
-
-Queue = tuple[tuple[bool, int], ...]
-"""Stop messages in flight, the oldest first: the request, and cells since it was sent."""
-
-
-@dataclass(frozen=True, slots=True)
-class Channel:
-    """The assumptions about everything that is not a text. Times are cells."""
-
-    cells: int
-    """To a tick."""
-    latency: int = 0
-    lost: int = 0
-    """The most stop messages lost in a row."""
-    edge: bool = False
-    """Requests are sent on change, not at every tick."""
-    punctual: bool = False
-    """At least one command comes in every tick."""
-    braking: int = 0
-    scans: bool = False
-    """The interceptor takes scans."""
-    heartbeat: int = 0
-    """With `edge`, in ticks: a request is repeated after such a silence, or earlier; 0: never."""
-
-    def __post_init__(self) -> None:
-        assert self.cells >= 1
-        assert min(self.latency, self.lost, self.braking, self.heartbeat) >= 0
-        assert self.edge or not self.heartbeat
-
-    @property
-    def stands(self) -> int:
-        """Ends of cells after which wheels with zero stand for certain."""
-        return self.braking + 1
-
-
-class Wheels(NamedTuple):
-    """The loop from the channel to the wheels."""
-
-    interceptor: State
-    still: int
-    """Ends of cells since the wheels have zero, counted up to `Channel.stands`; -1: they move."""
-    queue: Queue
 
 
 class Node(NamedTuple):
@@ -102,10 +61,6 @@ class Tick(NamedTuple):
     violated: bool
 
 
-Word = tuple[Event | None, "Word | None"]
-"""The last event, and all events before it; None: a cell ends."""
-
-
 @dataclass(frozen=True, slots=True)
 class Environment:
     """The propositions, and the one of them that the wheels decide."""
@@ -128,30 +83,25 @@ class Loop:
         self,
         safety: Stepped,
         observer: Stepped | None,
-        interceptor: InterceptorMachine,
+        drive: Drive,
         environment: Environment,
-        channel: Channel,
     ) -> None:
         """Before the first tick: the robot stands, and no message has come or is in flight.
 
         Args:
             safety: the monitor that requests stops.
             observer: the monitor that detects violations; None: it has the text of `safety`.
-            interceptor: what the commands pass on their way to the wheels.
+            drive: the channel, the interceptor and the wheels; other loops may share it.
             environment: the propositions in the order of letters.
-            channel: the assumptions.
         """
         self._safety, self._observer = safety, observer
-        self.interceptor, self.channel = interceptor, channel
-        self.environment = environment
+        self.drive, self.environment = drive, environment
+        self.interceptor, self.channel = drive.interceptor, drive.channel
         self._place = environment.atoms.index(environment.stands)
         self._letters = {stands: environment.letters(stands) for stands in (False, True)}
-        self._inputs = [Event.MOVE, Event.STAND, *([Event.SCAN] if channel.scans else [])]
-        self._passages: dict[Wheels, dict[Wheels, Word]] = {}
         self._judgements: dict[tuple[Hashable, Hashable, Valuation], tuple[Hashable, ...]] = {}
         watching = observer.save() if observer else None
-        wheels = Wheels(interceptor.initial, channel.stands, ())
-        self.initial = Node(safety.save(), watching, wheels, 0, False, 0)
+        self.initial = Node(safety.save(), watching, drive.initial, 0, False, 0)
 
     # One tick -------------------------------------------------------------------------------
 
@@ -169,8 +119,9 @@ class Loop:
 
     def ends(self, begun: Node) -> Iterator[Node]:
         """The nodes at the end of a tick that has begun so."""
-        for wheels in self._passed(begun.wheels):
-            yield begun._replace(wheels=wheels)
+        safety, observer, before, losses, requested, silent = begun
+        for wheels in self.drive.passages(before):
+            yield Node(safety, observer, wheels, losses, requested, silent)
 
     def _sampled(self, still: int) -> list[tuple[bool, int]]:
         """Whether the robot stands, and the count of the wheels then."""
@@ -190,13 +141,13 @@ class Loop:
             yield tick, Node(safety, observer, wheels, losses, requested, silent)
 
     def _begun(self, wheels: Wheels, tick: Tick, still: int) -> Wheels:
-        sent = ((tick.requested, 0),) if tick.sent else ()
-        return Wheels(wheels.interceptor, still, wheels.queue + sent)
+        return self.drive.begun(wheels, still, ((tick.requested, 0),) if tick.sent else ())
 
     def word(self, before: Node, tick: Tick, after: Node) -> tuple[Event | None, ...]:
         """The events from one end of a tick to the next; None: a cell ends."""
         stands = self.channel.stands if tick.letter[self._place] else before.wheels.still
-        rest: Word | None = self._passed(self._begun(before.wheels, tick, stands))[after.wheels]
+        begun = self._begun(before.wheels, tick, stands)
+        rest: Word | None = self.drive.passages(begun)[after.wheels]
         events: list[Event | None] = []
         while rest is not None:
             events.append(rest[0])
@@ -240,74 +191,3 @@ class Loop:
         if self.channel.edge and not self.channel.heartbeat:
             return 0
         return node.silent + 1 if sent is None else 1
-
-    # From one tick to the next --------------------------------------------------------------
-
-    def _passed(self, wheels: Wheels) -> dict[Wheels, Word]:
-        """The states of the wheels at the next tick, each with a word of events on the way."""
-        passage = self._passages.get(wheels)
-        if passage is None:
-            passage = self._passages[wheels] = self._passing(wheels)
-        return passage
-
-    def _passing(self, wheels: Wheels) -> dict[Wheels, Word]:
-        layer: dict[tuple[Wheels, bool], Word] = {}
-        word: Word = (None, None)
-        if self.channel.latency == 0:
-            wheels, word = self._at_once(wheels, word)
-        layer[wheels, not self.channel.punctual] = word
-        for _ in range(self.channel.cells):
-            layer = self._closed(layer)
-            layer = {
-                (self._take(wheels, Event.RING), enough): (Event.RING, word)
-                for (wheels, enough), word in layer.items()
-            }
-            layer = self._older(self._closed(layer))
-        return {wheels: word for (wheels, enough), word in layer.items() if enough}
-
-    def _at_once(self, wheels: Wheels, word: Word) -> tuple[Wheels, Word]:
-        """Without latency a message arrives at the very instant of the tick."""
-        while wheels.queue:
-            event = _message(wheels.queue)
-            moved = wheels.still < 0
-            wheels, word = self._take(wheels, event), (event, word)
-            if moved and wheels.still == 0:
-                wheels = wheels._replace(still=1)
-        return wheels, word
-
-    def _closed(self, layer: dict[tuple[Wheels, bool], Word]) -> dict[tuple[Wheels, bool], Word]:
-        """Any number of messages, in any order but that of the queue."""
-        closure = dict(layer)
-        waiting = list(layer)
-        for key in waiting:
-            wheels, enough = key
-            queued = [_message(wheels.queue)] if wheels.queue else []
-            for event in (*queued, *self._inputs):
-                commanded = event in (Event.MOVE, Event.STAND)
-                after = self._take(wheels, event), enough or commanded
-                if after not in closure:
-                    closure[after] = (event, closure[key])
-                    waiting.append(after)
-        return closure
-
-    def _take(self, wheels: Wheels, event: Event) -> Wheels:
-        interceptor, output = self.interceptor.step(wheels.interceptor, event)
-        queue = wheels.queue[1:] if event in (Event.STOP, Event.RELEASE) else wheels.queue
-        if output is None:
-            return Wheels(interceptor, wheels.still, queue)
-        return Wheels(interceptor, -1 if output else max(wheels.still, 0), queue)
-
-    def _older(self, layer: dict[tuple[Wheels, bool], Word]) -> dict[tuple[Wheels, bool], Word]:
-        """A cell ends; states with a message in flight for too long drop out."""
-        result: dict[tuple[Wheels, bool], Word] = {}
-        for ((interceptor, still, queue), enough), word in layer.items():
-            if queue and queue[0][1] + 1 >= self.channel.latency:
-                continue
-            older = tuple((requested, age + 1) for requested, age in queue)
-            later = min(still + 1, self.channel.stands) if still >= 0 else still
-            result.setdefault((Wheels(interceptor, later, older), enough), (None, word))
-        return result
-
-
-def _message(queue: Queue) -> Event:
-    return Event.STOP if queue[0][0] else Event.RELEASE

@@ -15,7 +15,8 @@ from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted, 
 from compiler.logic.kripke import Explored, TooManyStatesError, check, explore
 from compiler.logic.orders import Exclusion
 from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
-from fretc.verification.loop.model import Channel, Environment, Loop, Node, Tick
+from fretc.verification.loop.drive import Channel, Drive
+from fretc.verification.loop.model import Environment, Loop, Node, Tick
 from fretc.verification.loop.replay import Watched, moments, replayed
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import strange
@@ -94,8 +95,17 @@ class Parts:
     observer: Watched
 
     @classmethod
-    def of(cls, case: Case) -> Parts:
-        """Raises NotALoopError or NotAnInterceptorError where a text is not what it should be."""
+    def of(cls, case: Case, drive: Drive | None = None) -> Parts:
+        """The parts of a case.
+
+        Args:
+            case: it.
+            drive: of another case with the same interceptor, settings and channel; None: a new one.
+
+        Raises:
+            NotALoopError, NotAnInterceptorError: a text is not what it should be.
+        """
+        assert drive is None or drive.channel == case.channel
         same = case.safety == case.observer
         observer, safety = (watched(t, case.requirement) for t in (case.observer, case.safety))
         watching, requesting = observer.fresh(), safety.fresh()
@@ -108,11 +118,20 @@ class Parts:
         loop = Loop(
             Stepped(requesting, safety.place, atoms),
             None if same else Stepped(watching, observer.place, atoms),
-            InterceptorMachine(case.interceptor, case.settings, case.limit),
+            drive or new_drive(case),
             Environment(atoms, case.stands, case.excluded),
-            case.channel,
         )
         return cls(loop, safety, observer)
+
+
+def new_drive(case: Case) -> Drive:
+    """The drive of a case.
+
+    Raises:
+        NotAnInterceptorError: the text of its interceptor is not what it should be.
+    """
+    machine = InterceptorMachine(case.interceptor, case.settings, case.limit)
+    return Drive(machine, case.channel)
 
 
 def watched(text: str, requirement: str) -> Watched:
@@ -237,15 +256,14 @@ class Runs:
     @classmethod
     def of(cls, loop: Loop, visible: frozenset[str], limit: int) -> Runs:
         """Raises TooManyStatesError where there are more states than the limit."""
+        ends: dict[tuple[frozenset[str], Node], tuple[Labelled, ...]] = {}
 
         def successors(state: Labelled) -> Iterator[Labelled]:
-            visited = set[tuple[frozenset[str], Node]]()
-            for tick, begun in loop.begins(state[1]):
-                true = _true(loop, tick) & visible
-                if (true, begun) not in visited:
-                    visited.add((true, begun))
-                    for after in loop.ends(begun):
-                        yield _label(loop, true, after), after
+            begun = ((_true(loop, tick) & visible, begun) for tick, begun in loop.begins(state[1]))
+            for key in dict.fromkeys(begun):
+                if key not in ends:
+                    ends[key] = tuple(_labelled(loop, *key))
+                yield from ends[key]
 
         start: Labelled = (frozenset(), loop.initial)
         return cls(loop, visible, explore(start, successors, lambda state: state[0], limit))
@@ -254,9 +272,8 @@ class Runs:
         """One of the ticks that lead from one state to the next."""
         return next(
             tick
-            for tick, successor in self.loop.steps(before)
-            if successor == after
-            and _label(self.loop, _true(self.loop, tick), successor) & self.visible == label
+            for tick, begun in self.loop.begins(before)
+            if (label, after) in _labelled(self.loop, _true(self.loop, tick) & self.visible, begun)
         )
 
 
@@ -279,10 +296,12 @@ def _true(loop: Loop, tick: Tick) -> frozenset[str]:
     return frozenset({*true, _TRIGGER.name} if tick.triggered else true)
 
 
-def _label(loop: Loop, true: frozenset[str], after: Node) -> frozenset[str]:
-    return (
-        true | {_HALT.name} if loop.interceptor.blocks_commands(after.wheels.interceptor) else true
-    )
+def _labelled(loop: Loop, true: frozenset[str], begun: Node) -> Iterator[Labelled]:
+    """The states at the end of a tick that has begun so, with those atoms."""
+    halted = true | {_HALT.name}
+    for after in loop.ends(begun):
+        blocks = loop.interceptor.blocks_commands(after.wheels.interceptor)
+        yield halted if blocks else true, after
 
 
 def is_safety(formula: f.Formula, positive: bool = True) -> bool:

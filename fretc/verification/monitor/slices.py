@@ -11,7 +11,7 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from compiler.formalization.letters import Valuation
-from compiler.targets.python.program import MARKS, SIGNALS
+from compiler.targets.python.program import MARKS
 from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import own
@@ -68,7 +68,7 @@ def slice_of(text: str, prefix: str, propositions: Mapping[str, str]) -> Slice:
     given: dict[str, frozenset[str]] = {}
     for name, sources in _given(advance.body, frozenset()):
         given[name] = given.get(name, frozenset()) | sources
-    reached = _closure(given, (f"{prefix}_{name}" for name in (*MARKS, *SIGNALS)))
+    reached = _closure(given, (f"{prefix}_{name}" for name in (*MARKS, "signals")))
     return Slice(
         frozenset(name for name, parameter in propositions.items() if parameter in reached),
         reached,

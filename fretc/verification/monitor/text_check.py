@@ -13,7 +13,12 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
-from compiler.targets.python.monitor import parameters_of, prefixes_of
+from compiler.targets.python.monitor import (
+    MOST_PARAMETERS,
+    is_inlined,
+    parameters_of,
+    prefixes_of,
+)
 from compiler.targets.python.program import MARKS, SIGNALS, locals_of, negation
 from fretc.verification.monitor.column_layout import check_columns
 from fretc.verification.monitor.front_layout import check_front, declared_variables
@@ -27,7 +32,7 @@ from fretc.verification.monitor.statements import (
     names_in,
     reads,
 )
-from fretc.verification.monitor.tick_layout import FIXED, Rail, check_advance
+from fretc.verification.monitor.tick_layout import FIXED, Rail, Tick, check_advance
 from fretish.reading.text_encoding import is_utf8
 from monitors.kernel.variables import Variable
 from monitors.source_text import Runtime, kernel, kernel_of_variables
@@ -89,12 +94,15 @@ def _check_module(module: ast.Module, *, by_variables: bool) -> None:
     main = "main_by_variables" if by_variables else "main"
     demand(is_one_of(run, f'if __name__ == "__main__":\n    sys.exit({main}(MONITOR))'), run)
     names, advance = _rail(rail)
-    inputs = _monitor(monitor, rail.name, names, by_variables=by_variables)
+    inputs, step, verdicts = _monitor(monitor, rail.name, names, by_variables=by_variables)
     reserved = {*FIXED, *_OF_RAILS, *locals_of(inputs.values())}
     demand(reserved.isdisjoint(names.cells), rail)
-    suffixes = tuple(f"_{name}" for name in (*MARKS, *SIGNALS))
+    suffixes = tuple(f"_{name}" for name in (*MARKS, "signals"))
     demand(not any(cell.startswith("_") or cell.endswith(suffixes) for cell in names.cells), rail)
-    check_advance(advance, names, inputs)
+    tick = check_advance(advance, names, inputs)
+    _check_verdicts(verdicts, names.prefixes, tick)
+    if not by_variables:
+        _check_step(step, tuple(inputs.values()), names.prefixes, tick)
 
 
 def _check_annotations(module: ast.Module, title: str) -> None:
@@ -112,7 +120,12 @@ _ANNOTATIONS = frozenset(
     (
         *("None", "bool", "int", "Truth", "Verdict", "tuple[Verdict, ...]", "type[Monitor]"),
         "type[VariableMonitor]",
-        *("tuple[Signals[bool], ...]", "tuple[Signals[int], ...]", "tuple[Marks, ...]"),
+        *(
+            "tuple[bool, ...]",
+            "tuple[Signals[bool], ...]",
+            "tuple[Signals[int], ...]",
+            "tuple[Marks, ...]",
+        ),
         *("ClassVar[tuple[str, ...]]", "ClassVar[Mapping[str, str]]"),
         *("Iterable[Sequence[Any]]", "Iterable[Row | Mapping[str, Truth]]"),
         *("Number", "str | None", "tuple[Truth, ...]", "ClassVar[Mapping[str, Variable]]"),
@@ -152,17 +165,15 @@ def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
 def _prefixes(signals: ast.stmt, marks: ast.stmt) -> tuple[str, ...]:
     """The prefixes of the requirements, from the signals of a rail."""
     prefixes = tuple(
-        node.attr.removesuffix("_trigger")
+        node.attr.removesuffix("_signals")
         for node in ast.walk(signals)
-        if isinstance(node, ast.Attribute) and node.attr.endswith("_trigger")
+        if isinstance(node, ast.Attribute) and node.attr.endswith("_signals")
     )
-    for function, name, kind, names in (
-        (signals, "signals", "Signals", SIGNALS),
-        (marks, "marks", "Marks", MARKS),
+    noted = (", ".join(f"self.{prefix}_{mark}" for mark in MARKS) for prefix in prefixes)
+    for function, name, values in (
+        (signals, "signals", ", ".join(f"Signals(*self.{prefix}_signals)" for prefix in prefixes)),
+        (marks, "marks", ", ".join(f"Marks({each})" for each in noted)),
     ):
-        values = ", ".join(
-            f"{kind}({', '.join(f'self.{prefix}_{name}' for name in names)})" for prefix in prefixes
-        )
         body = body_of(function, name, "self")
         demand(len(body) == 1 and is_one_of(body[0], f"return ({values},)"), function)
     return prefixes
@@ -177,7 +188,7 @@ def _windows(initial: ast.stmt) -> Iterator[str]:
 
 def _check_initial(node: ast.stmt, rail: Rail) -> None:
     fixed = {"doubt": "doubt", **dict.fromkeys(("tick", *rail.marks), "-1")}
-    fixed |= dict.fromkeys(rail.signals, "False")
+    signals = dict.fromkeys(rail.signals, f"(False,) * {len(SIGNALS)}")
     names = []
     for statement in body_of(node, "__init__", "self, doubt: bool = False"):
         match statement:
@@ -185,9 +196,12 @@ def _check_initial(node: ast.stmt, rail: Rail) -> None:
                 right = name in rail.cells and _is_initial(value)
                 demand(right or is_one_of(value, fixed.get(name, "nothing")), statement)
                 names.append(name)
+            case ast.AnnAssign(ast.Attribute(ast.Name("self"), name), _, ast.expr() as value):
+                demand(is_one_of(value, signals.get(name, "nothing")), statement)
+                names.append(name)
             case _:
                 demand(False, statement)
-    demand(sorted(names) == sorted((*fixed, *rail.cells)), node)
+    demand(sorted(names) == sorted((*fixed, *signals, *rail.cells)), node)
 
 
 def _is_initial(node: ast.expr) -> bool:
@@ -202,14 +216,16 @@ def _is_initial(node: ast.expr) -> bool:
 
 def _monitor(
     node: ast.ClassDef, rail: str, names: Rail, *, by_variables: bool
-) -> Mapping[str, str]:
-    """The propositions of a monitor with their parameters, after a check of all of it."""
+) -> tuple[Mapping[str, str], ast.stmt, ast.stmt]:
+    """The propositions of a monitor with their parameters, its `step` and its `verdicts`.
+
+    All of it is checked but `verdicts` and, where it is not stepped by variables, `step`.
+    """
     body = below_docstring(node)
-    variables = [body.pop(3), body.pop(7)] if by_variables and len(body) == 12 else []
-    demand(len(body) == 10 and by_variables is bool(variables), node)
-    program, requirements, propositions, literals, rail_binding, must, may, step, run, columns = (
-        body
-    )
+    variables = [body.pop(3), body.pop(7)] if by_variables and len(body) == 13 else []
+    demand(len(body) == 11 and by_variables is bool(variables), node)
+    program, requirements, propositions, literals, *rest = body
+    rail_binding, must, may, step, run, verdicts, columns = rest
     demand(isinstance(program, ast.Assign) and _is_text(program, "PROGRAM"), program)
     _check_requirements(requirements, names.prefixes)
     declared = declared_variables(variables[0]) if variables else {}
@@ -222,22 +238,15 @@ def _monitor(
             (variables[1], step, run), declared, tuple(inputs.values()), len(names.prefixes)
         )
     else:
-        _check_interface(step, run, tuple(inputs.values()), names.prefixes)
+        rows = "self, rows: Iterable[Row | Mapping[str, Truth]]"
+        ran = f"self.advance(rows)\nreturn {_all_verdicts(names.prefixes)}"
+        demand(reads(body_of(run, "run", rows), ran), run)
     check_columns(columns, literal_names)
-    return inputs
+    return inputs, step, verdicts
 
 
-def _check_interface(
-    step: ast.stmt, run: ast.stmt, inputs: Sequence[str], prefixes: Sequence[str]
-) -> None:
-    """Check how a monitor is stepped by propositions."""
-    verdicts = "[0]" if len(prefixes) == 1 else ""
-    rows = "self, rows: Iterable[Row | Mapping[str, Truth]]"
-    run_body = f"self.advance(rows)\nreturn self.verdicts(){verdicts}"
-    demand(reads(body_of(run, "run", rows), run_body), run)
-    parameters = ", ".join(f"{name}: Truth" for name in inputs)
-    stepped = body_of(step, "step", f"self, *, {parameters}" if inputs else "self")
-    _check_step(stepped, inputs, prefixes)
+def _all_verdicts(prefixes: Sequence[str]) -> str:
+    return "self.verdicts()" + "[0]" * (len(prefixes) == 1)
 
 
 def _check_requirements(node: ast.stmt, prefixes: Sequence[str]) -> None:
@@ -293,48 +302,53 @@ def _literals(node: ast.stmt, inputs: Mapping[str, str]) -> tuple[str, ...]:
             return ()
 
 
-def _check_step(body: Sequence[ast.stmt], inputs: Sequence[str], prefixes: Sequence[str]) -> None:
-    """Check that both rails take the row, and that the verdicts follow from their marks."""
-    fork = " or ".join(f"{name} is None" for name in inputs)
-    text = f"row = ({', '.join(inputs)}{',' * (len(inputs) == 1)})\n"
-    text += f"if {fork}:\n    self._fork()\n" if inputs else ""
-    text += "must, may = self.must, self.may\nmust.advance((row,))\n"
-    text += "if may is not must:\n    may.advance((row,))"
-    head = len(ast.parse(text).body)
-    demand(reads(body[:head], text), body[0])
-    if len(prefixes) == 1:
-        right = any(reads(body[head:], _alone(*form)) for form in _forms(prefixes[0]))
-        demand(right, body[-1])
-        return
-    match body[head:]:
-        case [ast.Return(ast.Tuple(verdicts))] if len(verdicts) == len(prefixes):
-            for prefix, verdict in zip(prefixes, verdicts, strict=True):
-                forms = (_in_tuple(*form) for form in _forms(prefix))
-                demand(is_one_of(verdict, *forms), verdict)
-        case _:
-            demand(False, body[-1])
+def _check_step(node: ast.stmt, inputs: Sequence[str], prefixes: Sequence[str], tick: Tick) -> None:
+    """Check that a step takes the row; where the tick is in it, that it is that of the rail."""
+    parameters = "self, *, " + ", ".join(f"{name}: Truth" for name in inputs)
+    row = f"({', '.join(inputs)}{',' * (len(inputs) == 1)})"
+    if len(inputs) > MOST_PARAMETERS:
+        parameters, row = "self, **propositions: Truth", "self._row(propositions)"
+    text = f"self._step({row})\nreturn {_all_verdicts(prefixes)}"
+    if is_inlined(len(prefixes), len(inputs)):
+        odd = "".join(f" or ({name} is not True and {name} is not False)" for name in inputs)
+        slow = text.replace("\n", "\n    ")
+        text = f"rail = self.must\nif rail is not self.may{odd}:\n    {slow}\n"
+        text += f"{tick.inlined}\n{_verdict(prefixes[0], tick)}"
+    body = body_of(node, "step", parameters if inputs else "self")
+    for statement, expected in zip(body, ast.parse(text).body, strict=False):
+        demand(is_one_of(statement, ast.unparse(expected)), statement)
+    demand(reads(body, text), node)
 
 
-def _forms(prefix: str) -> Iterator[tuple[str, str | None]]:
-    """When a requirement is violated, and when satisfied: the possible forms of both."""
-    for doom in (False, True):
-        violated, possible = (
-            f"{rail}.{prefix}_broken >= 0" + f" or {rail}.{prefix}_doomed >= 0" * doom
-            for rail in ("must", "may")
-        )
-        yield violated, None
-        yield violated, f"must.{prefix}_settled and not ({possible})"
-
-
-def _alone(violated: str, satisfied: str | None) -> str:
-    text = f"if {violated}:\n    return VIOLATED\n"
-    text += f"if {satisfied}:\n    return SATISFIED\n" if satisfied else ""
+def _verdict(prefix: str, tick: Tick) -> str:
+    """The end of a step that has the tick in it."""
+    text = f"if {_violated('rail', prefix, tick)}:\n    return VIOLATED\n"
+    if prefix in tick.settled:
+        text += f"if rail.{prefix}_signals[{_SETTLED}]:\n    return SATISFIED\n"
     return f"{text}return PENDING"
 
 
-def _in_tuple(violated: str, satisfied: str | None) -> str:
-    rest = f"SATISFIED if {satisfied} else PENDING" if satisfied else "PENDING"
-    return f"VIOLATED if {violated} else {rest}"
+def _check_verdicts(node: ast.stmt, prefixes: Sequence[str], tick: Tick) -> None:
+    """Check that verdicts follow from marks and signals of both rails."""
+    values = []
+    for prefix in prefixes:
+        rest = "PENDING"
+        if prefix in tick.settled:
+            settled = f"must.{prefix}_signals[{_SETTLED}]"
+            possible = _violated("may", prefix, tick)
+            rest = f"SATISFIED if {settled} and not ({possible}) else PENDING"
+        values.append(f"VIOLATED if {_violated('must', prefix, tick)} else {rest}")
+    rails = "must = self.must\n" + "may = self.may\n" * bool(tick.settled)
+    text = f"{rails}return ({', '.join(values)},)"
+    demand(reads(body_of(node, "verdicts", "self"), text), node)
+
+
+_SETTLED = SIGNALS.index("settled")
+
+
+def _violated(rail: str, prefix: str, tick: Tick) -> str:
+    doomed = f" or {rail}.{prefix}_doomed >= 0" if prefix in tick.doomed else ""
+    return f"{rail}.{prefix}_broken >= 0{doomed}"
 
 
 def _is_text(node: ast.Assign, name: str) -> bool:

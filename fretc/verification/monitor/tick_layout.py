@@ -7,13 +7,22 @@ propositions, what it carries from tick to tick and what its marks note have a f
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import copy
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from compiler.targets.python.program import MARKS, SIGNALS, negation
-from fretc.verification.monitor.statements import StrangeError, body_of, demand, is_one_of
+from fretc.verification.monitor.statements import (
+    StrangeError,
+    body_of,
+    demand,
+    is_one_of,
+    normal,
+)
 
-FIXED = frozenset({"self", "rows", "known", "doubt", "tick", "boolean"})
+FIXED = frozenset(
+    "self rail rows known doubt tick boolean VIOLATED SATISFIED PENDING".split(),
+)
 """What a tick calls its own, and what it calls."""
 
 
@@ -33,10 +42,22 @@ class Rail:
     @property
     def signals(self) -> tuple[str, ...]:
         """The names of all signals."""
-        return tuple(f"{prefix}_{signal}" for prefix in self.prefixes for signal in SIGNALS)
+        return tuple(f"{prefix}_signals" for prefix in self.prefixes)
 
 
-def check_advance(node: ast.stmt, rail: Rail, inputs: Mapping[str, str]) -> None:
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """What a rail does at one row."""
+
+    inlined: str
+    """The same as statements of a step: all is known, and `rail` is the only one."""
+    doomed: frozenset[str]
+    """The prefixes of requirements that can be doomed."""
+    settled: frozenset[str]
+    """The prefixes of requirements that can be settled."""
+
+
+def check_advance(node: ast.stmt, rail: Rail, inputs: Mapping[str, str]) -> Tick:
     """The function does at each row what it shows, and nothing else.
 
     Args:
@@ -60,7 +81,65 @@ def check_advance(node: ast.stmt, rail: Rail, inputs: Mapping[str, str]) -> None
     demand(is_one_of(loop.target, f"({row})" if inputs else "_"), loop)
     demand(bool(loop.body) and is_one_of(loop.body[0], "tick += 1"), loop)
     bound = _Tick(rail, frozenset(carried)).check(loop.body[1:], inputs)
-    _check_end(body[place + 1 :], rail, carried, bound)
+    signals = _check_end(body[place + 1 :], rail, carried, bound)
+    return Tick(
+        inlined(body),
+        frozenset(prefix for prefix in rail.prefixes if f"{prefix}_doomed" in carried),
+        frozenset(prefix for prefix in rail.prefixes if signals[prefix]["settled"] != "False"),
+    )
+
+
+def _is_odd(name: str) -> str:
+    """The test of whether a value is neither true nor false."""
+    return f"{name} is not True and {name} is not False"
+
+
+def _stored(carried: Iterable[str]) -> Iterator[str]:
+    return (f"self.{name} = {name}" for name in ("tick", *carried))
+
+
+def inlined(body: Sequence[ast.stmt]) -> str:
+    """The statements of a step that do what `advance` does at one row where all is known.
+
+    Marks stay on the rail: few ticks change one.
+
+    Args:
+        body: of `advance`, in the layout that `check_advance` demands.
+    """
+    place = next(i for i, part in enumerate(body) if isinstance(part, ast.For))
+    loop = body[place]
+    assert isinstance(loop, ast.For)
+    carried = [ast.unparse(each).partition(" = ")[0] for each in body[3:place]]
+    marks = [name for name in carried if name.endswith(tuple(f"_{mark}" for mark in MARKS))]
+    others = {f"self.{name} = {name}" for name in ("tick", *marks)}
+    statements = [each for each in body[3:place] if ast.unparse(each).split(" = ")[0] not in marks]
+    statements += [each for each in loop.body[1:] if not _is_of_odd_values(each)]
+    statements += [each for each in body[place + 2 : -1] if ast.unparse(each) not in others]
+    on_rail = _OnRail(marks)
+    lines = (ast.unparse(on_rail.visit(copy.deepcopy(each))) for each in statements)
+    return "\n".join(["rail.tick = tick = rail.tick + 1", *lines])
+
+
+def _is_of_odd_values(statement: ast.stmt) -> bool:
+    """It does something only where a value is neither true nor false."""
+    match statement:
+        case ast.If(ast.BoolOp(ast.And(), [ast.Compare(ast.Name(name)), _]) as test):
+            return ast.unparse(test) == _is_odd(name)
+        case _:
+            return False
+
+
+class _OnRail(ast.NodeTransformer):
+    """Puts `rail.` before names."""
+
+    def __init__(self, names: Collection[str]) -> None:
+        self._names = names
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        """`name` as `rail.name`, `self` as `rail`."""
+        if node.id in self._names:
+            return ast.Attribute(ast.Name("rail", ast.Load()), node.id, node.ctx)
+        return ast.Name("rail", node.ctx) if node.id == "self" else node
 
 
 def _carried(statements: Sequence[ast.stmt], rail: Rail) -> Iterator[str]:
@@ -76,34 +155,42 @@ def _carried(statements: Sequence[ast.stmt], rail: Rail) -> Iterator[str]:
 
 
 def _check_end(
-    statements: Sequence[ast.stmt], rail: Rail, carried: Iterable[str], bound: frozenset[str]
-) -> None:
-    """Check the end of `advance`: it stores cells and marks, and assigns signals."""
-    pending = {f"self.{name} = {name}" for name in ("tick", *carried)}
-    opened = {f"{p}_open = {p}_last if self.{p}_owed else -1": p for p in rail.prefixes}
-    assigned: set[str] = set()
+    statements: Sequence[ast.stmt], rail: Rail, carried: Sequence[str], bound: frozenset[str]
+) -> Mapping[str, Mapping[str, str]]:
+    """Check the end of `advance`: it stores cells, marks and signals; gives the texts of these."""
+    pending = {*_stored(carried)}
     if len(statements) < 2:
         raise StrangeError("it is not laid out as fretc writes it: `advance` does not end")
     first, *rest, last = statements
     demand(is_one_of(first, "if tick == self.tick:\n    return True"), first)
     demand(is_one_of(last, "return known"), last)
+    signals: dict[str, Mapping[str, str]] = {}
+    opened: dict[str, str] = {}
     for statement in rest:
         text = ast.unparse(statement)
         if text in pending:
             pending.remove(text)
-            continue
-        if text in opened:  # of the last tick, and not yet put back
-            demand(f"{opened[text]}_owed" in assigned, statement)
+        elif text in opened:  # of the last tick, and not yet put back
             demand(f"self.{opened[text]}_open = {opened[text]}_open" in pending, statement)
-            continue
-        match statement:
-            case ast.Assign([ast.Attribute(ast.Name("self"), name)], value):
-                demand(name in rail.signals and name not in assigned, statement)
+        else:
+            prefix, values = _signals(statement, rail)
+            demand(prefix not in signals, statement)
+            for value in values.values():
                 _check_value(value, bound - rail.windows, frozenset())
-                assigned.add(name)
-            case _:
-                demand(False, statement)
-    demand(not pending, first)
+            signals[prefix] = {name: ast.unparse(value) for name, value in values.items()}
+            owed = signals[prefix]["owed"]
+            opened[normal(f"{prefix}_open = {prefix}_last if {owed} else -1")] = prefix
+    demand(not pending and signals.keys() == {*rail.prefixes}, first)
+    return signals
+
+
+def _signals(statement: ast.stmt, rail: Rail) -> tuple[str, Mapping[str, ast.expr]]:
+    """The prefix of a requirement, and its signals at the last tick."""
+    match statement:
+        case ast.Assign([ast.Attribute(ast.Name("self"), name)], ast.Tuple(values)):
+            demand(name in rail.signals and len(values) == len(SIGNALS), statement)
+            return name.removesuffix("_signals"), dict(zip(SIGNALS, values, strict=True))
+    raise StrangeError(f"it is not laid out as fretc writes it: `{ast.unparse(statement)}`")
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +212,7 @@ class _Tick:
                 bound.add(negation(name))
             bound.add(name)
             block = f"""\
-if {name} is not True and {name} is not False:
+if {_is_odd(name)}:
     if {name} is None:
         known = False
         {both} = doubt

@@ -17,7 +17,7 @@ def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A copy of the program, of which the edition is told."""
     for room in ("fretish", "monitors", "compiler", "fretc"):
         shutil.copytree(ROOT / room, tmp_path / room)
-    monkeypatch.setattr(module, "files", lambda room: tmp_path / room)
+    monkeypatch.setattr(module, "_SITE", tmp_path)
     return tmp_path
 
 

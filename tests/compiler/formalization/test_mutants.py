@@ -26,7 +26,7 @@ from monitors.kernel import Monitor
 from monitors.kernel.stepping import Standing
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
-from tests.monitoring import over, rule
+from tests.monitoring import over, rule, with_step
 
 SENTENCES = (
     "the sw shall immediately satisfy q",
@@ -101,7 +101,10 @@ def mistakes(node: ast.AST, names: frozenset[str]) -> Iterator[tuple[str, ast.AS
 
 
 def of_text(text: str) -> Iterator[tuple[str, str]]:
-    """All mistakes in the logic of a text: in its cells, its tick, its signals and its columns."""
+    """All mistakes in the logic of a text: in its cells, its tick, its signals and its columns.
+
+    A mistake in the tick of the rail is in the step, too, else the text is refused for that.
+    """
     place = text.index("\n", text.index(MARK))
     head, module = text[: place + 1], ast.parse(text[place:])
     right = [ast.unparse(statement) for statement in module.body]
@@ -129,7 +132,7 @@ def of_text(text: str) -> Iterator[tuple[str, str]]:
                         _put(parent, field, at, node)
                         if changed != right[number]:
                             own = "\n".join([*right[:number], changed, *right[number + 1 :]])
-                            yield f"{function.name}: {kind}", f"{head}\n{own}\n"
+                            yield f"{function.name}: {kind}", with_step(f"{head}\n{own}\n")
 
 
 def _put(parent: ast.AST, field: str, place: int | None, node: ast.AST) -> None:

@@ -221,6 +221,20 @@ def test_a_constructor_folds_what_is_free(built: f.Formula, expected: f.Formula)
     assert built == expected
 
 
+@given(st.lists(logic_formulas, min_size=2, max_size=40))
+def test_of_many_operands_each_stays_once_and_in_its_order(operands: list[f.Formula]) -> None:
+    parts = [part for arg in operands for part in (arg.args if isinstance(arg, f.And) else (arg,))]
+    once = [part for number, part in enumerate(parts) if part not in parts[:number]]
+    expected = tuple(part for part in once if part != f.TRUE)
+    built = f.and_(*operands)
+    if f.FALSE in once:
+        assert built == f.FALSE
+    elif len(expected) > 1:
+        assert built == f.And(expected)
+    else:
+        assert built == (expected[0] if expected else f.TRUE)
+
+
 def test_without_an_end_last_is_false() -> None:
     finite = f.Release(f.LAST, f.Or((f.Not(a), f.Until(f.Not(f.LAST), b))))
     assert f.endless(finite) == f.Globally(f.Or((f.Not(a), f.Eventually(b, f.EVER))), f.EVER)

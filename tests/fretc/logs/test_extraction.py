@@ -14,8 +14,9 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.messages.decoding import Decode, decoder, shape
 from fretc.logs.messages.layouts import Shape
 from fretc.logs.messages.probes import trusted
+from fretc.logs.messages.vectorized import samples
 from fretc.logs.signals.samples import Recording
-from fretish.bindings.declarations import Declarations
+from fretish.bindings.declarations import Declarations, Signal
 from tests.fretc.logs.logs import (
     MS,
     SCAN,
@@ -135,12 +136,12 @@ def test_many_messages_of_one_layout_are_read_without_being_decoded(ways: Ways, 
 def test_a_few_bytes_are_left_to_the_decoder(ways: Ways, log: Log) -> None:
     sent = [number(float(i), i * S) for i in range(70)]
     ways.same(log(sent[:30]), X)
-    assert ways.decoded == 1
+    assert ways.decoded == 3
     fretc.logs.extraction._FEW = 512  # put back with the patches
     ways.same(log(sent[:30]), X)
     assert ways.decoded == 30
     ways.same(log(sent), X)
-    assert ways.decoded == 1
+    assert ways.decoded == 3
 
 
 def test_a_batch_ends_wherever_it_may(
@@ -416,6 +417,29 @@ def test_a_layout_that_reads_otherwise_than_the_decoder_is_given_up(
     monkeypatch.setattr(fretc.logs.extraction, "trusted", lambda shape, decode: True)
     path = log(sent[1:], "float64 a\nfloat64 b")
     assert values(ways.same(path, signals({"a": "/x.a"})), "a") == numbers[1:]
+
+
+@pytest.mark.parametrize(("count", "wrong"), [(9, 0), (9, 4), (9, 8), (200, 0), (200, 99)])
+def test_the_decoder_is_held_against_what_is_read_of_many_messages_at_once(
+    ways: Ways, log: Log, monkeypatch: pytest.MonkeyPatch, count: int, wrong: int
+) -> None:
+    def mistaken(signal: Signal, numbers: Any, beside: Any) -> Any:
+        found = samples(signal, numbers, beside).copy()
+        found[wrong] += len(found) == count  # right of a single message
+        return found
+
+    monkeypatch.setattr(fretc.logs.extraction, "samples", mistaken)
+    sent = [number(i / 7, i * MS) for i in range(count)]
+    assert values(ways.same(log(sent), X), "x") == [i / 7 for i in range(count)]
+
+
+def test_of_few_large_messages_one_is_decoded_and_of_small_ones_three(ways: Ways, log: Log) -> None:
+    for beams, decoded in ((100, 3), (1000, 1)):
+        sent = [scan([1.0 + i / 4] * beams, i * S) for i in range(20)]
+        assert values(ways.same(log(sent), declare(SCAN)), "nearest") == [
+            1.0 + i / 4 for i in range(20)
+        ]
+        assert ways.decoded == decoded
 
 
 # Logs that others recorded

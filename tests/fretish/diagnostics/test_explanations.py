@@ -10,7 +10,7 @@ from compiler.targets.python import monitor
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.explanations import Explanation, as_record, explanations, text
+from fretish.diagnostics.explanations import Explanation, as_record, explanation, explanations, text
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests.each import each
@@ -64,7 +64,8 @@ def test_the_toml_that_an_example_is_told_to_write_parses(number: str) -> None:
 
 @each("code", Code)
 def test_an_explanation_is_short_and_made_of_sentences(code: Code) -> None:
-    explained = explanations()[code.number]
+    explained = explanation(code)
+    assert explained == explanations()[code.number]
     for part in (explained.cause, explained.mend):
         assert part == " ".join(part.split())
         assert part[-1] in ".?"

@@ -22,12 +22,10 @@ import itertools
 import json
 import os
 import re
-from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache, cached_property, total_ordering
-from itertools import chain
 from operator import itemgetter
 from typing import (
     Any,
@@ -179,38 +177,113 @@ def code(value: Truth) -> int:
     return int(boolean(value))
 
 
-def columns_of(rows: Iterable[Sequence[Truth]], count: int) -> tuple[int, tuple[Column, ...]]:
-    """The length and the columns of a table with `count` truth values in each row, one row a tick.
+class Tape:
+    """A column that grows: bits in whole bytes, and the codes of up to seven ticks after them."""
+
+    __slots__ = ("rest", "true", "unknown")
+
+    def __init__(self) -> None:
+        self.true, self.unknown = bytearray(), bytearray()
+        self.rest = b""
+
+    def append(self, codes: bytes) -> None:
+        """Go on with one code a tick."""
+        codes = self.rest + codes
+        size = len(codes) // 8
+        true, unknown = column(codes[: 8 * size])
+        if unknown:  # as long as all is known, that takes no memory
+            self.unknown += bytes(len(self.true) - len(self.unknown))
+            self.unknown += unknown.to_bytes(size, "little")
+        self.true += true.to_bytes(size, "little")
+        self.rest = codes[8 * size :]
+
+    def column(self) -> Column:
+        """All of it."""
+        ticks, last = 8 * len(self.true), column(self.rest)
+        return Column(
+            int.from_bytes(self.true, "little") | last.true << ticks,
+            int.from_bytes(self.unknown, "little") | last.unknown << ticks,
+        )
+
+
+class Piece(NamedTuple):
+    """Some ticks of a trace."""
+
+    ticks: int
+    codes: Sequence[bytes]
+    """Of each proposition, one a tick."""
+
+
+def pieces_of(rows: Iterable[Sequence[Truth]]) -> Iterator[Piece]:
+    """Truth values, one row a tick, in pieces.
 
     Raises:
         TypeError: a value is not True, False or None.
-        ValueError: a row has more or fewer values.
+        ValueError: a row has more or fewer values than others.
     """
-    codes = [bytearray() for _ in range(count)]
+    waiting = iter(rows)
+    while some := list(itertools.islice(waiting, _AT_ONCE)):
+        columns = zip(*some, strict=True)
+        yield Piece(len(some), [bytes(map(code, values)) for values in columns])
+
+
+_AT_ONCE = 512
+"""Rows of a piece: there may be thousands of values in each."""
+
+
+def columns_of(pieces: Iterable[Piece], count: int) -> tuple[int, tuple[Column, ...]]:
+    """The length and the columns of a trace of `count` propositions.
+
+    Raises:
+        ValueError: a piece has more or fewer of them.
+    """
+    tapes = [Tape() for _ in range(count)]
     ticks = 0
-    for row in rows:
-        ticks += 1
-        for values, value in zip(codes, row, strict=True):
-            values.append(code(value))
-    return ticks, tuple(map(column, codes))
+    for piece in pieces:
+        ticks += piece.ticks
+        for tape, codes in zip(tapes, piece.codes, strict=True):
+            tape.append(codes)
+    return ticks, tuple(tape.column() for tape in tapes)
 
 
 def truths(column: Column, ticks: int) -> list[Truth]:
     """The truth value at each tick."""
-    true, unknown = set(ticks_of(column.true)), set(ticks_of(column.unknown))
-    return [None if tick in unknown else tick in true for tick in range(ticks)]
+    true, unknown = (f"{bits:0{ticks}b}"[::-1][:ticks] for bits in column)
+    if not column.unknown:
+        return [bit == "1" for bit in true]
+    return [None if doubt == "1" else bit == "1" for bit, doubt in zip(true, unknown, strict=True)]
+
+
+def rows_of(columns: Sequence[Column], ticks: int) -> Iterator[tuple[Truth, ...]]:
+    """The truth value of each column, tick by tick."""
+    if not columns:
+        yield from itertools.repeat((), ticks)
+        return
+    size = (ticks + 7) // 8
+    data = [[bits.to_bytes(size, "little") for bits in column] for column in columns]
+    for first in range(0, size, _STRETCH):
+        parts = [
+            Column(*(int.from_bytes(bits[first : first + _STRETCH], "little") for bits in column))
+            for column in data
+        ]
+        few = min(8 * _STRETCH, ticks - 8 * first)
+        yield from zip(*(truths(part, few) for part in parts), strict=True)
+
+
+_STRETCH = 64
+"""Bytes of a column whose truth values are in memory at once."""
 
 
 def ticks_of(column: int) -> Iterator[int]:
     """The ticks at which it is true, in order; the cost is that of its memory and of these."""
-    return chain.from_iterable(_pieces_of(column))
+    return itertools.chain.from_iterable(_tick_lists(column))
 
 
 _PIECE_BYTES = 512
 _BITS = tuple(tuple(bit for bit in range(8) if byte >> bit & 1) for byte in range(256))
 
 
-def _pieces_of(column: int) -> Iterator[list[int]]:
+def _tick_lists(column: int) -> Iterator[list[int]]:
     """The same in pieces: a list of ticks takes less time than a generator that yields each."""
     data = column.to_bytes((column.bit_length() + 7) // 8, "little")
     for start in range(0, len(data), _PIECE_BYTES):
@@ -450,38 +523,140 @@ class Rail(Protocol):
         """What is remembered, for each requirement."""
 
 
-class Window:
-    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window."""
+class _Run:
+    """Ticks without a gap at which `right` of a window held, and the run after it."""
 
-    __slots__ = ("hi", "lo", "now", "runs")
+    __slots__ = ("end", "next", "start")
+
+    def __init__(self, start: int, end: int) -> None:
+        self.start, self.end = start, end
+        self.next: _Run | None = None
+
+
+class Window:
+    """`left S[lo,hi] right` in ticks; memory: the runs of `right` inside of the window.
+
+    Copies share the runs that have ended, so a copy costs the same for any number of them: they are
+    linked from the oldest to the youngest, a window goes no further than its own last one, and what
+    a fork adds branches off. The run that may still grow is `start` and `end`.
+    """
+
+    __slots__ = ("branch", "end", "first", "hi", "last", "lo", "now", "start", "turn")
 
     def __init__(self, lo: int, hi: int) -> None:
         self.lo, self.hi = lo, hi
         self.now = -1
-        self.runs: deque[list[int]] = deque()
+        self._clear()
+
+    def _clear(self) -> None:
+        """No run."""
+        self.start = self.end = _NONE
+        self.first: _Run | None = None
+        self.last: _Run | None = None
+        self.turn: _Run | None = None
+        self.branch: _Run | None = None
 
     def step(self, left: bool, right: bool) -> bool:
         """Whether right held `lo..hi` ticks ago, and left ever since."""
         self.now += 1
+        now = self.now
         if not left:
-            self.runs.clear()
+            self._clear()
         if right:
-            if self.runs and self.runs[-1][1] == self.now - 1:
-                self.runs[-1][1] = self.now
-            else:
-                self.runs.append([self.now, self.now])
-        while self.runs and self.runs[0][1] < self.now - self.hi:
-            self.runs.popleft()
-        return bool(self.runs) and self.runs[0][0] <= self.now - self.lo
+            if self.end != now - 1:
+                if self.end != _NONE:
+                    self._add(_Run(self.start, self.end))
+                self.start = now
+            self.end = now
+        while self.first is not None and self.first.end < now - self.hi:
+            self._drop(self.first)
+        if self.first is not None:
+            return self.first.start <= now - self.lo
+        if self.end < now - self.hi:
+            self.start = self.end = _NONE
+        return 0 <= self.start <= now - self.lo
+
+    def _add(self, run: _Run) -> None:
+        """The run has ended."""
+        if self.last is None:
+            self.first = run
+        elif self.last is self.turn:
+            self.branch = run
+        else:
+            self.last.next = run
+        self.last = run
+
+    def _after(self, run: _Run) -> _Run | None:
+        if run is self.last:
+            return None
+        return self.branch if run is self.turn else run.next
+
+    def _drop(self, oldest: _Run) -> None:
+        self.first = self._after(oldest)
+        if self.first is None:
+            self.last = None
+        if oldest is self.turn:  # it leads to all runs of the other window
+            self.turn = self.branch = None
+
+    def copy(self) -> "Window":
+        """As it is now; only one of both can go on."""
+        other = Window(self.lo, self.hi)
+        for name in self.__slots__:
+            setattr(other, name, getattr(self, name))
+        return other
+
+    def fork(self) -> "Window":
+        """As it is now; both can go on. A fork has none of its own."""
+        assert self.turn is None
+        other = self.copy()
+        other.turn = self.last
+        return other
+
+    def _runs(self) -> Iterator[tuple[int, int]]:
+        """The oldest first."""
+        run = self.first
+        while run is not None:
+            yield run.start, run.end
+            run = self._after(run)
+        if self.end != _NONE:
+            yield self.start, self.end
 
     def state(self) -> tuple[tuple[int, int], ...]:
         """The runs, each as ages (oldest, youngest); ages above `hi` are all one."""
-        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self.runs)
+        return tuple((min(self.now - a, self.hi), self.now - b) for a, b in self._runs())
+
+    def is_like(self, other: "Window") -> bool:
+        """Both have one state; their clocks agree. What a fork shares is not looked at again."""
+        mine, theirs, shared = self.first, other.first, other.turn
+        youngest = (self.start, self.end), (other.start, other.end)
+        if mine is None or theirs is None:
+            return mine is theirs and self._same(*youngest)
+        if mine is theirs and shared is not None:
+            mine, theirs = shared, shared
+        elif not self._same((mine.start, mine.end), (theirs.start, theirs.end)):
+            return False
+        mine, theirs = self._after(mine), other._after(theirs)
+        while mine and theirs and (mine.start, mine.end) == (theirs.start, theirs.end):
+            mine, theirs = self._after(mine), other._after(theirs)
+        return mine is theirs is None and youngest[0] == youngest[1]
+
+    def _same(self, one: tuple[int, int], other: tuple[int, int]) -> bool:
+        """Both are one run, as far as the window reaches."""
+        reach = self.now - self.hi
+        return one[1] == other[1] and max(one[0], reach) == max(other[0], reach)
 
     def restore(self, state: Sequence[Sequence[int]]) -> None:
         """Go back to a state."""
+        self._clear()
         self.now = self.hi
-        self.runs = deque([self.now - a, self.now - b] for a, b in state)
+        for oldest, youngest in state:
+            if self.end != _NONE:
+                self._add(_Run(self.start, self.end))
+            self.start, self.end = self.now - oldest, self.now - youngest
+
+
+_NONE = -2
+"""No tick, and none before one."""
 
 
 class Standing(NamedTuple):
@@ -499,12 +674,13 @@ class Standing(NamedTuple):
     """The last tick at which that can be decided; None where there is no deadline."""
 
 
-_PIECE, _FEW = 4096, 64
-"""Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy."""
+_PIECE, _FEW, _SOON = 4096, 64, 64
+"""Rows that are stepped at once; rows in which it is cheaper to look for unknowns than to copy;
+ticks after which two rails are compared first."""
 
 
 class Monitor:
-    """Steps propositions and gives verdicts; a generated class adds `step` and `run`."""
+    """Steps propositions; a generated class adds `step`, `run` and `verdicts`."""
 
     PROGRAM: ClassVar[str]
     """SHA-256 of the generated code: a state fits no other."""
@@ -514,11 +690,14 @@ class Monitor:
     LITERALS: ClassVar[tuple[tuple[str, str, bool], ...]]
     """Each parameter of `columns`, with its proposition, and False where it is negated."""
     RAIL: ClassVar[type[Rail]]
+    verdicts: Callable[..., tuple[Verdict, ...]]
+    """Of each requirement, whatever follows: satisfied or violated; or pending."""
     columns: Callable[..., tuple[Signals[int], ...]]
     """The signals of whole traces, for each requirement: of `every`, the column that is true at
     every tick, and a keyword for each of `LITERALS`."""
 
     def __init__(self) -> None:
+        self._values = _picked(tuple(self.PROPOSITIONS.values()))
         self.reset()
 
     def reset(self) -> None:
@@ -535,7 +714,7 @@ class Monitor:
         content = {
             "program": self.PROGRAM,
             "must": _saved(self.must),
-            "may": _saved(self.may) if self.may is not self.must else None,
+            "may": None if self._is_one() else _saved(self.may),
         }
         return {**content, "sha256": _digest(content)}
 
@@ -555,7 +734,9 @@ class Monitor:
         _restored(must, content["must"])
         if content["may"] is not None:
             _restored(may, content["may"])
-        self.must, self.may = must, must if content["may"] is None else may
+        self.must = self.may = must
+        if content["may"] is not None:
+            self._part(may)
 
     def standings(self) -> tuple[Standing, ...]:
         """The standing of each requirement."""
@@ -574,7 +755,44 @@ class Monitor:
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
-            self.may = _copied(self.must, doubt=True)
+            self._part(_forked(self.must))
+
+    def _step(self, row: Row) -> None:
+        """Step both rails, or one as long as all is known."""
+        if self.may is self.must and None in row:
+            self._fork()
+        must, may = self.must, self.may
+        must.advance((row,))
+        if may is not must:
+            may.advance((row,))
+            self._meet()
+
+    def _part(self, may: Rail) -> None:
+        self.may = may
+        self._apart = self.tick
+        self._due = self.tick + _SOON
+
+    def _meet(self) -> None:
+        """One rail again if both remember the same; looked at ever less often: it may take long."""
+        tick = self.tick
+        if tick < self._due:
+            return
+        if self._is_one():
+            self.may = self.must
+        self._due = tick + max(_SOON, tick - self._apart)
+
+    def _is_one(self) -> bool:
+        """Both rails remember the same; windows, which may be long, are looked at last."""
+        if self.may is self.must:
+            return True
+        windows = []
+        for name in self.RAIL.__slots__:
+            must, may = getattr(self.must, name), getattr(self.may, name)
+            if isinstance(must, Window):
+                windows.append((must, may))
+            elif must != may and name != "doubt":
+                return False
+        return all(must.is_like(may) for must, may in windows)
 
     def advance(self, rows: Iterable[Row | Mapping[str, Truth]]) -> None:
         """Step every row, in pieces of some thousand: one rail after the other.
@@ -601,42 +819,90 @@ class Monitor:
         if self.may is not self.must:
             self.must.advance(block)
             self.may.advance(block)
+            self._meet()
         elif len(block) < _FEW:
             if any(None in row for row in block):
                 self._fork()
                 self.may.advance(block)
             self.must.advance(block)
         else:
-            before = _copied(self.must, doubt=True)
+            before = _forked(self.must)
             if not self.must.advance(block):
-                self.may = before
+                self._part(before)
                 before.advance(block)
 
     def _copies(self) -> tuple[Rail, Rail]:
         """Both rails as they are now."""
-        must = _copied(self.must, doubt=False)
-        return must, must if self.may is self.must else _copied(self.may, doubt=True)
+        must = _copied(self.must)
+        return must, must if self.may is self.must else _copied(self.may)
 
     def _in_order(self, rows: list[Any]) -> list[Row]:
         """Rows by name as rows in the order of `PROPOSITIONS`."""
         if not isinstance(rows[0], Mapping):
             return rows
-        names = tuple(self.PROPOSITIONS)
-        if len(names) < 2:
-            return [tuple(row[name] for name in names) for row in rows]
-        return list(map(itemgetter(*names), rows))
+        return list(map(_picked(tuple(self.PROPOSITIONS)), rows))
 
-    def verdicts(self) -> tuple[Verdict, ...]:
-        """Of each requirement, whatever follows: satisfied or violated; or pending."""
-        readings = zip(self.must.marks(), self.may.marks(), self.must.signals(), strict=True)
-        return tuple(
-            VIOLATED
-            if must.violated >= 0
-            else SATISFIED
-            if certain.settled and may.violated < 0
-            else PENDING
-            for must, may, certain in readings
-        )
+    def rows_of(self, names: Sequence[str]) -> Callable[[Iterable[Row]], Iterable[Row]]:
+        """What makes rows for `run` of rows whose values are in the order of `names`.
+
+        Raises:
+            ValueError: the names are not those of `PROPOSITIONS`, each once.
+        """
+        return rows_in_order(tuple(names), tuple(self.PROPOSITIONS))
+
+    def _row(self, arguments: Mapping[str, Truth]) -> Row:
+        """The arguments of a step that has too many parameters for Python to look for each.
+
+        Raises:
+            TypeError: as Python does, where one is missing or is no parameter.
+        """
+        parameters = tuple(self.PROPOSITIONS.values())
+        if len(arguments) == len(parameters):
+            try:
+                return self._values(arguments)
+            except KeyError:
+                pass
+        where = f"{type(self).__name__}.step()"
+        for name in arguments:
+            if name not in parameters:
+                raise TypeError(f"{where} got an unexpected keyword argument {name!r}")
+        missing = ", ".join(repr(name) for name in parameters if name not in arguments)
+        raise TypeError(f"{where} missing required keyword-only arguments: {missing}")
+
+
+def rows_in_order(
+    names: tuple[str, ...], order: tuple[str, ...]
+) -> Callable[[Iterable[Sequence[Any]]], Iterable[Sequence[Any]]]:
+    """What puts rows of values in the order of `names` into another order.
+
+    Raises:
+        ValueError: the names are not the same, each once.
+    """
+    places = {name: place for place, name in enumerate(names)}
+    missing, unknown = {*order} - places.keys(), places.keys() - {*order}
+    for wrong, why in ((missing, "is missing"), (unknown, "is no name of this monitor")):
+        if wrong:
+            raise ValueError(f"`{min(wrong)}` {why}")
+    if len(places) < len(names):
+        raise ValueError("a name comes more than once")
+    if names == order:
+        return lambda rows: rows
+    pick = _picked([places[name] for name in order])
+
+    def in_order(rows: Iterable[Sequence[Any]]) -> Iterator[Sequence[Any]]:
+        for row in rows:
+            if len(row) != len(names):
+                raise ValueError(f"a row has {len(row)} values for {len(names)} names")
+            yield pick(row)
+
+    return in_order
+
+
+def _picked(keys: Sequence[Any]) -> Callable[[Any], tuple[Any, ...]]:
+    """What gives the values under all keys."""
+    if len(keys) < 2:
+        return lambda values: tuple(values[key] for key in keys)
+    return itemgetter(*keys)
 
 
 def _standing(
@@ -681,15 +947,22 @@ def literals_of(
     return found
 
 
-def _copied(rail: Rail, *, doubt: bool) -> Rail:
-    """A rail in the same state, on which an unknown counts as `doubt`."""
+def _copied(rail: Rail) -> Rail:
+    """A rail in the same state; only one of both can go on."""
+    return _with_windows(rail, rail.doubt, Window.copy)
+
+
+def _forked(rail: Rail) -> Rail:
+    """A rail in the same state, on which an unknown counts as true; both can go on."""
+    return _with_windows(rail, True, Window.fork)
+
+
+def _with_windows(rail: Rail, doubt: bool, made: Callable[[Window], Window]) -> Rail:
     copy = type(rail)(doubt=doubt)
     for name in rail.__slots__:
-        there, value = getattr(copy, name), getattr(rail, name)
-        if isinstance(there, Window):
-            there.restore(value.state())
-        elif name != "doubt":
-            setattr(copy, name, value)
+        if name != "doubt":
+            value = getattr(rail, name)
+            setattr(copy, name, made(value) if isinstance(value, Window) else value)
     return copy
 
 
@@ -717,7 +990,7 @@ def _restored(rail: Rail, state: Mapping[str, Any]) -> None:
         if isinstance(there, Window):
             there.restore(value)
         else:
-            setattr(rail, name, value)
+            setattr(rail, name, tuple(value) if isinstance(value, list) else value)
 
 
 @dataclass(frozen=True)
@@ -797,25 +1070,50 @@ def stepped(
     Args, raises: as for `evaluate`.
     """
     monitor.reset()
-    table = [truths(columns[name], ticks) for name in monitor.PROPOSITIONS]
-    must: list[tuple[Signals[bool], ...]] = []
-    may: list[tuple[Signals[bool], ...]] = []
-    for tick in range(ticks):
-        monitor.advance([tuple(values[tick] for values in table)])
-        must.append(monitor.must.signals())
-        may.append(monitor.may.signals())
+    rows = rows_of([columns[name] for name in monitor.PROPOSITIONS], ticks)
+    must, may = _Record(monitor), _Record(monitor)
+    while some := list(itertools.islice(rows, _TICKS)):
+        if any(None in row for row in some):
+            monitor._fork()
+        certain = _signal_codes(monitor.must, some)
+        must.append(certain)
+        may.append(certain if monitor.may is monitor.must else _signal_codes(monitor.may, some))
+    rails = zip(must.columns(), may.columns(), strict=True)
     return tuple(
-        _outcome(requirement, ticks, _gathered(must, i), _gathered(may, i), end)
-        for i, requirement in enumerate(monitor.REQUIREMENTS)
+        _outcome(requirement, ticks, certain, possible, end)
+        for requirement, (certain, possible) in zip(monitor.REQUIREMENTS, rails, strict=True)
     )
 
 
-def _gathered(steps: Sequence[tuple[Signals[bool], ...]], place: int) -> Signals[int]:
-    """The signals of one requirement at each tick, as columns."""
-    if not steps:
-        return Signals(*(0 for _ in Signals._fields))
-    values = zip(*(step[place] for step in steps), strict=True)
-    return Signals(*(column(bytes(value)).true for value in values))
+_TICKS = 512
+"""Ticks over which the signals of one rail are gathered, and then those of the other."""
+
+
+def _signal_codes(rail: Rail, rows: Iterable[Row]) -> bytes:
+    """The codes of all signals after each row, one row after the other."""
+    values: list[bool] = []
+    for row in rows:
+        rail.advance((row,))
+        for signals in rail.signals():
+            values += signals
+    return bytes(values)
+
+
+class _Record:
+    """The signals of a rail, tick by tick, as columns that grow."""
+
+    def __init__(self, monitor: Monitor) -> None:
+        self._tapes = [Tape() for _ in monitor.REQUIREMENTS for _ in Signals._fields]
+
+    def append(self, codes: bytes) -> None:
+        """Go on with all signals of some ticks, one tick after the other."""
+        for place, tape in enumerate(self._tapes):
+            tape.append(codes[place :: len(self._tapes)])
+
+    def columns(self) -> Iterator[Signals[int]]:
+        """Those of each requirement."""
+        columns = (tape.column().true for tape in self._tapes)
+        return map(Signals, *[columns] * len(Signals._fields))
 
 
 def _outcome(
@@ -935,10 +1233,8 @@ def visible(text: str) -> str:
 _WORDS: dict[str, Truth] = {"": None, "0": False, "1": True, "false": False, "true": True}
 
 
-def read_rows(
-    text: Iterable[str], names: Sequence[str], source: str
-) -> Iterator[tuple[Truth, ...]]:
-    """The rows of a table: CSV with a header, or JSON lines where the first line is an object.
+def read_pieces(text: TextIO, names: Sequence[str], source: str) -> Iterator[Piece]:
+    """A table, in pieces: CSV with a header, or JSON lines where the first line is an object.
 
     Values are 0, 1, true, false, or nothing (null in JSON): unknown. A column `tick` may count
     the rows; it must grow by one from row to row. Other columns are passed over.
@@ -946,8 +1242,12 @@ def read_rows(
     Raises:
         InputError: a column is missing, a value is no truth value, ticks jump.
     """
-    for place, row in placed_rows(text, names, source):
-        yield tuple(_truth(row[name], name, place) for name in names)
+    lines, number, is_json = _beginning(text, source)
+    if is_json:
+        rows = _in_order(_json_rows(lines, names, source, number), names)
+        return pieces_of(_truths(rows, names))
+    header, line = _header(lines, names, source, number)
+    return _csv_pieces(text, header, names, source, line)
 
 
 def placed_rows(
@@ -958,17 +1258,30 @@ def placed_rows(
     Raises:
         InputError: a column is missing, ticks jump.
     """
+    lines, number, is_json = _beginning(text, source)
+    if is_json:
+        return _in_order(_json_rows(lines, names, source, number), names)
+    header, line = _header(lines, names, source, number)
+    return _in_order(_csv_rows(lines, header, source, line), names)
+
+
+def _beginning(text: Iterable[str], source: str) -> tuple[Iterator[str], int, bool]:
+    """The lines from the first one that is not empty, its number, and whether it is JSON."""
     lines = iter(text)
     lines = itertools.chain([next(lines, "").removeprefix("\ufeff")], lines)
     number, first = next(((i, line) for i, line in enumerate(lines, 1) if line.strip()), (0, ""))
     if not number:
         raise InputError(f"{source}: the trace is empty")
-    lines = itertools.chain([first], lines)
     is_json = re.match(r'\s*\{\s*["}]', first) is not None
-    read = _json_rows if is_json else _csv_rows
-    tick: int | None = None
+    return itertools.chain([first], lines), number, is_json
+
+
+def _in_order(
+    rows: Iterable[tuple[str, dict[str, Any]]], names: Sequence[str], tick: int | None = None
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The rows, where a column `tick` grows by one, from the tick before the first row on."""
     has_tick: bool | None = None
-    for place, row in read(lines, names, source, number):
+    for place, row in rows:
         if "tick" not in names:
             if has_tick not in (None, "tick" in row):
                 raise InputError(f"{place}: some rows have a `tick` and some have none")
@@ -978,15 +1291,34 @@ def placed_rows(
         yield place, row
 
 
-def _csv_rows(
+def _truths(
+    rows: Iterable[tuple[str, dict[str, Any]]], names: Sequence[str]
+) -> Iterator[tuple[Truth, ...]]:
+    for place, row in rows:
+        yield tuple([_truth(row[name], name, place) for name in names])
+
+
+def _header(
     lines: Iterable[str], names: Sequence[str], source: str, number: int
-) -> Iterator[tuple[str, dict[str, Any]]]:
+) -> tuple[list[str], int]:
+    """The columns of CSV that begins in that line, and the line in which its header ends."""
     table = csv.reader(lines, strict=True)
     try:
         header = [name.strip() for name in next(table)]
-        _check_columns(header, names, f"{source}:{number}")
+    except csv.Error as error:
+        raise InputError(f"{source}:{number - 1 + table.line_num}: {error}") from None
+    _check_columns(header, names, f"{source}:{number}")
+    return header, number - 1 + table.line_num
+
+
+def _csv_rows(
+    lines: Iterable[str], header: Sequence[str], source: str, before: int
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The rows of CSV below its header, of which so many lines are before these."""
+    table = csv.reader(lines, strict=True)
+    try:
         for values in table:
-            place = f"{source}:{number - 1 + table.line_num}"
+            place = f"{source}:{before + table.line_num}"
             if not values and len(header) > 1:
                 continue  # an empty line; in a table of one column it is an unknown value
             values = values or [""]
@@ -994,7 +1326,7 @@ def _csv_rows(
                 raise InputError(f"{place}: {len(values)} values for {len(header)} columns")
             yield place, dict(zip(header, values, strict=True))
     except csv.Error as error:
-        raise InputError(f"{source}:{number - 1 + table.line_num}: {error}") from None
+        raise InputError(f"{source}:{before + table.line_num}: {error}") from None
 
 
 def _json_rows(
@@ -1004,7 +1336,7 @@ def _json_rows(
         if not line.strip():
             continue
         try:
-            row = json.loads(line, object_pairs_hook=_distinct)
+            row = _JSON.decode(line)
         except (ValueError, RecursionError) as error:
             raise InputError(f"{source}:{number}: not JSON: {error}") from None
         if not isinstance(row, dict):
@@ -1018,6 +1350,9 @@ def _distinct(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(found) < len(pairs):
         raise ValueError("a key comes twice")
     return found
+
+
+_JSON = json.JSONDecoder(object_pairs_hook=_distinct)
 
 
 def _check_columns(keys: Iterable[str], names: Sequence[str], place: str) -> None:
@@ -1053,7 +1388,7 @@ def _truth(value: Any, name: str, place: str) -> Truth:
 
 def _next_tick(value: Any, before: int | None, place: str) -> int:
     text = str(value)
-    if not re.fullmatch(r"\s*-?[0-9]{1,18}\s*", text):
+    if not _WHOLE.fullmatch(text):
         raise InputError(f"{place}: column `tick`: `{_short(text)}` is no whole number")
     tick = int(text)
     if before is not None and tick != before + 1:
@@ -1062,8 +1397,103 @@ def _next_tick(value: Any, before: int | None, place: str) -> int:
     return tick
 
 
-Read = Callable[[TextIO, str, argparse.Namespace], Iterable[Sequence[Truth]]]
-"""Gives the truth of the propositions, a row a tick, from a table, its source and the options."""
+_WHOLE = re.compile(r"\s*-?[0-9]{1,18}\s*")
+
+
+# Whole pieces of CSV, where they leave no doubt ------------------------------------------------
+
+_CHARACTERS, _MOST_CHARACTERS = 1 << 12, 1 << 22
+"""Of the text of a piece for each column, and at most; it ends with the line that they end in."""
+
+
+class _Block(NamedTuple):
+    """The lines of a text, as a piece of the trace."""
+
+    lines: int
+    tick: int | None
+    """In the last row, by the column `tick`."""
+    piece: Piece
+
+
+def _csv_pieces(
+    text: TextIO, header: Sequence[str], names: Sequence[str], source: str, line: int
+) -> Iterator[Piece]:
+    """CSV below its header, which ends in that line.
+
+    Where a piece leaves a doubt it is read row by row, and so is all that follows: that is slower,
+    and finds what is wrong, and where.
+    """
+    tick: int | None = None
+    size = min(_CHARACTERS * len(header), _MOST_CHARACTERS)
+    while part := text.read(size) + text.readline():
+        try:
+            block = _block(part, header, names, tick)
+        except (csv.Error, KeyError, ValueError):
+            lines = itertools.chain(io.StringIO(part, newline=""), text)
+            rows = _in_order(_csv_rows(lines, header, source, line), names, tick)
+            yield from pieces_of(_truths(rows, names))
+            return
+        line, tick = line + block.lines, block.tick
+        yield block.piece
+
+
+def _block(part: str, header: Sequence[str], names: Sequence[str], tick: int | None) -> _Block:
+    """Whole lines of CSV, which follow the row with that tick.
+
+    Raises:
+        csv.Error, KeyError, ValueError: there is a doubt.
+    """
+    width, has_tick = len(header), "tick" in header and "tick" not in names
+    codes = None if has_tick else _digits(part, width)
+    if codes:
+        named = dict(zip(header, codes, strict=True))
+        rows = len(codes[0])
+        return _Block(rows, None, Piece(rows, [named[name] for name in names]))
+    table = csv.reader(io.StringIO(part, newline=""), strict=True)
+    values = [row or [""] for row in table if row or width == 1]
+    columns = list(zip(*values, strict=True)) or [()] * width
+    cells = dict(zip(header, columns, strict=True))
+    if has_tick:
+        tick = _last_tick(cells["tick"], tick)
+    piece = Piece(len(values), [_codes(cells[name]) for name in names])
+    return _Block(table.line_num, tick, piece)
+
+
+def _digits(part: str, width: int) -> list[bytes] | None:
+    """The codes of every column, if each cell is one digit: 0 or 1."""
+    text = part.encode().replace(b"\r\n", b"\n").removesuffix(b"\n") + b"\n"
+    cells, separators = text[::2], text[1::2]
+    rows = len(separators) // width
+    if separators != (b"," * (width - 1) + b"\n") * rows or cells.strip(b"01"):
+        return None
+    codes = cells.translate(_CODES)
+    return [codes[place::width] for place in range(width)]
+
+
+_CODES = bytes.maketrans(b"01", b"\0\1")
+
+
+def _codes(words: Sequence[str]) -> bytes:
+    """The codes of truth values."""
+    known = {word: code(_WORDS[word.strip().lower()]) for word in set(words)}
+    return bytes(map(known.__getitem__, words))
+
+
+def _last_tick(words: Sequence[str], before: int | None) -> int | None:
+    """The last of ticks that grow by one and are written without superfluous zeros."""
+    if not words:
+        return before
+    if not (_WHOLE.fullmatch(words[0]) and _WHOLE.fullmatch(words[-1])):
+        raise ValueError
+    first = int(words[0]) if before is None else before + 1
+    after = first + len(words)
+    if list(map(str.strip, words)) != list(map(str, range(first, after))):
+        raise ValueError
+    return after - 1
+
+
+Read = Callable[[TextIO, str, argparse.Namespace], Iterable[Piece]]
+"""Gives the truth of the propositions, from a table, its source and the options."""
 
 
 def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
@@ -1076,7 +1506,7 @@ def main(monitor: type[Monitor], arguments: Sequence[str] | None = None) -> int:
     return judge(
         monitor,
         _parser(monitor),
-        lambda text, source, options: read_rows(text, names, source),
+        lambda text, source, options: read_pieces(text, names, source),
         arguments,
     )
 
@@ -1242,17 +1672,11 @@ class R1Rail:
 
     __slots__ = (
         "doubt",
-        "r1_answer",
-        "r1_breach",
         "r1_broken",
-        "r1_doom",
         "r1_doomed",
-        "r1_fails",
         "r1_last",
         "r1_open",
-        "r1_owed",
-        "r1_settled",
-        "r1_trigger",
+        "r1_signals",
         "since_1",
         "tick",
     )
@@ -1270,13 +1694,7 @@ class R1Rail:
         self.r1_doomed = -1
         self.r1_last = -1
         self.r1_open = -1
-        self.r1_trigger = False
-        self.r1_breach = False
-        self.r1_doom = False
-        self.r1_owed = False
-        self.r1_fails = False
-        self.r1_settled = False
-        self.r1_answer = False
+        self.r1_signals: tuple[bool, ...] = (False,) * 7
 
     def advance(self, rows: Iterable[Sequence[Any]]) -> bool:
         """Step every row; whether all was known in them."""
@@ -1314,10 +1732,7 @@ class R1Rail:
             return True
         self.tick = tick
         self.since_1 = since_1
-        self.r1_trigger = too_close
-        self.r1_owed = since_1
-        self.r1_fails = since_1
-        self.r1_answer = stopped
+        self.r1_signals = (too_close, False, False, since_1, since_1, False, stopped)
         self.r1_last = r1_last
         self.r1_open = r1_open
         return known
@@ -1325,15 +1740,7 @@ class R1Rail:
     def signals(self) -> tuple[Signals[bool], ...]:
         """The signals of the last tick, for each requirement."""
         return (
-            Signals(
-                self.r1_trigger,
-                self.r1_breach,
-                self.r1_doom,
-                self.r1_owed,
-                self.r1_fails,
-                self.r1_settled,
-                self.r1_answer,
-            ),
+            Signals(*self.r1_signals),
         )
 
     def marks(self) -> tuple[Marks, ...]:
@@ -1369,15 +1776,30 @@ class R1Monitor(Monitor):
     may: R1Rail
 
     def step(self, *, too_close: Truth, stopped: Truth) -> Verdict:
-        """One tick; None stands for unknown."""
-        row = (too_close, stopped)
-        if too_close is None or stopped is None:
-            self._fork()
-        must, may = self.must, self.may
-        must.advance((row,))
-        if may is not must:
-            may.advance((row,))
-        if must.r1_broken >= 0:
+        """One tick; None stands for unknown. It is `advance` for one row where all is known."""
+        rail = self.must
+        if (
+            rail is not self.may
+            or (too_close is not True and too_close is not False)
+            or (stopped is not True and stopped is not False)
+        ):
+            self._step((too_close, stopped))
+            return self.verdicts()[0]
+        rail.tick = tick = rail.tick + 1
+        since_1 = rail.since_1
+        not_stopped = not stopped
+        # !stopped S (too_close & !stopped)
+        since_1 = too_close and not_stopped or not_stopped and since_1
+        # R1: trigger, open demand
+        if too_close:
+            rail.r1_last = tick
+        if not since_1:
+            rail.r1_open = -1
+        elif rail.r1_open < 0:
+            rail.r1_open = tick
+        rail.since_1 = since_1
+        rail.r1_signals = (too_close, False, False, since_1, since_1, False, stopped)
+        if rail.r1_broken >= 0:
             return VIOLATED
         return PENDING
 
@@ -1385,6 +1807,15 @@ class R1Monitor(Monitor):
         """Many ticks at once: rows in the order of `PROPOSITIONS`, or by their names."""
         self.advance(rows)
         return self.verdicts()[0]
+
+    def verdicts(self) -> tuple[Verdict, ...]:
+        """Of each requirement, whatever follows: satisfied or violated; or pending."""
+        must = self.must
+        return (
+            VIOLATED
+            if must.r1_broken >= 0
+            else PENDING,
+        )
 
     @staticmethod
     def columns(every: int, *, too_close: int, not_stopped: int, stopped: int) -> tuple[Signals[int], ...]:

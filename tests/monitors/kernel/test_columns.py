@@ -1,8 +1,11 @@
 """Columns of whole traces: each operator against its definition, tick by tick."""
 
+import itertools
+import tracemalloc
 from collections.abc import Sequence
 from itertools import pairwise, product
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -150,7 +153,7 @@ def test_runs_are_maximal_and_cover_every_tick(values: Bits) -> None:
 
 @given(st.lists(st.tuples(*(st.sampled_from([True, False, None]),) * 2), max_size=40))
 def test_rows_become_columns_and_truth_values_again(rows: list[tuple[Truth, Truth]]) -> None:
-    ticks, made = c.columns_of(rows, 2)
+    ticks, made = c.columns_of(c.pieces_of(rows), 2)
     assert ticks == len(rows)
     for place, column in enumerate(made):
         assert c.truths(column, ticks) == [row[place] for row in rows]
@@ -158,15 +161,45 @@ def test_rows_become_columns_and_truth_values_again(rows: list[tuple[Truth, Trut
         assert not column.true & column.unknown
 
 
+@given(st.lists(st.lists(st.sampled_from([0, 1, 2]), max_size=20), max_size=8))
+def test_a_tape_is_the_column_of_all_its_parts(parts: list[list[int]]) -> None:
+    tape = c.Tape()
+    for part in parts:
+        tape.append(bytes(part))
+    assert tape.column() == c.column(bytes(itertools.chain.from_iterable(parts)))
+
+
+@given(st.lists(st.tuples(*(st.sampled_from([True, False, None]),) * 2), max_size=40))
+def test_rows_come_out_of_columns_in_stretches(rows: list[tuple[Truth, Truth]]) -> None:
+    ticks, made = c.columns_of(c.pieces_of(rows), 2)
+    for stretch in (1, 2, 64):
+        with mock.patch.object(c, "_STRETCH", stretch):
+            assert list(c.rows_of(made, ticks)) == rows
+
+
+def test_a_trace_without_propositions_has_ticks_too() -> None:
+    assert c.columns_of(c.pieces_of([()] * 5000), 0) == (5000, ())
+    assert list(c.rows_of((), 3)) == [(), (), ()]
+
+
+def test_a_trace_is_held_in_two_bits_a_value() -> None:
+    pieces = itertools.repeat(c.Piece(4000, [b"\0\1\2\1" * 1000]), 200)
+    tracemalloc.start()
+    ticks, _ = c.columns_of(pieces, 1)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 3 * 2 * ticks / 8  # both as bytes, and as numbers beside them
+
+
 @pytest.mark.parametrize("value", [True, False, None])
 def test_a_column_can_be_followed_by_one_more_value(value: Truth) -> None:
-    _, (column,) = c.columns_of([(True,), (None,), (False,)], 1)
+    _, (column,) = c.columns_of(c.pieces_of([(True,), (None,), (False,)]), 1)
     assert c.truths(column.followed(value, 3), 4) == [True, None, False, value]
 
 
 def test_booleans_of_numpy_are_truth_values() -> None:
     rows: Any = [(np.True_,), (np.False_,), (None,), (np.array([3]) > 2)]
-    ticks, (column,) = c.columns_of(rows, 1)
+    ticks, (column,) = c.columns_of(c.pieces_of(rows), 1)
     assert c.truths(column, ticks) == [True, False, None, True]
 
 
@@ -176,10 +209,10 @@ def test_booleans_of_numpy_are_truth_values() -> None:
 )
 def test_nothing_else_is_a_truth_value(value: object) -> None:
     with pytest.raises(TypeError, match="a truth value is True, False or None"):
-        c.columns_of([(value,)], 1)  # type: ignore[list-item]
+        list(c.pieces_of([(value,)]))  # type: ignore[list-item]
 
 
 @pytest.mark.parametrize("row", [(), (True, True, True)])
 def test_a_row_has_one_value_for_each_column(row: tuple[bool, ...]) -> None:
     with pytest.raises(ValueError, match="zip"):
-        c.columns_of([row], 2)
+        c.columns_of(c.pieces_of([row]), 2)

@@ -1,11 +1,13 @@
 """An outcome is what its fields mean, and certain where no value of the unknown would change it."""
 
+import functools
 import random
 import tracemalloc
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from itertools import product
 from typing import ClassVar
+from unittest import mock
 
 import pytest
 from hypothesis import given
@@ -22,11 +24,12 @@ from monitors.kernel import (
     Outcome,
     evaluate,
 )
-from monitors.kernel.columns import LARGE, column, columns_of
+from monitors.kernel import outcomes as kernel_outcomes
+from monitors.kernel.columns import LARGE, column, columns_of, pieces_of
 from monitors.kernel.outcomes import stepped
 from monitors.kernel.verdicts import Requirement, Signals, Truth, Verdict
 from tests.meaning import SCOPES
-from tests.monitoring import monitor
+from tests.monitoring import monitor, packed
 from tests.strategies import templates
 
 EXACT = {
@@ -47,7 +50,8 @@ Trace = Mapping[str, Sequence[Truth]]
 def outcomes(machine: Monitor, trace: Trace) -> tuple[Outcome, Outcome]:
     """The outcome of the one requirement, by each of the two engines."""
     names = tuple(machine.PROPOSITIONS)
-    ticks, columns = columns_of(zip(*(trace[name] for name in names), strict=True), len(names))
+    rows = zip(*(trace[name] for name in names), strict=True)
+    ticks, columns = columns_of(pieces_of(rows), len(names))
     by_name = dict(zip(names, columns, strict=True))
     (whole,), (online,) = evaluate(machine, by_name, ticks), stepped(machine, by_name, ticks)
     return whole, online
@@ -135,6 +139,32 @@ def test_an_answer_behind_an_unknown_value_is_uncertain() -> None:
     assert outcome.as_json()["uncertain"] == [0, 4]
     known, _ = outcomes(machine, {"p": p, "q": [False, False, True, False, False, False]})
     assert (known.answers, known.open, known.uncertain) == (((0, 2),), ((4, 7),), ())
+
+
+@given(st.randoms(use_true_random=False), st.integers(0, 30), st.integers(0, 30))
+def test_the_engines_agree_over_several_batches(
+    choose: random.Random, ticks: int, known: int
+) -> None:
+    """Also where the first unknown value is in a later one."""
+    machine = several()
+    trace = {
+        name: [
+            choose.choice((True, False) if i < known else (True, False, None)) for i in range(ticks)
+        ]
+        for name in machine.PROPOSITIONS
+    }
+    _, columns = packed(trace)
+    with mock.patch.object(kernel_outcomes, "_TICKS", 8):
+        online = stepped(machine, columns, ticks)
+    assert online == evaluate(machine, columns, ticks)
+
+
+@functools.cache
+def several() -> Monitor:
+    return monitor(
+        "in m mode, upon p the sw shall within 9 ticks satisfy q",
+        "whenever q the sw shall satisfy p",
+    )
 
 
 # The outcome of any signals -------------------------------------------------------------------

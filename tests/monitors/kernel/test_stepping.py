@@ -3,6 +3,8 @@
 import json
 import random
 from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,10 +12,11 @@ import pytest
 
 from compiler.targets.python import monitor as target
 from fretish.clock import Clock
-from monitors.kernel import Monitor
+from monitors.kernel import Monitor, evaluate
+from monitors.kernel.outcomes import stepped as run_by_steps
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
-from tests.monitoring import emitted, monitor, rule, step
+from tests.monitoring import emitted, monitor, packed, rule, step
 
 WINDOW = "sw shall always satisfy (p | occurred(2, 5, q))"
 SENTENCES = (
@@ -37,7 +40,7 @@ def rows(machine: Monitor, count: int, seed: int, unknown: float = 0.1) -> Rows:
 
 
 def outputs(machine: Monitor) -> tuple[object, ...]:
-    return machine.tick, machine.verdicts(), machine.standings(), step(machine)
+    return machine.tick, machine.verdicts(), machine.standings(), step(machine), machine.state()
 
 
 @pytest.mark.slow
@@ -52,6 +55,143 @@ def test_a_run_is_its_steps_however_it_is_cut(sentence: str, unknown: float) -> 
     for first in range(0, len(table), 1_700):
         pieces.advance(iter(table[first : first + 1_700]))
     assert outputs(whole) == outputs(single) == outputs(pieces)
+
+
+LONG = (
+    "only in m mode whenever p sw shall after 400 ticks satisfy q",
+    "sw shall always satisfy (p | occurred(300, 1000, q))",
+    "whenever occurred(2, 700, p) sw shall within 5 ticks satisfy persisted(3, 500, q)",
+)
+
+
+def of_runs(machine: Monitor, count: int, choose: random.Random) -> Rows:
+    """Values that stay for a while, and some unknown ones."""
+    columns = []
+    for _ in machine.PROPOSITIONS:
+        most, unknown = choose.choice((1, 3, 400)), choose.choice((0.0, 0.02))
+        column: list[Truth] = []
+        while len(column) < count:
+            value = None if choose.random() < unknown else bool(choose.randrange(2))
+            column += [value] * (1 if value is None else choose.randint(1, most))
+        columns.append(column[:count])
+    return list(zip(*columns, strict=True))
+
+
+def in_pieces(machine: Monitor, table: Rows, choose: random.Random) -> None:
+    """In single steps and batches, with batches that fail, and from saved states."""
+    bad: Any = (3,) * len(machine.PROPOSITIONS)
+    place = 0
+    while place < len(table):
+        rows = table[place : place + choose.choice((1, 2, 3, 50, 70, 300))]
+        match choose.randrange(4):
+            case 0:
+                single: Any = machine
+                for row in rows:
+                    single.step(**dict(zip(machine.PROPOSITIONS.values(), row, strict=True)))
+            case 1:
+                with pytest.raises(TypeError):
+                    machine.advance([*rows, bad])
+                continue
+            case 2:
+                machine.restore(json.loads(json.dumps(machine.state())))
+                machine.advance(rows)
+            case _:
+                machine.advance(rows)
+        place += len(rows)
+
+
+@pytest.mark.parametrize("sentence", [*SENTENCES, *LONG])
+@pytest.mark.parametrize("seed", range(4))
+def test_steps_batches_mistakes_saved_states_and_columns_tell_the_same(
+    sentence: str, seed: int
+) -> None:
+    choose = random.Random(seed)
+    whole, pieces = monitor(sentence), monitor(sentence)
+    table = of_runs(whole, choose.randint(1, 2_500), choose)
+    whole.advance(table)
+    in_pieces(pieces, table, choose)
+    assert outputs(whole) == outputs(pieces)
+    ticks, columns = packed(dict(zip(whole.PROPOSITIONS, zip(*table, strict=True), strict=True)))
+    assert evaluate(whole, columns, ticks) == run_by_steps(whole, columns, ticks)
+    assert outputs(whole) == outputs(pieces)
+
+
+# Many propositions, and rows in another order ---------------------------------------------------
+
+
+@cache
+def wide(count: int) -> str:
+    """A monitor of so many propositions."""
+    return emitted(
+        f'sw shall always satisfy {" | ".join(f"p{i}" for i in range(count - 1))} | "odd name"'
+    )
+
+
+WIDE = (target.MOST_PARAMETERS, target.MOST_PARAMETERS + 1)
+
+
+@pytest.mark.parametrize("count", WIDE)
+def test_a_step_of_many_propositions_is_that_of_few(count: int) -> None:
+    single, whole = load("m", wide(count)), load("m", wide(count))
+    table = [(False, True, None) * count for _ in range(3)]
+    table = [row[i : i + count] for i, row in enumerate(table)] + [(False,) * count]
+    step_of: Any = single
+    for row in table:
+        step_of.step(**dict(zip(single.PROPOSITIONS.values(), row, strict=True)))
+    whole.advance(table)
+    assert outputs(single) == outputs(whole)
+    assert whole.standings()[0].first_violation == 3
+
+
+@pytest.mark.parametrize("count", [2, *WIDE])
+def test_a_step_names_what_is_missing_or_no_parameter_as_python_does(count: int) -> None:
+    machine: Any = load("m", wide(count))
+    values: dict[str, Any] = dict.fromkeys(machine.PROPOSITIONS.values(), True)
+    name = list(values)[-1]
+    less = {each: True for each in values if each != name}
+    with pytest.raises(TypeError, match=rf"R1Monitor.step\(\) missing .*: '{name}'"):
+        machine.step(**less)
+    for arguments in (values, less):
+        with pytest.raises(TypeError, match="unexpected keyword argument 'other'"):
+            machine.step(**arguments, other=True)
+    with pytest.raises(TypeError, match="is True, False or None"):
+        machine.step(**{**values, name: 1})
+    assert machine.tick == -1
+
+
+@pytest.mark.parametrize("sentence", ["whenever p sw shall satisfy q", "sw shall satisfy p"])
+def test_rows_in_another_order_are_put_into_that_of_the_monitor(sentence: str) -> None:
+    first, second = monitor(sentence), monitor(sentence)
+    table = rows(first, 50, 2)
+    first.advance(table)
+    names = tuple(second.PROPOSITIONS)
+    second.advance(second.rows_of(names[::-1])(row[::-1] for row in table))
+    assert outputs(first) == outputs(second)
+    for wrong in ((True,) * (len(names) + 1), ()):
+        with pytest.raises(ValueError, match="values"):
+            second.advance(second.rows_of(names[::-1])([wrong]))
+    assert outputs(first) == outputs(second)
+
+
+@pytest.mark.parametrize(
+    ("names", "why"),
+    [("p", "`q` is missing"), ("pqs", "`s` is no name"), ("pqq", "more than once"), ("", "`p`")],
+)
+def test_names_that_are_not_the_propositions_are_refused(names: str, why: str) -> None:
+    with pytest.raises(ValueError, match=why):
+        monitor("whenever p sw shall satisfy q").rows_of(tuple(names))
+
+
+def test_rows_of_variables_may_come_in_another_order() -> None:
+    sentence = "whenever speed > 2 sw shall satisfy stopped"
+    first, second = monitor(sentence), monitor(sentence)
+    one, other = (3.0, None), (None, 3.0)
+    taken: Any = first
+    verdict = taken.run([one])
+    taken = second
+    assert tuple(taken.VARIABLES) == ("speed", "stopped")
+    assert taken.run(taken.rows_of(("stopped", "speed"))([other])) == verdict
+    assert outputs(first) == outputs(second)
 
 
 def test_rows_may_be_given_by_name() -> None:
@@ -112,6 +252,85 @@ def test_whatever_stops_a_run_both_rails_stay_together() -> None:
     with pytest.raises(KeyboardInterrupt):
         machine.advance(source())
     assert machine.must.tick == machine.may.tick == 4_095
+
+
+# One rail again -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sentence", [*SENTENCES, *LONG])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_monitor_whose_rails_meet_again_tells_what_one_tells_whose_rails_do_not(
+    sentence: str, seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    choose = random.Random(seed)
+    one, other = monitor(sentence), monitor(sentence)
+    monkeypatch.setattr(other, "_meet", lambda: None)
+    single: Any = one
+    for tick, row in enumerate(of_runs(one, 2_000, choose)):
+        single.step(**dict(zip(one.PROPOSITIONS.values(), row, strict=True)))
+        other.advance([row])
+        if tick % 97 == 0:
+            assert outputs(one) == outputs(other)
+
+
+@pytest.mark.parametrize("batch", [1, 7, 5_000])
+@pytest.mark.parametrize(
+    ("sentence", "last"),
+    [
+        ("whenever p sw shall within 3 ticks satisfy q", (True, True)),
+        ("sw shall always satisfy (p | occurred(2, 5, q))", (True, False)),
+        ("whenever p sw shall eventually satisfy q", (True, True)),
+    ],
+)
+def test_rails_meet_again_soon_after_all_is_known(
+    sentence: str, last: tuple[bool, bool], batch: int
+) -> None:
+    machine = monitor(sentence)
+    machine.advance([(True, None)])
+    assert machine.may is not machine.must
+    for _ in range(400 // batch + 2):
+        machine.advance([last] * batch)
+    assert machine.may is machine.must
+
+
+def test_rails_stay_two_where_a_violation_is_possible() -> None:
+    machine = monitor("whenever p sw shall immediately satisfy q")
+    machine.advance([(True, None), *[(False, True)] * 9_000])
+    assert machine.may is not machine.must
+    assert machine.standings()[0].finite is None
+
+
+@pytest.mark.parametrize("after", [100, 500])
+def test_rails_stay_two_as_long_as_their_windows_differ(after: int) -> None:
+    """All else agrees; that `q` may have held shows where `p` fails 300 to 1 000 ticks later."""
+    machine = monitor("sw shall always satisfy (p | occurred(300, 1000, q))")
+    machine.advance([(True, None)])
+    for _ in range(after):
+        machine.advance([(True, False)])
+    machine.advance([(False, False)])
+    assert machine.standings()[0].finite is (None if after == 500 else False)
+    machine.reset()
+    machine.advance([(True, None)])
+    for _ in range(2_100):
+        machine.advance([(True, False)])
+    assert machine.may is machine.must
+
+
+def test_rails_part_no_more_often_than_every_64_ticks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A copy of a rail costs more than some steps of a second one."""
+    machine: Any = monitor("whenever p sw shall within 3 ticks satisfy q")
+    parted: list[int] = []
+    part = machine._part
+
+    def noted(may: object) -> None:
+        parted.append(machine.tick)
+        part(may)
+
+    monkeypatch.setattr(machine, "_part", noted)
+    for tick in range(1_000):
+        machine.step(p=False, q=None if tick % 3 == 0 else True)
+    assert all(later - sooner > 63 for sooner, later in pairwise(parted))
+    assert parted
 
 
 # Checkpoints ----------------------------------------------------------------------------------
@@ -207,6 +426,22 @@ def test_each_requirement_is_told_as_if_it_were_alone() -> None:
         assert together.verdicts() == tuple(single.verdicts()[0] for single in alone)
         for found, single in zip(together.standings(), alone, strict=True):
             assert found[1:] == single.standings()[0][1:]
+
+
+def test_a_requirement_takes_five_slots_beside_its_cells() -> None:
+    """Beyond 8 191 slots of a class, CPython 3.11 looks each up by its name: a thousand fit."""
+    rail = monitor(*SENTENCES).RAIL
+    assert len(rail.__slots__) == len(("doubt", "tick")) + len(rail.CELLS) + 5 * len(SENTENCES)
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_monitor_without_propositions_is_stepped(count: int) -> None:
+    machine: Any = monitor(*["the sw shall always satisfy true"] * count)
+    other = monitor(*["the sw shall always satisfy true"] * count)
+    machine.step()
+    other.advance([()])
+    assert outputs(machine) == outputs(other)
+    assert machine.tick == 0
 
 
 def test_what_requirements_share_is_computed_once() -> None:

@@ -1,20 +1,29 @@
 """Tables of propositions: what is read, and what is refused with its place."""
 
+import io
+import random
 from itertools import pairwise
+from unittest import mock
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
-from monitors.kernel.tables import InputError, read_rows
+from monitors.kernel import tables
+from monitors.kernel.columns import columns_of, rows_of
+from monitors.kernel.tables import InputError, placed_rows, read_pieces
 from monitors.kernel.verdicts import Truth
 
-
-def rows(text: str, *names: str) -> list[tuple[Truth, ...]]:
-    return list(read_rows(text.splitlines(keepends=True), names, "t.csv"))
+Rows = list[tuple[Truth, ...]]
 
 
-PQ: list[tuple[Truth, ...]] = [(True, False), (None, True)]
+def rows(text: str, *names: str) -> Rows:
+    pieces = read_pieces(io.StringIO(text, newline=""), names, "t.csv")
+    ticks, columns = columns_of(pieces, len(names))
+    return list(rows_of(columns, ticks))
+
+
+PQ: Rows = [(True, False), (None, True)]
 
 
 @pytest.mark.parametrize(
@@ -30,6 +39,7 @@ PQ: list[tuple[Truth, ...]] = [(True, False), (None, True)]
         " p , q \n 1 , 0 \n , 1 \n",
         '"p","q"\n"1","0"\n"","1"\n',
         "p,other,q\n1,x,0\n,,1\n",
+        '"p\n",q\n1,0\n,1\n',
         '{"p": true, "q": 0}\n{"p": null, "q": "1"}\n',
         '{"p": 1, "q": false, "tick": 3}\n\n{"p": "", "q": true, "tick": 4}\n',
         '\ufeff{"p": 1, "q": 0}\n{"p": null, "q": 1}\n',
@@ -81,6 +91,7 @@ def test_a_name_with_a_comma_is_one_column() -> None:
             "for unknown",
         ),
         ("p,q\n1\n", "t.csv:2: 1 values for 2 columns"),
+        ('\n"p\n",q\n1,0\n1\n', "t.csv:5: 1 values for 2 columns"),
         ("tick,p,q\n0,1,0\n0,1,0\n", "t.csv:3: column `tick` goes back: 0, then 0"),
         ("tick,p,q\n5,1,0\n4,1,0\n", "t.csv:3: column `tick` goes back: 5, then 4"),
         ("tick,p,q\n0,1,0\n2,1,0\n", "t.csv:3: column `tick` leaves ticks out: 0, then 2"),
@@ -156,3 +167,127 @@ def test_ticks_grow_by_one_or_the_table_is_refused(ticks: list[int]) -> None:
     else:
         with pytest.raises(InputError):
             rows(table, "p")
+
+
+# Whole pieces ---------------------------------------------------------------------------------
+
+
+def in_pieces(text: str, names: tuple[str, ...], characters: int) -> Rows | str:
+    """The rows, or what is wrong, where a piece of the text has about so many characters."""
+    with mock.patch.object(tables, "_CHARACTERS", characters):
+        try:
+            return rows(text, *names)
+        except InputError as error:
+            return str(error)
+
+
+def row_by_row(text: str, names: tuple[str, ...]) -> Rows | str:
+    """The same, where each value is looked at by itself."""
+    try:
+        lines = io.StringIO(text, newline="")
+        return [
+            tuple(tables._truth(row[name], name, place) for name in names)
+            for place, row in placed_rows(lines, names, "t.csv")
+        ]
+    except InputError as error:
+        return str(error)
+
+
+DIGITS = ("0", "1")
+WORDS = ("", "0", "1", "true", "FALSE", " 1", "0 ", "\u2003", '"1"', '""', '" true"')
+WRONG = (
+    "2",
+    "x",
+    "01",
+    "10",
+    '"',
+    '""1',
+    '1"',
+    '"0\n"',
+    '"1\r\n,"',
+    '"\n',
+    "\0",
+    "é",
+    "\u0661",
+    "a,b",
+)
+ENDS = ("\n", "\n", "\n", "\r\n", "\r", "\n\n", "\n\r\n", "\n \n", "")
+
+
+@st.composite
+def csv_tables(draw: st.DrawFn) -> tuple[str, tuple[str, ...]]:
+    """A table of up to sixty rows with up to three faults, and what is read of it."""
+    choose = draw(st.randoms(use_true_random=False))
+    names = draw(st.sampled_from([("p",), ("p", "q"), ("q", "p"), (), ("tick",), ("p", "tick")]))
+    header = [*names, *choose.choice([(), (), ("tick",), ("n",), ("tick", "n", "n")])]
+    choose.shuffle(header)
+    header = list(dict.fromkeys(header)) or ["n"]
+    cells = choose.choice((DIGITS, DIGITS, WORDS, (*WORDS, "0\n0")))
+    end = choose.choice(ENDS[:5])
+    first = choose.choice((0, 0, 7, -3, 98, 10**18 - 5))
+    table = [[choose.choice(cells) for _ in header] for _ in range(choose.randrange(60))]
+    if "tick" in header and "tick" not in names:
+        form = choose.choice(("{}", "{}", " {}", "{:03}", '"{}"'))
+        for tick, row in enumerate(table, first):
+            row[header.index("tick")] = form.format(tick)
+    ends = [end] * len(table)
+    for _ in range(choose.choice((0, 0, 1, 1, 2, 3)) if table else 0):
+        spoil(table, ends, choose)
+    lines = [",".join(row) + each for row, each in zip(table, ends, strict=True)]
+    return ",".join(header) + "\n" + "".join(lines), names
+
+
+def spoil(table: list[list[str]], ends: list[str], choose: random.Random) -> None:
+    """Change one cell, the length of one row, its end, or the order of two rows."""
+    place = choose.randrange(len(table))
+    row = table[place]
+    match choose.randrange(4):
+        case 0 if row:
+            row[choose.randrange(len(row))] = choose.choice((*WRONG, *WORDS))
+        case 1:
+            row[:] = choose.choice((row[1:], [*row, "1"], []))
+        case 2:
+            ends[place] = choose.choice(ENDS)
+        case _:
+            other = choose.randrange(len(table))
+            table[place], table[other] = table[other], table[place]
+
+
+@given(csv_tables(), st.sampled_from([1, 2, 5, 16, 64, 1 << 14]))
+@example(("p\n0\n\n1\n", ("p",)), 1)  # an empty line is a value, and not a line that is too much
+@example(("p\n0\n\n", ("p",)), 64)
+@example(("p,q\n\n1,true\n1,2\n", ("p", "q")), 1)  # an empty line counts in what comes after it
+@example(("p,q\n1,0\n10,\n", ("p", "q")), 64)  # as long as two digits
+@example(("tick,p\n" + "9" * 18 + ",1\n" + "1" + "0" * 18 + ",1\n", ("p",)), 64)
+@example(('p,q\n1,"0\n"\n1,0\n1,2\n', ("p", "q")), 3)  # a value that goes on in the next piece
+def test_pieces_are_read_as_they_are_row_by_row(
+    table: tuple[str, tuple[str, ...]], characters: int
+) -> None:
+    """The same rows, or the same words about the same place."""
+    text, names = table
+    assert in_pieces(text, names, characters) == row_by_row(text, names)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "p,q\n" + "1,0\n" * 50,
+        "q,n,p\r\n" + "1,0,1\r\n" * 50,
+        "p,q\n" + "1,\n true ,FALSE\n" * 50,
+        "p,q,n\n" + '"1",0,"a ""b"", c"\n\n' * 50,
+        "tick,p,q\n" + "".join(f"{tick},1,\n" for tick in range(-20, 120)),
+        "p, tick ,q\n" + "".join(f"1, {tick} ,0\n" for tick in range(95, 220)),
+    ],
+)
+def test_what_is_sound_is_never_read_row_by_row(text: str) -> None:
+    expected = row_by_row(text, ("p", "q"))
+    with mock.patch.object(tables, "_csv_rows", side_effect=AssertionError):
+        assert in_pieces(text, ("p", "q"), 64) == expected
+
+
+def test_digits_are_not_even_split() -> None:
+    with mock.patch.object(tables, "_codes", side_effect=AssertionError):
+        assert rows("p,n,q\n" + "0,0,1\r\n" * 9 + "1,1,1", "p", "q") == [
+            *[(False, True)] * 9,
+            (True, True),
+        ]

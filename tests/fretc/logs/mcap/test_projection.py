@@ -191,6 +191,19 @@ def test_the_logs_of_these_tests_are_read_by_their_index(tmp_path: Path) -> None
             assert len(found.samples["x"].values) == 6
 
 
+def test_a_message_outside_of_the_time_that_its_chunk_states_is_seen(tmp_path: Path) -> None:
+    times = ((1000, 1001), (1003, 1006), (1008, 1009))
+    pieces = [Piece([float_of(1, time * S, 0.5) for time in some]) for some in times]
+    log, span = bytes(built(pieces, summary_crc=False).data), struct.pack("<QQ", 1003 * S, 1006 * S)
+    assert log.count(span) == 2  # in the chunk, and in its index
+    path = tmp_path / "log.mcap"
+    path.write_bytes(log)
+    assert whole(path, Integrity.HASH).checked.by_index
+    for first, last in ((1003 * S, 1006 * S - 1), (1003 * S + 1, 1006 * S)):
+        path.write_bytes(log.replace(span, struct.pack("<QQ", first, last)))
+        assert not whole(path, Integrity.HASH).checked.by_index
+
+
 # Which chunks are unpacked, and how far
 
 

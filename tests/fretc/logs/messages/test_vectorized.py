@@ -131,6 +131,27 @@ def test_signals_of_many_messages_are_those_of_each_of_them(
     both(signal, rows, beside)
 
 
+DROPS = 'nan = "drop", "+inf" = "drop", "-inf" = "drop", other = "drop"'
+
+
+@pytest.mark.parametrize("reduce", ["min", "max"])
+@pytest.mark.parametrize("op", ["<", "<="])
+def test_the_ends_of_a_band_are_told_from_the_floats_around_them(reduce: str, op: str) -> None:
+    """The least and the greatest are found by bit patterns, which are not those of all floats."""
+    ends = np.array([1e-45, 0.12, 12.0, 1e38], np.float32)
+    floats = [float(np.nextafter(end, np.float32(to))) for end in ends for to in (-INF, INF, end)]
+    odd = [0.0, -0.0, -float(ends[0]), -float(ends[1]), -12.0, NAN, -NAN, INF, -INF]
+    rows = [[one, other] for one in (*floats, *odd) for other in (0.5, NAN, -1.0)]
+    bands = ((0.12, 12), (1e-45, 12), (0, 12), (12, 0.12), (0.12, INF), (NAN, 1))
+    for low, high in bands:
+        limits = {"range_min": float(np.float32(low)), "range_max": float(np.float32(high))}
+        valid = f"range_min {op} x and x {op} range_max"
+        own = signal(f'reduce = "{reduce}"\nvalid = "{valid}"\ninvalid = {{ {DROPS} }}\n')
+        both(own, rows, [limits] * len(rows))
+        by_turns = [limits, {"range_min": 0.5, "range_max": 1.0}] * len(rows)
+        both(own, rows, by_turns[: len(rows)])
+
+
 def test_a_number_that_its_unit_makes_infinite_is_infinite_without_a_warning() -> None:
     both(signal('unit = "km"\n', "/t.a"), [[1e307], [1.0]], [{}, {}])
 

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.logs.signals.samples import EXACT, Series, Values, scaled, widest
+from fretc.logs.signals.samples import EXACT, Series, Values, distinct, scaled, widest
 from fretc.logs.signals.traces import trace
 from tests.fretc.logs.logs import MS, S, Sent, declare, recorded, scan, write
 
@@ -135,3 +135,9 @@ def test_a_product_of_many_units_is_no_fault(tmp_path: Path) -> None:
     )
     log = recorded(path, declarations)
     assert trace(declarations, log, ["p"]).columns["p"].true == 0b111
+
+
+@given(st.lists(st.integers(-3, 3)))
+def test_distinct_values_are_those_of_numpy(numbers: list[int]) -> None:
+    values = np.array(numbers, np.int64)
+    assert np.array_equal(distinct(values), np.unique(values))

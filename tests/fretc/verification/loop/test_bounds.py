@@ -9,7 +9,8 @@ from fretc.verification.loop import abstraction as looptwin
 from fretc.verification.loop import bounds
 from fretc.verification.loop.abstraction import Numbers, Plain, Times, covered
 from fretc.verification.loop.bounds import Answer, Question, search
-from fretc.verification.loop.model import Channel, Loop
+from fretc.verification.loop.drive import Channel
+from fretc.verification.loop.model import Loop
 from fretc.verification.loop.search import Parts
 from monitors.interceptor import Options
 from tests.loops import CORE, EVENTUALLY, WITHIN, case, edited, interceptor_options

@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 import pytest
 
 from fretc.verification.interceptor.machine import Event
-from fretc.verification.loop.model import Channel, Environment, Node, Wheels
+from fretc.verification.loop.drive import Channel, Wheels
+from fretc.verification.loop.model import Environment, Node
 from fretc.verification.loop.search import Case, Parts
 from monitors.interceptor import Options
 from monitors.loading import load

@@ -6,7 +6,7 @@ import pytest
 
 from compiler.logic import formula as f
 from compiler.logic.claims import Outcome, Result, not_checked, vacuous
-from fretc.verification.loop.model import Channel
+from fretc.verification.loop.drive import Channel
 from fretc.verification.loop.search import is_safety, search
 from monitors.interceptor import Options
 from tests.loops import (
@@ -20,6 +20,7 @@ from tests.loops import (
     interceptor_options,
     with_safety,
 )
+from tests.monitoring import with_step, without_step
 
 EDGE = Channel(1, edge=True)
 
@@ -182,9 +183,9 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
     """The observer is the monitor that fretc makes, not the one that is late."""
     known = case(WITHIN.format(2), TIMER, Channel(1, lost=1))
     assert search(known).kept.result is Result.PROVED
-    late = edited(known.safety, "self.r1_owed = since_2", "self.r1_owed = since_1")
-    late = edited(late, "self.r1_trigger = near", "self.r1_trigger = False")
-    assert search(with_safety(known, late)).kept.result == "counterexample"
+    signals = "self.r1_signals = (near, since_1, False, since_2, "
+    late = edited(known.safety, signals, "self.r1_signals = (False, since_1, False, since_1, ")
+    assert search(with_safety(known, with_step(late))).kept.result == "counterexample"
 
 
 @pytest.mark.parametrize(
@@ -329,7 +330,7 @@ def test_a_safety_function_that_remembers_more_than_is_put_back_is_not_stepped(
     cell: str, first: str, step: str, ignored: str
 ) -> None:
     known = case(WITHIN.format(3))
-    text = known.safety
+    text = without_step(known.safety)
     for old, new in (
         ('        "doubt",\n', f'        "doubt",\n        "{cell}",\n'),
         ('        "oldest_1",\n    )', f'        "oldest_1",\n        "{cell}",\n    )'),
@@ -346,6 +347,6 @@ def test_a_safety_function_that_remembers_more_than_is_put_back_is_not_stepped(
         ("elif near and not_stopped:", f"elif near and not_stopped and not ({ignored}):"),
     ):
         text = edited(text, old, new)
-    kept = search(with_safety(known, text)).kept
+    kept = search(with_safety(known, with_step(text))).kept
     assert kept.result is Result.NOT_CHECKED
     assert "it is not laid out as fretc writes it" in kept.detail

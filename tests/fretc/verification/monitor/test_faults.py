@@ -22,7 +22,7 @@ from tests.compiler.formalization.test_mutants import (
     SAME,
     Judge,
 )
-from tests.monitoring import rule
+from tests.monitoring import rule, with_step, without_step
 
 WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
 FOR = "upon p the sw shall for 2 ticks satisfy q & !m"
@@ -30,6 +30,9 @@ BEFORE = "before m mode the sw shall always satisfy q"
 LONG = 2**4000 - 1
 """A constant that changes nothing on any trace that is drawn."""
 
+SIGNALS = "self.r1_signals = (m and p, since_1, False, since_2, False, False, m and q)"
+RENEWED = "r1_open = r1_last if since_2 else -1"
+"""Of `FOR`, after its signals."""
 P = "            if p is not True and p is not False:\n"
 
 FAULTS = (
@@ -42,39 +45,46 @@ FAULTS = (
     (WITHIN, '("p", "p", True)', '("p", "m", True)', REFUSED),
     (WITHIN, '("p", "p", True)', '("p", "p", 1)', REFUSED),
     (WITHIN, "for (m, p, q) in rows", "for (m, q, p) in rows", REFUSED),
-    (WITHIN, "row = (m, p, q)", "row = (m, q, p)", REFUSED),
+    (WITHIN, "self._step((m, p, q))", "self._step((m, q, p))", REFUSED),
     (WITHIN, "self, *, m: Truth, p: Truth", "self, *, p: Truth, m: Truth", REFUSED),
     # Triggers, and the mark of the last one.
-    (WITHIN, "self.r1_trigger = m and p", "self.r1_trigger = p", DIFFERS),
-    (WITHIN, "self.r1_trigger = m and p", "self.r1_trigger = m and p and not_q", DIFFERS),
-    (WITHIN, "self.r1_trigger = m and p", "self.r1_trigger = False", DIFFERS),
-    (WITHIN, "        self.r1_trigger = m and p\n", "", DIFFERS),
+    (WITHIN, "self.r1_signals = (m and p,", "self.r1_signals = (p,", DIFFERS),
+    (WITHIN, "self.r1_signals = (m and p,", "self.r1_signals = (m and p and not_q,", DIFFERS),
+    (WITHIN, "self.r1_signals = (m and p,", "self.r1_signals = (False,", DIFFERS),
+    (WITHIN, "self.r1_signals = (m and p,", "self.r1_signals = (", REFUSED),
+    (WITHIN, f"        {SIGNALS}\n", "", REFUSED),
+    (WITHIN, f"        {SIGNALS}\n", f"        {SIGNALS}\n        {SIGNALS}\n", REFUSED),
     (WITHIN, "            if m and p:\n                r1_last", "            if p:\n                r1_last", DIFFERS),
     (WITHIN, "            if m and p:\n                r1_last = tick\n", "", DIFFERS),
     (WITHIN, "            if m and p:\n                r1_last = tick\n", "            r1_last = tick\n", DIFFERS),
     (WITHIN, "        self.r1_last = r1_last\n", "", REFUSED),
     # Open demands, and their mark.
-    (WITHIN, "self.r1_owed = since_2", "self.r1_owed = since_1", DIFFERS),
-    (WITHIN, "        self.r1_owed = since_2\n", "", DIFFERS),
+    (WITHIN, "False, since_2, False,", "False, since_1, False,", DIFFERS),
+    (WITHIN, "False, since_2, False,", "False, False, False,", DIFFERS),
     (WITHIN, "if not since_2:", "if not since_1:", DIFFERS),
     (WITHIN, "if not since_2:\n                r1_open = -1\n            elif r1_open < 0:\n                r1_open = tick", "r1_broken", REFUSED),
     (WITHIN, "            if not since_2:\n                r1_open = -1\n            elif r1_open < 0:\n                r1_open = tick\n", "", DIFFERS),
-    (WITHIN, "        self.r1_answer = m and q\n", "        r1_open = r1_last if self.r1_owed else -1\n", DIFFERS),
-    (FOR, "        r1_open = r1_last if self.r1_owed else -1\n", "", DIFFERS),
-    (FOR, "        self.r1_owed = since_2\n        r1_open = r1_last if self.r1_owed else -1\n", "        r1_open = r1_last if self.r1_owed else -1\n        self.r1_owed = since_2\n", REFUSED),
-    (FOR, "        r1_open = r1_last if self.r1_owed else -1\n        self.r1_broken = r1_broken\n        self.r1_last = r1_last\n        self.r1_open = r1_open\n", "        self.r1_open = r1_open\n        r1_open = r1_last if self.r1_owed else -1\n        self.r1_broken = r1_broken\n        self.r1_last = r1_last\n", REFUSED),
-    (FOR, "self.r1_owed = since_2", "self.r1_owed = since_1", DIFFERS),
+    (WITHIN, f"        {SIGNALS}\n", f"        {SIGNALS}\n        {RENEWED}\n", DIFFERS),
+    (FOR, f"        {RENEWED}\n", "", DIFFERS),
+    (FOR, f"        {RENEWED}\n", f"        {RENEWED.replace('since_2', 'since_1')}\n", REFUSED),
+    (FOR, "        self.youngest_1 = youngest_1\n", f"        self.youngest_1 = youngest_1\n        {RENEWED}\n", REFUSED),
+    (FOR, f"        {RENEWED}\n        self.r1_broken = r1_broken\n        self.r1_last = r1_last\n        self.r1_open = r1_open\n", f"        self.r1_open = r1_open\n        {RENEWED}\n        self.r1_broken = r1_broken\n        self.r1_last = r1_last\n", REFUSED),
+    (FOR, "False, since_2, False, False, False)\n        r1_open = r1_last if since_2", "False, since_1, False, False, False)\n        r1_open = r1_last if since_1", DIFFERS),
     # Answers.
-    (WITHIN, "self.r1_answer = m and q", "self.r1_answer = q", DIFFERS),
-    (WITHIN, "self.r1_answer = m and q", "self.r1_answer = m", DIFFERS),
-    (WITHIN, "        self.r1_answer = m and q\n", "", DIFFERS),
+    (WITHIN, "False, m and q)", "False, q)", DIFFERS),
+    (WITHIN, "False, m and q)", "False, m)", DIFFERS),
+    (WITHIN, "False, m and q)", "False, False)", DIFFERS),
     # What is settled, doomed, failed, broken.
-    (WITHIN, "        self.r1_answer = m and q\n", "        self.r1_answer = m and q\n        self.r1_settled = q\n", DIFFERS),
-    (WITHIN, "        self.r1_answer = m and q\n", "        self.r1_answer = m and q\n        self.r1_doom = since_2\n", DIFFERS),
-    (WITHIN, "        self.r1_answer = m and q\n", "        self.r1_answer = m and q\n        self.r1_fails = since_2\n", REFUTED),
-    (WITHIN, "self.r1_breach = since_1", "self.r1_breach = since_2", DIFFERS),
+    (WITHIN, "since_2, False, False, m and q)", "since_2, False, q, m and q)", REFUSED),
+    (WITHIN, "since_1, False, since_2", "since_1, since_2, since_2", DIFFERS),
+    (WITHIN, "since_2, False, False, m and q)", "since_2, since_2, False, m and q)", REFUTED),
+    (WITHIN, "(m and p, since_1,", "(m and p, since_2,", DIFFERS),
     (WITHIN, "r1_broken < 0 and since_1", "r1_broken < 0 and since_2", REFUTED),
-    (BEFORE, "self.r1_settled = since_2", "self.r1_settled = since_2 and first", REFUTED),
+    (BEFORE, "False, False, False, since_2, False)", "False, False, False, since_2 and first, False)", REFUTED),
+    (BEFORE, "False, False, False, since_2, False)", "False, False, False, False, False)", REFUSED),
+    (BEFORE, "must.r1_signals[5]", "must.r1_signals[4]", REFUSED),
+    (BEFORE, "rail.r1_signals[5]", "rail.r1_signals[4]", REFUSED),
+    (BEFORE, " and not (may.r1_broken >= 0)", "", REFUSED),
     # Unknown values.
     (WITHIN, "q = not_q = doubt", "q = not_q = False", REFUSED),
     (WITHIN, "q = not_q = doubt", "q = not_q = True", REFUSED),
@@ -94,12 +104,11 @@ FAULTS = (
     (WITHIN, "elif m and p and not_q:", "elif m and p and (not q):", DIFFERS),
     (WITHIN, "elif m and p and not_q:", "elif not (not m or not p) and not_q:", SAME),
     (FOR, "(since_1 and (not_q or m)):", "(since_1 and (not q or m)):", DIFFERS),
-    (FOR, "self.r1_breach = since_1 and (not_q or m)", "self.r1_breach = since_1 and (not q or m)", DIFFERS),
+    (FOR, "self.r1_signals = (p and before_1, since_1 and (not_q or m),", "self.r1_signals = (p and before_1, since_1 and (not q or m),", DIFFERS),
     (FOR, "before_1, kept_before_1 = kept_before_1, not_p", "before_1, kept_before_1 = kept_before_1, not p", DIFFERS),
-    (WITHIN, "if m is None or p is None or q is None:", "if m is None or p is None:", REFUSED),
-    (WITHIN, "            self._fork()\n", "            pass\n", REFUSED),
-    (WITHIN, "            may.advance((row,))\n", "            pass\n", REFUSED),
-    (WITHIN, "if may is not must:", "if may is must:", REFUSED),
+    (WITHIN, "            or (m is not True and m is not False)\n", "", REFUSED),
+    (WITHIN, "            rail is not self.may\n            or", "           ", REFUSED),
+    (WITHIN, "            self._step((m, p, q))\n", "", REFUSED),
     (WITHIN, "        return known\n", "        return True\n", REFUSED),
     # Steps.
     (WITHIN, "since_1 = oldest_1 >= 3", "since_1 = oldest_1 >= 2", REFUTED),
@@ -107,8 +116,9 @@ FAULTS = (
     (WITHIN, "oldest_1 + 1 if oldest_1 < 3 else 3", "oldest_1 + 1 if oldest_1 < 5 else 5", SAME),
     (WITHIN, "self.oldest_1 = -1", "self.oldest_1 = 0", REFUTED),
     (WITHIN, "self.r1_open = -1", "self.r1_open = 0", REFUSED),
-    (WITHIN, "self.r1_owed = False", "self.r1_owed = True", REFUSED),
-    (WITHIN, "                self.r1_trigger,\n                self.r1_breach,", "                self.r1_breach,\n                self.r1_trigger,", REFUSED),
+    (WITHIN, "(False,) * 7", "(True,) * 7", REFUSED),
+    (WITHIN, "(False,) * 7", "(False,) * 6", REFUSED),
+    (WITHIN, "Signals(*self.r1_signals)", "Signals(*self.r1_signals[:-1], False)", REFUSED),
     (WITHIN, "self.r1_last, self.r1_open", "self.r1_open, self.r1_last", REFUSED),
     # Columns.
     (WITHIN, "trigger=m & p,", f"trigger=m & p & {LONG},", REFUSED),
@@ -152,8 +162,28 @@ def test_a_fault_comes_to_what_is_written_beside_it(
     """What is proved tells the same as the right one on drawn traces: `TOLD` is never right."""
     text, examiner = judge(sentence)
     place = text.index(MARK)
-    assert text[place:].count(old) == 1, text[place:].count(old)
-    assert examiner.kind(text[:place] + text[place:].replace(old, new)) == expected
+    own = without_step(text)[place:]
+    assert own.count(old) == 1, own.count(old)
+    assert examiner.kind(with_step(text[:place] + own.replace(old, new))) == expected
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("            since_1 = oldest_1 >= 3\n", "            since_1 = oldest_1 > 2\n"),
+        ("\n        since_1 = oldest_1 >= 3\n", "\n        since_1 = oldest_1 > 2\n"),
+        ("\n        since_1 = oldest_1 >= 3\n", "\n        since_1 = oldest_1 >= 2\n"),
+        ("        rail.oldest_1 = oldest_1\n", ""),
+        ("            rail.r1_last = tick\n", "            rail.r1_last = 0\n"),
+        ("        rail.r1_signals = (m and p,", "        rail.r1_signals = (p,"),
+    ],
+)
+def test_a_step_that_has_another_tick_in_it_than_its_rail_is_refused(old: str, new: str) -> None:
+    """Even where it is an equal one: only one of both is explored."""
+    text, examiner = judge(WITHIN)
+    place = text.index(MARK)
+    assert text[place:].count(old) == 1
+    assert examiner.kind(text[:place] + text[place:].replace(old, new)) == REFUSED
 
 
 @pytest.mark.parametrize(

@@ -36,6 +36,21 @@ def test_each_requirement_of_a_file_with_many_propositions_is_proved() -> None:
     assert all(check(i, text, MANY).result is Result.PROVED for i in (0, 4, 8))
 
 
+WIDE = tuple(f"the sw shall always satisfy a{i} | b{i}" for i in range(40))
+
+
+def test_a_requirement_of_a_file_is_proved_where_a_step_takes_a_mapping() -> None:
+    text = emitted(*WIDE)
+    step = "self._step(self._row(propositions))\n"
+    assert check(39, text, WIDE).result is Result.PROVED
+    for other in (
+        "self._step(self._row({**propositions, 'a39': True}))\n",
+        "self._step(tuple(propositions.values()))\n",
+        f"{step}        {step}",
+    ):
+        assert check(39, broken(text, step, other), WIDE).result is Result.NOT_CHECKED
+
+
 def test_a_slice_is_what_a_requirement_names_and_the_cells_that_it_steps() -> None:
     text = emitted(*SENTENCES)
     monitor = load("m", text)

@@ -14,7 +14,7 @@ from monitors.kernel import Monitor
 from monitors.loading import load
 from monitors.source_text import kernel
 from tests.meaning import COUNTING, SCOPES
-from tests.monitoring import emitted, rule
+from tests.monitoring import emitted, rule, with_step, without_step
 from tests.strategies import templates
 
 WITHIN = "whenever p the sw shall within 3 ticks satisfy q"
@@ -28,13 +28,16 @@ def check(sentence: str, text: str | None = None, limit: int = 10**6) -> Outcome
 
 
 def edited(text: str, *edits: tuple[str, str]) -> str:
-    """The text with the one place of each edit changed, below the run time."""
+    """The text with the one place of each edit changed, below the run time.
+
+    A change of the rail's tick is one of the step that has it in it.
+    """
     place = text.index("# The requirements ---")
-    head, own = text[:place], text[place:]
+    head, own = text[:place], without_step(text)[place:]
     for old, new in edits:
         assert own.count(old) == 1, (old, own.count(old))
         own = own.replace(old, new)
-    return head + own
+    return with_step(head + own)
 
 
 def reason(outcome: Outcome) -> str:
@@ -285,7 +288,7 @@ def test_a_run_time_in_a_string_is_none() -> None:
     text = emitted(WITHIN)
     place = text.index("# The requirements ---")
     other = text[:place].replace(
-        "            VIOLATED\n            if", "            PENDING\n            if"
+        "Verdict.SATISFIED, Verdict.VIOLATED, Ver", "Verdict.SATISFIED, Verdict.PENDING, Ver"
     )
     hidden = f"_ = r'''{kernel().text}'''\n"
     text = f"{other}{hidden}{text[place:]}"
@@ -301,7 +304,7 @@ SINCE = "            since_1 = oldest_1 >= 3\n"
 END = "        self.tick = tick\n"
 INIT = "        self.tick = -1\n"
 CLASS = "    CELLS: ClassVar[tuple[str, ...]] = (\n"
-STEP = "        must.advance((row,))\n"
+STEP = "        rail.tick = tick = rail.tick + 1\n"
 
 HIDDEN: dict[str, list[tuple[str, str]]] = {
     "the tick in a test of the logic": [
@@ -328,7 +331,7 @@ HIDDEN: dict[str, list[tuple[str, str]]] = {
     ],
     "a mark in the logic": [(SINCE, "            since_1 = oldest_1 >= 3 and r1_last < 5000\n")],
     "a signal in the logic": [
-        (SINCE, "            since_1 = oldest_1 >= 3 and not self.r1_trigger\n")
+        (SINCE, "            since_1 = oldest_1 >= 3 and not self.r1_signals[0]\n")
     ],
     "a mark that is no cell": [(SINCE, SINCE + "            r1_open = r1_open + 1\n")],
     "the tick through another name": [(LOOP, LOOP + "            now = tick\n")],
@@ -410,9 +413,17 @@ HIDDEN: dict[str, list[tuple[str, str]]] = {
     "other rows": [("for (p, q) in rows", "for (q, p) in rows")],
     "no rows": [("        if tick == self.tick:\n            return True\n", "")],
     "a step of its own": [
-        (STEP, STEP + "        if must.tick == 5000:\n            return VIOLATED\n")
+        (STEP, "        if rail.tick == 5000:\n            return VIOLATED\n" + STEP)
     ],
-    "a verdict of its own": [("if must.r1_broken >= 0:", "if must.r1_broken > 0:")],
+    "a verdict of its own": [("if rail.r1_broken >= 0:", "if rail.r1_broken > 0:")],
+    "a step of another rail": [("        rail = self.must\n", "        rail = self.may\n")],
+    "a step that takes what is unknown for false": [
+        ("            or (q is not True and q is not False)\n", "")
+    ],
+    "a step that takes all for known": [("rail is not self.may\n", "False\n")],
+    "a step in which nothing happens": [("            self._step((p, q))\n", "")],
+    "other verdicts": [("if must.r1_broken >= 0\n", "if must.r1_broken > 5000\n")],
+    "verdicts of another rail": [("        must = self.must\n", "        must = self.may\n")],
     "a run of its own": [
         ("        self.advance(rows)\n", "        self.advance(list(rows)[:5000])\n")
     ],
@@ -424,9 +435,7 @@ HIDDEN: dict[str, list[tuple[str, str]]] = {
     "marks that are computed": [
         ("Marks(self.r1_broken,", "Marks(max(self.r1_broken, 5000 - self.tick),")
     ],
-    "signals that are others": [
-        ("                self.r1_fails,\n", "                self.r1_settled,\n")
-    ],
+    "signals that are others": [("Signals(*self.r1_signals)", "Signals(*self.r1_signals[::-1])")],
     "a column program that counts": [
         ("trigger=p,", "trigger=p if every.bit_length() < 5000 else 0,")
     ],
@@ -471,7 +480,7 @@ WINDOW = "            since_1 = kept_since_1.step("
         (WINDOW, "            since_1 = kept_since_1.now > 5000 or kept_since_1.step("),
         (WINDOW, "            since_1 = kept_since_1 or kept_since_1.step("),
         (WINDOW, "            since_1 = Window(1, 2).step("),
-        ("        self.r1_trigger = not_m", "        self.r1_trigger = kept_since_1 and not_m"),
+        ("self.r1_signals = (not_m", "self.r1_signals = (kept_since_1 and not_m"),
         ("= Window(2, 2)", "= Window(2, self.tick)"),
     ],
 )

@@ -1,0 +1,183 @@
+"""The part of the closed loop from the channel to the wheels, and what may happen in it in a tick.
+
+It does not depend on the monitors: loops with the same interceptor and channel may share one drive,
+which computes each passage from one tick to the next once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from fretc.verification.interceptor.machine import Event, InterceptorMachine, State
+
+Queue = tuple[tuple[bool, int], ...]
+"""Stop messages in flight, the oldest first: the request, and cells since it was sent."""
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """The assumptions about everything that is not a text. Times are cells."""
+
+    cells: int
+    """To a tick."""
+    latency: int = 0
+    lost: int = 0
+    """The most stop messages lost in a row."""
+    edge: bool = False
+    """Requests are sent on change, not at every tick."""
+    punctual: bool = False
+    """At least one command comes in every tick."""
+    braking: int = 0
+    scans: bool = False
+    """The interceptor takes scans."""
+    heartbeat: int = 0
+    """With `edge`, in ticks: a request is repeated after such a silence, or earlier; 0: never."""
+
+    def __post_init__(self) -> None:
+        assert self.cells >= 1
+        assert min(self.latency, self.lost, self.braking, self.heartbeat) >= 0
+        assert self.edge or not self.heartbeat
+
+    @property
+    def stands(self) -> int:
+        """Ends of cells after which wheels with zero stand for certain."""
+        return self.braking + 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Wheels:
+    """A state of the drive. A drive has one object for each: equal ones are the same.
+
+    Sets of millions of nodes compare and hash them, so neither looks inside.
+    """
+
+    interceptor: State
+    still: int
+    """Ends of cells since the wheels have zero, counted up to `Channel.stands`; -1: they move."""
+    queue: Queue
+
+
+Word = tuple[Event | None, "Word | None"]
+"""The last event, and all events before it; None: a cell ends."""
+_Layer = dict[tuple[Wheels, bool], Word]
+"""What can be reached; and whether enough commands have come, where each tick brings some."""
+
+
+class Drive:
+    """Channel, interceptor and wheels, moved by messages, the timer and time."""
+
+    def __init__(self, interceptor: InterceptorMachine, channel: Channel) -> None:
+        self.interceptor, self.channel = interceptor, channel
+        self._inputs = [Event.MOVE, Event.STAND, *([Event.SCAN] if channel.scans else [])]
+        self._known: dict[tuple[State, int, Queue], Wheels] = {}
+        self._heard: dict[Wheels, tuple[tuple[Event, bool, Wheels], ...]] = {}
+        self._rung: dict[Wheels, Wheels] = {}
+        self._later: dict[Wheels, Wheels | None] = {}
+        self._passages: dict[Wheels, Mapping[Wheels, Word]] = {}
+        self.initial = self.wheels(interceptor.initial, channel.stands, ())
+
+    def wheels(self, interceptor: State, still: int, queue: Queue) -> Wheels:
+        """The one object for a state."""
+        key = interceptor, still, queue
+        wheels = self._known.get(key)
+        if wheels is None:
+            wheels = self._known[key] = Wheels(*key)
+        return wheels
+
+    def begun(self, wheels: Wheels, still: int, sent: Queue) -> Wheels:
+        """The wheels as a tick begins: sampled so, and with a message more in flight, if any."""
+        return self.wheels(wheels.interceptor, still, wheels.queue + sent)
+
+    def passages(self, wheels: Wheels) -> Mapping[Wheels, Word]:
+        """The states of the wheels at the next tick, each with a word of events on the way."""
+        passages = self._passages.get(wheels)
+        if passages is None:
+            passages = self._passages[wheels] = self._passing(wheels)
+        return passages
+
+    def _passing(self, wheels: Wheels) -> Mapping[Wheels, Word]:
+        layer: _Layer = {}
+        word: Word = (None, None)
+        if self.channel.latency == 0:
+            wheels, word = self._at_once(wheels, word)
+        layer[wheels, not self.channel.punctual] = word
+        for _ in range(self.channel.cells):
+            layer = self._closed(layer)
+            layer = {
+                (self._ringing(wheels), enough): (Event.RING, word)
+                for (wheels, enough), word in layer.items()
+            }
+            layer = self._older(self._closed(layer))
+        return {wheels: word for (wheels, enough), word in layer.items() if enough}
+
+    def _at_once(self, wheels: Wheels, word: Word) -> tuple[Wheels, Word]:
+        """Without latency a message arrives at the very instant of the tick."""
+        while wheels.queue:
+            event = _message(wheels.queue)
+            moved = wheels.still < 0
+            wheels, word = self._take(wheels, event), (event, word)
+            if moved and wheels.still == 0:
+                wheels = self.wheels(wheels.interceptor, 1, wheels.queue)
+        return wheels, word
+
+    def _closed(self, layer: _Layer) -> _Layer:
+        """Any number of messages, in any order but that of the queue."""
+        closure = dict(layer)
+        waiting = list(layer)
+        for key in waiting:
+            wheels, enough = key
+            word = closure[key]
+            for event, commanded, heard in self._heard.get(wheels) or self._hearing(wheels):
+                after = heard, enough or commanded
+                if after not in closure:
+                    closure[after] = (event, word)
+                    waiting.append(after)
+        return closure
+
+    def _hearing(self, wheels: Wheels) -> tuple[tuple[Event, bool, Wheels], ...]:
+        """Every message that may come next, whether it is a command, and the wheels after it."""
+        queued = [_message(wheels.queue)] if wheels.queue else []
+        heard = self._heard[wheels] = tuple(
+            (event, event in (Event.MOVE, Event.STAND), self._take(wheels, event))
+            for event in (*queued, *self._inputs)
+        )
+        return heard
+
+    def _ringing(self, wheels: Wheels) -> Wheels:
+        """The wheels after the timer has rung."""
+        rung = self._rung.get(wheels)
+        if rung is None:
+            rung = self._rung[wheels] = self._take(wheels, Event.RING)
+        return rung
+
+    def _take(self, wheels: Wheels, event: Event) -> Wheels:
+        interceptor, output = self.interceptor.step(wheels.interceptor, event)
+        queue = wheels.queue[1:] if event in (Event.STOP, Event.RELEASE) else wheels.queue
+        if output is None:
+            return self.wheels(interceptor, wheels.still, queue)
+        return self.wheels(interceptor, -1 if output else max(wheels.still, 0), queue)
+
+    def _older(self, layer: _Layer) -> _Layer:
+        """A cell ends; states with a message in flight for too long drop out."""
+        result: _Layer = {}
+        for (wheels, enough), word in layer.items():
+            if wheels not in self._later:
+                self._later[wheels] = self._aged(wheels)
+            later = self._later[wheels]
+            if later is not None:
+                result.setdefault((later, enough), (None, word))
+        return result
+
+    def _aged(self, wheels: Wheels) -> Wheels | None:
+        """The wheels a cell later; None: a message would have been in flight for too long."""
+        still, queue = wheels.still, wheels.queue
+        if queue and queue[0][1] + 1 >= self.channel.latency:
+            return None
+        older = tuple((requested, age + 1) for requested, age in queue)
+        later = min(still + 1, self.channel.stands) if still >= 0 else still
+        return self.wheels(wheels.interceptor, later, older)
+
+
+def _message(queue: Queue) -> Event:
+    return Event.STOP if queue[0][0] else Event.RELEASE

@@ -1,0 +1,80 @@
+"""What a command costs grows with an expression, not with the square of its depth or width."""
+
+from collections.abc import Callable
+from cProfile import Profile
+from pathlib import Path
+
+import pytest
+
+from tests.command import Fretc, runner, write
+
+BINDINGS = """[clock]
+tick = "100 ms"
+[signal.x]
+path    = "/odom.twist.twist.linear.x"
+type    = "nav_msgs/Odometry"
+unit    = "m/s"
+max_age = "100 ms"
+"""
+SENTENCE = "whenever p the sw shall within 3 ticks satisfy "
+
+
+def nested(template: str, levels: int) -> str:
+    """The template within itself."""
+    text = "p"
+    for _ in range(levels):
+        text = template.format(text)
+    return text
+
+
+def measured(levels: int) -> str:
+    """A comparison with a sum of products in it."""
+    return nested("x + 2 * ({})", levels).replace("p", "x") + " > 0"
+
+
+SHAPES: dict[str, Callable[[int], str]] = {
+    "and, or": lambda size: nested("q & (r | {})", size // 2),
+    "xor": lambda size: nested("({}) xor q", size),
+    "before": lambda size: nested("preBool(false, {})", size),
+    "arithmetic": lambda size: measured(size // 2),
+    "wide": lambda size: " & ".join(f"(p{i} | ! q{i})" for i in range(size)),
+}
+
+
+@pytest.fixture
+def fretc(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> Fretc:
+    monkeypatch.chdir(tmp_path)
+    write("requirements/bindings.toml", BINDINGS)
+    return runner(monkeypatch, capsys)
+
+
+def calls(run: Callable[[], object]) -> int:
+    """How many functions of Python are called meanwhile."""
+    profile = Profile(builtins=False)
+    profile.runcall(run)
+    return sum(entry.callcount for entry in profile.getstats())
+
+
+@pytest.mark.parametrize("command", ["check", "explain", "json"])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_twice_the_size_costs_twice_as_much(fretc: Fretc, command: str, shape: str) -> None:
+    options = [command] if command != "json" else ["--emit", "json"]
+
+    def cost(size: int) -> int:
+        write("requirements/r.fret", f'+++\nid = "R"\n+++\n{SENTENCE}{SHAPES[shape](size)}\n')
+        return calls(lambda: fretc(*options, "requirements/r.fret"))
+
+    cost(60)  # modules are imported, templates compiled
+    least, small, large = cost(60), cost(120), cost(240)
+    assert large - small < 2.5 * (small - least)
+
+
+@pytest.mark.parametrize("shape", ["and, or", "xor", "arithmetic"])
+@pytest.mark.parametrize("command", ["check", "explain"])
+def test_a_deep_sentence_needs_no_more_room_than_there_is(
+    fretc: Fretc, command: str, shape: str
+) -> None:
+    write("requirements/r.fret", f'+++\nid = "R"\n+++\n{SENTENCE}{SHAPES[shape](900)}\n')
+    assert "F115" not in fretc(command, "requirements/r.fret").err
