@@ -27,10 +27,12 @@ from fretc.analysis.findings import (
     Inconsistency,
     OpenQuestion,
     Redundancy,
+    Repair,
     Vacuity,
     Verdict,
 )
 from fretc.analysis.implications import Consistency, Constant, Removable
+from fretc.analysis.repairs import repairs
 from fretc.analysis.stage import Stage, stage
 from fretc.analysis.verdicts import Completeness, component, conflicts, strategy, verdict
 from fretish.printer import sentence as printed
@@ -46,6 +48,8 @@ class Options:
     as_fret: bool = False
     """FRET's question: the past form of each requirement holds at every tick, so that `eventually`
     means at once."""
+    repairs: bool = True
+    """Whether what would settle conflicts is looked for."""
 
 
 DEFAULT = Options()
@@ -60,6 +64,7 @@ Finding = (
     | Removable
     | Vacuity
     | Inconsistency
+    | Repair
     | OpenQuestion
     | Circuit
     | Mealy
@@ -133,6 +138,7 @@ def jobs(
             for title, question in _OF_GROUPS.items()
             for setting in groups
         ),
+        *(setting.repairs() for setting in components if options.repairs),
     )
 
 
@@ -218,6 +224,21 @@ class _Setting:
 
         return Job(title, ask, partial(OpenQuestion, title))
 
+    def repairs(self) -> Job:
+        """What would settle the conflicts of a component."""
+        title = f"what would settle the conflicts of {self._name}?"
+
+        def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            mine = [
+                each
+                for each in known
+                if isinstance(each, Conflict) and set(each.requirements) <= set(self._ids)
+            ]
+            if mine:
+                yield from repairs(self._stage, mine, self._options.seconds)
+
+        return Job(title, ask, partial(OpenQuestion, title))
+
     def controller(self, number: int, form: Form) -> Job:
         """How a component is kept, where it can be."""
         title = f"how can {self._name} be kept?"
@@ -280,6 +301,7 @@ def assembled(
         components=components,
         conflicts=tuple(fights),
         complete=known.issuperset(rule.id for rule in rules),
+        repairs=_of(Repair, found),
         redundant=_of(Redundancy, found),
         removable=tuple(sorted(id for each in _of(Removable, found) for id in each.requirements)),
         vacuous=_of(Vacuity, found),

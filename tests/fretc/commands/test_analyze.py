@@ -48,6 +48,20 @@ def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
     assert "    run (output)   0  0  1\n" in run.out
 
 
+def test_what_would_settle_a_conflict_is_suggested(fretc: Fretc, tmp_path: Path) -> None:
+    fight = (
+        "upon start the line shall immediately satisfy run",
+        "upon stop the line shall for 3 ticks satisfy !run",
+    )
+    folder = written(tmp_path, fight)
+    run = fretc("analyze", str(folder))
+    (line,) = [line for line in run.out.splitlines() if "assume: " in line]
+    sentence = line.partition("assume: ")[2]
+    assert sentence == "whenever stop the environment shall for 3 ticks satisfy !start"
+    more = f'[[assume.requirement]]\nid = "A1"\nsentence = "{sentence}"\n'
+    assert fretc("analyze", str(written(tmp_path, fight, more=more))).status == 0
+
+
 def test_json_is_as_its_schema_says(fretc: Fretc, folder: Path) -> None:
     run = fretc("analyze", str(folder), "--format", "json")
     assert run.status == 1
