@@ -41,7 +41,7 @@ class Conflict(Record, frozen=True):
     requirements: Annotated[tuple[Name, ...], about("ids, sorted")]
     play: Annotated[
         tuple[Tick, ...],
-        about("a run that the environment forces: inputs and outputs tick by tick, up to a breach"),
+        about("a run that the environment forces, tick by tick; empty where it takes too long"),
     ]
     because: Annotated[str, about("one sentence that says why")]
     loop: Annotated[

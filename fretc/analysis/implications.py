@@ -14,12 +14,14 @@ from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vac
 from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import minimal
 from fretc.analysis.reasons import listed
-from fretc.analysis.stage import Stage
+from fretc.analysis.stage import Stage, interleaved
 
 MOST_TRIPLES = 500
 """Of requirements that hang together; of more none is looked at."""
 _FEW = 3
 """So many requirements are looked at by themselves."""
+_LONG = 6
+"""Bits of a count that is worth an order of its own beside another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,6 +221,11 @@ def _candidates(setting: Stage, counters: Sequence[Counter]) -> Iterator[tuple[C
 def _inconsistency(
     setting: Stage, members: Sequence[Counter], alone: Mapping[str, Function], budget: Budget
 ) -> Inconsistency | None:
+    ids = sorted(each.id for each in members)
+    if len(members) <= _FEW and sum(each.longest >= _LONG for each in members) > 1:
+        setting = interleaved(setting, ids)
+        members = setting.arena.counters
+        alone = {each.id: setting.runs((each,), budget).lasting() for each in members}
     runs = setting.runs(members, budget)
     each_alone = bdd.true()
     for counter in members:
@@ -229,5 +236,4 @@ def _inconsistency(
     letters = runs.path(clash, each_alone)
     if letters is None:
         return None
-    ids = sorted(each.id for each in members)
     return Inconsistency(tuple(ids), setting.ticks(ids, letters))

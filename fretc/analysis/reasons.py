@@ -21,6 +21,8 @@ from fretish.syntax import Before, Timing, Until, ends_with_run
 
 _MOST_TERMS = 3
 """Alternatives that a demand is shown with."""
+_LONGEST = 1_000
+"""Ticks of a play of which each is looked at."""
 
 
 def because(
@@ -34,12 +36,11 @@ def because(
         game: of the same.
         play: in which the environment wins.
     """
-    asked = _asked(counters, game, play)
     details = {rule.id: _details(rule, game.alphabet, play) for rule in rules}
     if play.loop is not None:
-        return _for_ever(rules, game, play, asked, details)
+        return _for_ever(rules, game, play, _asked(counters, game, play), details)
     last = len(play.letters) - 1
-    now = {id: words for id, (*_, words) in asked.items() if words}
+    now = _asked_last(counters, game, play)
     if not now or len(rules) == 1:
         id = rules[0].id
         return f"at tick {last} no output keeps {id}{details[id]}, whatever was done before"
@@ -50,12 +51,23 @@ def because(
         same = what == wanted and verb in ("demands", "forbids")
         parts.append(f"{id} {verb} {'it' if same else what}{details[id]}")
         wanted = what
-    before = [each for id, words in asked.items() if id not in now for each in _before(id, words)]
+    silent = _asked([each for each in counters if each.id not in now], game, play)
+    before = [each for id, words in silent.items() for each in _before(id, words)]
     return f"at tick {last} {_joined(parts)}{''.join(f'; {each}' for each in before)}"
 
 
+def _asked_last(counters: Sequence[Counter], game: Game, play: Play) -> dict[str, str]:
+    """What outputs each requirement asks for at the last tick, in words; those that ask."""
+    inputs = {number: play.letters[-1][number] for number in game.alphabet.inputs}
+    known = bdd.point({**play.state, **inputs})
+    words = {counter.id: _words(bdd.at(counter.safe, known), game) for counter in counters}
+    return {id: each for id, each in words.items() if each}
+
+
 def _asked(counters: Sequence[Counter], game: Game, play: Play) -> Mapping[str, tuple[str, ...]]:
-    """What outputs each requirement asks for, tick by tick, in words."""
+    """What outputs each requirement asks for, tick by tick, in words; nothing of a long play."""
+    if not counters or len(play.letters) > _LONGEST:
+        return {}
     states = [game.transition.start]
     for letter in play.letters[:-1]:
         states.append(game.transition.next(bdd.point({**states[-1], **letter})))
@@ -156,8 +168,8 @@ def _for_ever(
     others = [rule.id for rule in rules if rule.id not in lost]
     open_ = listed([f"{id}{details[id]}" for id in lost])
     again = _span(play.loop, len(play.letters) - 1)
-    always = {id: set(asked[id][play.loop :]) for id in others}
-    if others and all(len(words) == 1 and any(words) for words in always.values()):
+    always = {id: set(asked[id][play.loop :]) for id in others if id in asked}
+    if always and all(len(words) == 1 and any(words) for words in always.values()):
         why = f", because {listed([f'{id} {words.pop()}' for id, words in always.items()])}"
     else:
         verb = "is" if len(others) == 1 else "are"

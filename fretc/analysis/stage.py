@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of
-from fretc.analysis.arena.alphabet import Tick, numbers
+from fretc.analysis.arena.alphabet import Numbers, Tick, numbers
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
@@ -83,8 +84,42 @@ def stage(
         BeyondError: an assumption has no counter.
     """
     near = about(rules, assumptions, roles)
-    fresh = numbers()
+    return _built(rules, near, roles, numbers(), as_fret=as_fret)
+
+
+def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
+    """The stage of a few of the requirements, with bits of the same weight side by side.
+
+    So one count stays easy to compare with another one; counters one after the other need as many
+    nodes for it as the counts have values. For many requirements that is worse.
+    """
+    wanted = set(ids)
+    rules = [rule for rule in setting.rules if rule.id in wanted]
+    near = about(rules, setting.assumptions, setting.roles)
+    used = numbers()
+    first = _built(rules, near, setting.roles, used, as_fret=setting.as_fret)
+    weights = {
+        number: weight
+        for each in (*first.arena.counters, *first.arena.assumptions)
+        for word in each.words
+        for weight, bit in enumerate(word)
+        for number in (bit.now, bit.after)
+    }
+    count = next(used)  # the same build takes as many again, in the same order
+    order = sorted(range(count), key=lambda number: (-weights.get(number, count), number))
+    places = {number: place for place, number in enumerate(order)}
+    fresh = chain((places[number] for number in range(count)), numbers(count))
+    return _built(rules, near, setting.roles, fresh, as_fret=setting.as_fret)
+
+
+def _built(
+    rules: Sequence[Formalized],
+    near: Sequence[Formalized],
+    roles: Roles,
+    fresh: Numbers,
+    *,
+    as_fret: bool,
+) -> Stage:
     alphabet = Propositions([*rules, *near], roles, fresh)
-    return Stage(
-        tuple(rules), near, arena(rules, near, alphabet, fresh, as_fret=as_fret), roles, as_fret
-    )
+    built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
+    return Stage(tuple(rules), tuple(near), built, roles, as_fret)

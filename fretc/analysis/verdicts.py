@@ -121,7 +121,7 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
     try:
         _check_assumptions(setting, budget)
         for members in cores(len(counters), is_conflict, near):
-            yield _conflict(setting, chosen(members))
+            yield _conflict(setting, chosen(members), budget)
     except (OutOfTimeError, BeyondError) as error:
         yield OpenQuestion(question, str(error))
         return
@@ -131,11 +131,14 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
         yield OpenQuestion(question, setting.left_out)
 
 
-def _conflict(setting: Stage, counters: Sequence[Counter]) -> Conflict:
+def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Conflict:
     """A minimal conflict, with a play that the formulas of its monitors confirm."""
     ids = sorted(each.id for each in counters)
-    game = setting.game(counters, Budget(float("inf")))
-    play = Counterstrategy(game, game.solution(traps=True)).play()
+    game = setting.game(counters, budget)
+    try:
+        play = Counterstrategy(game, game.solution(traps=True), budget).play()
+    except OutOfTimeError as error:
+        return Conflict(tuple(ids), (), f"the environment wins by a play that is {error}")
     rules = [rule for rule in setting.rules if rule.id in ids]
     alphabet = setting.arena.alphabet
     lost = broken(rules, alphabet, play, as_fret=setting.as_fret)

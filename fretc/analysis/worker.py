@@ -11,7 +11,7 @@ import os
 import resource
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 from multiprocessing.context import ForkProcess
 
@@ -39,40 +39,70 @@ def findings(jobs: Sequence[Job], progress: Callable[[str], None]) -> Iterator[F
         Stopped: on Ctrl-C, after what each remaining job lacks.
     """
     found: list[Finding] = []
-    number = 0
-    while number < len(jobs):
-        process, answers = _started(jobs[number:], found)
-        progress(jobs[number].title)
-        try:
-            while True:
-                try:
-                    finding: Finding | Exception | None = answers.recv()
-                except EOFError:
-                    break
-                if isinstance(finding, MemoryError):
-                    break
-                if isinstance(finding, Exception):
-                    raise finding
-                if finding is not None:
-                    found.append(finding)
-                    yield finding
-                    continue
+    with _interruption() as is_stopped:
+        number = 0
+        while number < len(jobs) and not is_stopped():
+            process, answers = _started(jobs[number:], found)
+            progress(jobs[number].title)
+            try:
+                while not isinstance(finding := _next(process, answers, is_stopped), MemoryError):
+                    if isinstance(finding, Exception):
+                        raise finding
+                    if finding is not None:
+                        found.append(finding)
+                        yield finding
+                        continue
+                    number += 1
+                    if number < len(jobs):
+                        progress(jobs[number].title)
+            except EOFError:
+                pass
+            finally:
+                process.kill()
+                process.join()
+                answers.close()
+            if number < len(jobs) and not is_stopped():
+                found.append(jobs[number].lost(_ending(process.exitcode or 0)))
+                yield found[-1]
                 number += 1
-                if number < len(jobs):
-                    progress(jobs[number].title)
-        except KeyboardInterrupt:
+        if is_stopped():
             for job in jobs[number:]:
                 yield job.lost("stopped by Ctrl-C")
-            raise Stopped from None
-        finally:
-            process.kill()
-            process.join()
-            answers.close()
-        if number < len(jobs):
-            finding = jobs[number].lost(_ending(process.exitcode or 0))
-            found.append(finding)
-            yield finding
-            number += 1
+            raise Stopped
+
+
+@contextmanager
+def _interruption() -> Iterator[Callable[[], bool]]:
+    """Whether Ctrl-C was pressed: it breaks into nothing, so that nothing that was sent is lost."""
+    pressed: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
+    try:
+        yield lambda: bool(pressed)
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _next(
+    process: ForkProcess, answers: Connection, is_stopped: Callable[[], bool]
+) -> Finding | Exception | None:
+    """What was sent next; after Ctrl-C the rest of it.
+
+    Raises:
+        EOFError: nothing comes any more.
+    """
+    while not is_stopped() and not answers.poll(_PATIENCE):
+        pass
+    if is_stopped():
+        process.kill()
+    try:
+        sent: Finding | Exception | None = answers.recv()
+    except OSError as error:  # in the midst of it
+        raise EOFError from error
+    return sent
+
+
+_PATIENCE = 0.1
+"""Seconds after which Ctrl-C is looked at."""
 
 
 def _started(jobs: Sequence[Job], found: Sequence[Finding]) -> tuple[ForkProcess, Connection]:

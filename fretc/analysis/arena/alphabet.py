@@ -75,6 +75,6 @@ Numbers = Iterator[int]
 """Variables that nothing has yet, in their order: whoever needs one takes the next."""
 
 
-def numbers() -> Numbers:
-    """All of them."""
-    return count()
+def numbers(start: int = 0) -> Numbers:
+    """All of them, from one on."""
+    return count(start)

@@ -46,10 +46,22 @@ class Counter:
     fair: Function | None
     """Over bits: an endless run keeps the requirement by such states again and again; None: it has
     no other duty than to be safe."""
+    words: tuple[tuple[Bit, ...], ...]
+    """The bits of each of its counts, the least first."""
     enforced: Function
     """Whether a tick lies in an interval of the scope."""
     triggered: Function
     """Whether a demand begins at a tick."""
+
+    @property
+    def longest(self) -> int:
+        """Bits of its largest count."""
+        return max(map(len, self.words), default=0)
+
+    @property
+    def idle(self) -> Function:
+        """Over bits: nothing is counted, so that nothing is owed by a deadline."""
+        return bdd.point({bit.now: False for word in self.words for bit in word})
 
 
 @deep
@@ -87,7 +99,9 @@ def counter(
     roots = [safe, tick.enforced, tick.triggered, *([] if fair is None else [fair])]
     bits = memory.needed(roots)
     steps = tuple(memory.steps[bit] for bit in bits)
-    return Counter(rule.id, bits, steps, safe, fair, tick.enforced, tick.triggered)
+    return Counter(
+        rule.id, bits, steps, safe, fair, tuple(memory.words), tick.enforced, tick.triggered
+    )
 
 
 class _Tick:

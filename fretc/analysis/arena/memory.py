@@ -37,6 +37,8 @@ class Memory:
         self.bits: list[Bit] = []
         self.steps: dict[Bit, Function] = {}
         """The value of each bit after a tick, over bits before it and a letter."""
+        self.words: list[tuple[Bit, ...]] = []
+        """The bits of each count, the least first."""
 
     def bit(self) -> Bit:
         """A new one, whose step is to be set."""
@@ -46,6 +48,7 @@ class Memory:
     def word(self, most: int) -> tuple[list[Bit], Word]:
         """Bits for the numbers 0..most, the weightiest on top of the order; and their values."""
         bits = [self.bit() for _ in range(most.bit_length())][::-1]
+        self.words.append(tuple(bits))
         return bits, [bdd.variable(bit.now) for bit in bits]
 
     def keep(self, value: Function) -> Function:

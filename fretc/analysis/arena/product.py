@@ -30,6 +30,16 @@ class Arena:
     """Why a requirement has no counter, by its id."""
 
 
+class _Fixed:
+    """An alphabet of which each atom has been asked for: a thousand games read it, and it stays."""
+
+    def __init__(self, alphabet: Alphabet) -> None:
+        self.atom, self.values = alphabet.atom, alphabet.values
+        self.inputs, self.outputs = tuple(alphabet.inputs), tuple(alphabet.outputs)
+        self.legal, self.reachable = alphabet.legal, alphabet.reachable
+        self.doubts, self.labels = alphabet.doubts, alphabet.labels
+
+
 def arena(
     rules: Sequence[Formalized],
     assumptions: Sequence[Formalized],
@@ -57,7 +67,7 @@ def arena(
         else:
             found[rule.id] = made
     of_rules = tuple(found[rule.id] for rule in rules if rule.id in found)
-    return Arena(alphabet, of_rules, tuple(found[each.id] for each in assumptions), beyond)
+    return Arena(_Fixed(alphabet), of_rules, tuple(found[each.id] for each in assumptions), beyond)
 
 
 def _near_each_other(rules: Sequence[Formalized]) -> list[Formalized]:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.transition import State
-from fretc.analysis.games.game import Game, Goal, Solution
+from fretc.analysis.games.budget import Budget
+from fretc.analysis.games.game import Game, Goal, Solution, Trap
 
 Letter = Mapping[int, bool]
 """A value of each input and output."""
@@ -21,6 +22,8 @@ class Play:
     letters: tuple[Letter, ...]
     loop: int | None
     """The tick to which the last one leads back for ever; None: the last tick breaks something."""
+    state: State
+    """Before the last tick."""
 
 
 class Counterstrategy:
@@ -29,75 +32,87 @@ class Counterstrategy:
     The system resists as long as it can; so the play shows why there is no way out.
     """
 
-    def __init__(self, game: Game, solution: Solution) -> None:
+    def __init__(self, game: Game, solution: Solution, budget: Budget) -> None:
         assert not solution.is_realizable
-        self._game, self._traps = game, solution.traps
+        self._game, self._traps, self._budget = game, solution.traps, budget
 
     def play(self) -> Play:
-        """From the initial state to a breach, or round and round without what must come."""
+        """From the initial state to a breach, or round and round without what must come.
+
+        Raises:
+            OutOfTimeError: it has too many ticks.
+        """
         state: State = self._game.transition.start
-        promise = 0
+        promise, trap = 0, len(self._traps) - 1
         letters: list[Letter] = []
         seen: dict[tuple[object, ...], int] = {}
+        before = state
         while True:
+            self._budget.check()
             key = (promise, *state.values())
             if key in seen:
-                return Play(tuple(letters), seen[key])
+                return Play(tuple(letters), seen[key], before)
             seen[key] = len(letters)
-            inputs = self.inputs(state, promise)
+            trap = self._number(bdd.point(state), trap)
+            inputs = self._inputs(state, promise, self._traps[trap])
             options = self._options(state, inputs)
             if options == bdd.false():
                 letters.append(inputs | self._breach(state, inputs))
-                return Play(tuple(letters), None)
-            letter = inputs | self._resistance(options, state, inputs)
+                return Play(tuple(letters), None, state)
+            letter = inputs | self._resistance(options, state, inputs, trap)
             letters.append(letter)
-            state = self._game.transition.next(bdd.point({**state, **letter}))
-            promise = self.following(state, promise)
+            before, state = state, self._game.transition.next(bdd.point({**state, **letter}))
+            promise = self._following(state, promise)
 
-    def following(self, state: State, promise: int) -> int:
+    def _following(self, state: State, promise: int) -> int:
         """The promise that the environment keeps next, once it is in a state."""
         promises = self._game.promises
         if not promises or bdd.at(promises[promise], bdd.point(state)) == bdd.false():
             return promise
         return (promise + 1) % len(promises)
 
-    def inputs(self, state: State, promise: int = 0) -> dict[int, bool]:
-        """What the environment does in a state that it holds.
-
-        Args:
-            state: any that its inputs lead to.
-            promise: the number of the promise that it keeps next.
-        """
+    def _inputs(self, state: State, promise: int, trap: Trap) -> dict[int, bool]:
+        """What the environment does in a state that a trap holds, to keep a promise next."""
         game, known = self._game, bdd.point(state)
-        chains = self._traps[self._number(known)].chains
-        chain = chains[promise] if len(chains) > 1 else chains[0]
+        chain = trap.chains[promise] if len(trap.chains) > 1 else trap.chains[0]
         escape = next(e for left, e in chain if bdd.at(left, known) == bdd.false())
         moved = game.transition.moved_from(escape, known)
         free = (bdd.at(game.safe, known) & moved) | bdd.at(game.reachable - game.kept, known)
         answer = bdd.some(free, bdd.cube(game.alphabet.outputs))
         return _whole(bdd.at(game.legal, known) - answer, game.alphabet.inputs)
 
-    def _number(self, known: Function) -> int:
-        """The first trap that holds the state."""
+    def _number(self, known: Function, near: int) -> int:
+        """The first trap that holds the state; often one that is near, or the one before it."""
 
         def is_held(number: int) -> bool:
             return bool(bdd.at(self._traps[number].left, known) == bdd.false())
 
+        for number in (near, near - 1):
+            if number >= 0 and is_held(number) and not (number and is_held(number - 1)):
+                return number
         return _first(is_held, len(self._traps))
 
     def _options(self, state: State, inputs: Letter) -> Function:
         """The outputs that break nothing."""
         return bdd.at(self._game.safe, bdd.point({**state, **inputs}))
 
-    def _resistance(self, options: Function, state: State, inputs: Letter) -> dict[int, bool]:
-        """Outputs that lead into the trap that was found last."""
+    def _resistance(
+        self, options: Function, state: State, inputs: Letter, trap: int
+    ) -> dict[int, bool]:
+        """Outputs that lead into the trap that was found last; often the one before this."""
         known = bdd.point({**state, **inputs})
+        variables = self._game.alphabet.outputs
 
         def ways(number: int) -> Function:
-            return options & self._game.transition.moved_from(self._traps[number].left, known)
+            left = self._traps[number].left
+            return options & self._game.transition.moved_from(left, known)
 
+        if trap >= 2 and self._game.duties == []:
+            best = ways(trap - 2)
+            if best != bdd.false():
+                return _whole(best, variables)
         none_left = _first(lambda number: ways(number) == bdd.false(), len(self._traps))
-        return _whole(ways(none_left - 1) if none_left else options, self._game.alphabet.outputs)
+        return _whole(ways(none_left - 1) if none_left else options, variables)
 
     def _breach(self, state: State, inputs: Letter) -> dict[int, bool]:
         """Outputs that break as few requirements as can be."""

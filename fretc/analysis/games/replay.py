@@ -21,13 +21,13 @@ ROUNDS = 3
 
 def columns(alphabet: Alphabet, letters: Sequence[Letter], atoms: Iterable[str]) -> dict[str, int]:
     """Each atom over time, bit i for tick i."""
-    found = dict.fromkeys(atoms, 0)
-    functions = {name: alphabet.atom(name) for name in found}
-    for tick, letter in enumerate(letters):
+    functions = {name: alphabet.atom(name) for name in atoms}
+    bits: dict[str, list[str]] = {name: [] for name in functions}
+    for letter in reversed(letters):
         known = bdd.point(letter)
         for name, function in functions.items():
-            found[name] |= int(bdd.at(function, known) == bdd.true()) << tick
-    return found
+            bits[name].append("1" if bdd.at(function, known) == bdd.true() else "0")
+    return {name: int("".join(values) or "0", 2) for name, values in bits.items()}
 
 
 def broken(

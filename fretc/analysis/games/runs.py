@@ -69,8 +69,13 @@ class Runs:
             found = more
 
     def is_possible(self) -> bool:
-        """Whether there is a run that keeps all, for ever."""
-        return bool((self.transition.initial & self.lasting()) != bdd.false())
+        """Whether there is a run that keeps all, for ever; often one that nothing triggers."""
+        idle = bdd.true()
+        for counter in self._kept:
+            idle = idle & counter.idle
+        initial = self.transition.initial
+        quiet = bool((initial & self.lasting(within=idle)) != bdd.false())
+        return quiet or bool((initial & self.lasting()) != bdd.false())
 
     def can_reach(self, ticks: Function, lasting: Function) -> bool:
         """Whether a run that can be kept for ever has such a tick.

@@ -51,6 +51,7 @@ def published(project: str, constants: Mapping[str, int] | None = None) -> list[
     return sorted(found, key=lambda each: each.id)
 
 
+@pytest.mark.slow
 def test_the_finite_state_machine_has_three_components_and_five_conflicts() -> None:
     named = roles(FSM_INPUTS, ("pullup", "STATE", "SENSTATE"))
     found = analyze(published("FSM", FSM_CONSTANTS), named)
@@ -169,6 +170,7 @@ def test_a_conjunction_may_be_split() -> None:
         assert whole.verdict is parts.verdict
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scale", [1, 7, 30])
 def test_scaled_durations_give_the_same_answers(scale: int) -> None:
     answered = (

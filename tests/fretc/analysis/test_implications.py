@@ -8,8 +8,9 @@ import pytest
 import spot
 
 from compiler.logic import printing
-from fretc.analysis.findings import Analysis
-from tests.requirement_sets import analyzed, drawn, rules, terse
+from fretc.analysis.findings import Analysis, Inconsistency
+from fretc.analysis.implications import inconsistencies
+from tests.requirement_sets import analyzed, drawn, rules, staged, terse
 
 SETS = 50
 
@@ -148,6 +149,19 @@ def test_pairs_clash_where_spot_s_automata_part() -> None:
             assert found.get(pair) == expected, (sentences, pair)
             clashes += expected is not None
     assert clashes > 1
+
+
+@pytest.mark.slow
+def test_long_counts_are_compared_bit_by_bit() -> None:
+    """One after the other, these two counters would take a hundred times as long."""
+    setting = staged(
+        "whenever a the sw shall within 900 ticks satisfy x",
+        "whenever b the sw shall for 901 ticks satisfy !x",
+    )
+    (found,) = inconsistencies(setting, seconds=10)
+    assert isinstance(found, Inconsistency)
+    assert found.requirements == ("R1", "R2")
+    assert found.play == ({"a": True, "b": True, "x": False},)
 
 
 def test_what_goes_together_is_named_apart_from_what_goes_alone() -> None:

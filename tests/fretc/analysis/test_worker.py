@@ -1,5 +1,6 @@
 """Questions in a process of their own: one that dies or hangs costs no other its answer."""
 
+import multiprocessing
 import os
 import signal
 import time
@@ -62,9 +63,10 @@ def test_a_mistake_of_ours_is_one() -> None:
 
 
 def test_ctrl_c_keeps_what_is_known() -> None:
-    parent = os.getpid()
+    parent, received = os.getpid(), multiprocessing.get_context("fork").Event()
 
     def interrupt() -> None:
+        assert received.wait(60)
         os.kill(parent, signal.SIGINT)
         time.sleep(60)
 
@@ -74,8 +76,11 @@ def test_ctrl_c_keeps_what_is_known() -> None:
         for finding in findings([job("a"), job("b", interrupt), job("c")], known.append):
             assert isinstance(finding, OpenQuestion)
             known.append(finding.why)
+            if finding.why == "2 before":
+                received.set()
 
     with pytest.raises(Stopped):
         ask()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     stopped = "lost: stopped by Ctrl-C"
     assert known == ["a", "0 before", "end", "b", "2 before", stopped, stopped]

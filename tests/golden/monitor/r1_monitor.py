@@ -1077,7 +1077,11 @@ def stepped(
             monitor._fork()
         certain = _signal_codes(monitor.must, some)
         must.append(certain)
-        may.append(certain if monitor.may is monitor.must else _signal_codes(monitor.may, some))
+        if monitor.may is monitor.must:
+            may.append(certain)
+        else:
+            may.append(_signal_codes(monitor.may, some))
+            monitor._meet()
     rails = zip(must.columns(), may.columns(), strict=True)
     return tuple(
         _outcome(requirement, ticks, certain, possible, end)

@@ -30,7 +30,7 @@ ENDLESS = Budget(float("inf"))
 def assert_lost(setting: Stage) -> None:
     """The environment's play breaks something, at its last tick or by never meeting it."""
     game = setting.game(setting.arena.counters, ENDLESS)
-    play = Counterstrategy(game, game.solution(traps=True)).play()
+    play = Counterstrategy(game, game.solution(traps=True), ENDLESS).play()
     alphabet, letters = setting.arena.alphabet, play.letters
     assert broken(setting.rules, alphabet, play), play
     assert not broken(setting.assumptions, alphabet, play), play
@@ -119,7 +119,7 @@ def test_the_environment_may_win_by_waiting_for_ever(sentences: tuple[str, ...])
     setting = staged(*sentences)
     assert not synthesized(setting.rules)
     game = setting.game(setting.arena.counters, ENDLESS)
-    play = Counterstrategy(game, game.solution(traps=True)).play()
+    play = Counterstrategy(game, game.solution(traps=True), ENDLESS).play()
     assert play.loop is not None
     assert_lost(setting)
 
