@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-import spot  # type: ignore[import-not-found]
+import spot
 
 from compiler.logic import printing
 from fretc.analysis.arena.roles import Roles

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import chain
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of
+from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Numbers, Tick, numbers
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.product import Arena, arena
@@ -15,7 +16,7 @@ from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about
 from fretc.analysis.games.budget import Budget
-from fretc.analysis.games.game import Game
+from fretc.analysis.games.game import Game, upheld
 from fretc.analysis.games.plays import Letter
 from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
@@ -30,6 +31,8 @@ class Stage:
     arena: Arena
     roles: Roles
     as_fret: bool
+    _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
+    """What each game of the stage needs of the assumptions, once it has been computed."""
 
     def counters(self, ids: Iterable[str]) -> tuple[Counter, ...]:
         """Those of some requirements, in the order of the files."""
@@ -38,7 +41,10 @@ class Stage:
 
     def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
         """The game of some counters, under all assumptions."""
-        return Game(self.arena.alphabet, counters, self.arena.assumptions, budget)
+        alphabet, assumptions = self.arena.alphabet, self.arena.assumptions
+        if not self._upheld:
+            self._upheld.append(upheld(alphabet, assumptions, budget))
+        return Game(alphabet, counters, assumptions, budget, self._upheld[0])
 
     def runs(
         self, kept: Sequence[Counter], budget: Budget, watched: Sequence[Counter] = ()

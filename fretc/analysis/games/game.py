@@ -71,6 +71,14 @@ class Solution:
     goals: tuple[Goal, ...]
 
 
+def upheld(alphabet: Alphabet, assumptions: Sequence[Counter], budget: Budget) -> Function:
+    """Whether a tick leaves the assumptions such that they can be kept for ever."""
+    if not assumptions:
+        return bdd.true()
+    runs = Runs(alphabet, assumptions, budget)
+    return runs.going_on(runs.lasting())
+
+
 class Game:
     """The game of some counters."""
 
@@ -80,7 +88,17 @@ class Game:
         counters: Sequence[Counter],
         assumptions: Sequence[Counter],
         budget: Budget,
+        kept: Function | None = None,
     ) -> None:
+        """The game.
+
+        Args:
+            alphabet: of all counters.
+            counters: of requirements.
+            assumptions: likewise.
+            budget: for the fixpoints.
+            kept: `upheld` of the assumptions, where it is known from an earlier game.
+        """
         self.alphabet, self.counters, self.assumptions = alphabet, counters, assumptions
         self._budget = budget
         self.transition = Transition([*counters, *assumptions])
@@ -89,11 +107,8 @@ class Game:
         self.safe = self.reachable
         for counter in counters:
             self.safe = self.safe & counter.safe
-        self.kept = bdd.true()
+        self.kept = upheld(alphabet, assumptions, budget) if kept is None else kept
         """Whether a tick leaves the assumptions such that they can be kept for ever."""
-        if assumptions:
-            runs = Runs(alphabet, assumptions, budget)
-            self.kept = runs.going_on(runs.lasting())
         self.promises = [each.fair for each in assumptions if each.fair is not None]
         self.duties = [each.fair for each in counters if each.fair is not None]
 

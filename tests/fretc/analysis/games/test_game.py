@@ -9,7 +9,7 @@ from hypothesis import settings
 from compiler.logic.formula import atoms
 from compiler.logic.spot import holds_on
 from fretc.analysis.games.budget import Budget, OutOfTimeError
-from fretc.analysis.games.plays import Counterstrategy, Place, Strategy
+from fretc.analysis.games.plays import Counterstrategy, Letter, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches
 from fretc.analysis.stage import Stage
 from tests.requirement_sets import (
@@ -39,7 +39,7 @@ def assert_lost(setting: Stage) -> None:
     assert not earlier, "a play ends with the first breach"
 
 
-def known(setting: Stage, letters: Sequence[dict[int, bool]]) -> dict[str, int]:
+def known(setting: Stage, letters: Sequence[Letter]) -> dict[str, int]:
     names = {name for rule in setting.rules for s in rule.watch.signals for name in atoms(s)}
     return columns(setting.arena.alphabet, letters, names)
 
