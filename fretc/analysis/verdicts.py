@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from compiler.formalization.formalized import Formalized
 from fretc.analysis.arena.alphabet import BeyondError
@@ -16,11 +16,11 @@ from fretc.analysis.controllers.machine import NoMachineError, machine
 from fretc.analysis.controllers.moves import Mealy, mealy
 from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
 from fretc.analysis.games.budget import Budget, OutOfTimeError
-from fretc.analysis.games.cores import Members, cores
+from fretc.analysis.games.cores import Members, cores, minimal
 from fretc.analysis.games.plays import Counterstrategy
 from fretc.analysis.games.replay import broken
-from fretc.analysis.reasons import because
-from fretc.analysis.stage import Stage
+from fretc.analysis.reasons import because, listed
+from fretc.analysis.stage import Stage, stage
 from fretish.bindings.declarations import Role
 
 
@@ -122,13 +122,49 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
         _check_assumptions(setting, budget)
         for members in cores(len(counters), is_conflict, near):
             yield _conflict(setting, chosen(members), budget)
-    except (OutOfTimeError, BeyondError) as error:
+    except OutOfTimeError as error:
+        yield OpenQuestion(question, f"{error}{_hint(setting, seconds)}")
+        return
+    except BeyondError as error:
         yield OpenQuestion(question, str(error))
         return
     if setting.left_out is None:
         yield Completeness(tuple(rule.id for rule in setting.rules))
     else:
         yield OpenQuestion(question, setting.left_out)
+
+
+_SHORT = 200
+"""Ticks of the longest duration where durations are scaled."""
+
+
+def _hint(setting: Stage, seconds: float) -> str:
+    """What fights where all durations are a fraction of what they are: a clue, and no finding."""
+    longest = max((rule.ticks or 0 for rule in setting.rules), default=0)
+    factor = -(-longest // _SHORT)
+    if factor < 2:
+        return ""
+    rules, assumptions = (
+        [
+            replace(rule, ticks=-(-rule.ticks // factor) if rule.ticks else rule.ticks)
+            for rule in some
+        ]
+        for some in (setting.rules, setting.assumptions)
+    )
+    scaled = stage(rules, assumptions, setting.roles, as_fret=setting.as_fret)
+    every = [each.id for each in scaled.arena.counters]
+    budget = Budget(seconds)
+
+    def fights(ids: Sequence[str]) -> bool:
+        game = scaled.game(scaled.counters(ids), budget)
+        return not game.solution().is_realizable
+
+    try:
+        if not fights(every):
+            return ""
+        return f"; with all durations divided by {factor}, {listed(minimal(every, fights))} fight"
+    except OutOfTimeError:
+        return ""
 
 
 def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Conflict:

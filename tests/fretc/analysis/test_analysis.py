@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from compiler.formalization.formalized import Formalized
+from fretc.analysis import verdicts
 from fretc.analysis.analysis import analyze
-from fretc.analysis.findings import Verdict
+from fretc.analysis.findings import OpenQuestion, Verdict
 from fretc.analysis.games.budget import Budget
 from fretish.bindings.declarations import Role
 from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, roles, rule, staged
@@ -318,3 +319,17 @@ def test_the_environment_keeps_its_promises_while_it_wins() -> None:
     assert {"a", "b"} <= {
         name for tick in conflict.play[conflict.loop :] for name in named_true(tick)
     }
+
+
+def test_what_takes_too_long_comes_with_a_clue() -> None:
+    setting = staged(
+        "whenever a the sw shall within 1000000 ticks satisfy x",
+        "whenever b the sw shall for 1000001 ticks satisfy !x",
+        "whenever b the sw shall immediately satisfy x | y",
+    )
+    (found,) = verdicts.conflicts(setting, seconds=0.3)
+    assert isinstance(found, OpenQuestion)
+    assert found.why == (
+        "not answered within 0.3 s of a processor; "
+        "with all durations divided by 5001, R1 and R2 fight"
+    )
