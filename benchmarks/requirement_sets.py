@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import spot
 
 from compiler.logic import printing
+from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.games.budget import Budget
 from tests.requirement_sets import ROLES, drawn, roles, rules, staged
@@ -76,6 +77,37 @@ def hard() -> None:
         show(f"a conflict after {bound} ticks", sentences, ROLES)
 
 
+def pump() -> None:
+    """26 requirements like those of an infusion pump: alarms by priority, and commands.
+
+    Two of the alarms do not look at those above them, and fight with those that want other modes.
+    """
+    modes = [f"mode_{i}" for i in range(8)]
+    exclusive = [
+        f"the pump shall always satisfy {mode} -> !({' | '.join(m for m in modes if m != mode)})"
+        for mode in modes
+    ]
+    above = {i: " & ".join(f"!alarm_{j}" for j in range(i)) for i in range(1, 12)}
+    alarms = [
+        f"the pump shall always satisfy alarm_{i}{f' & {above[i]}' if i not in (0, 2, 7) else ''} "
+        f"-> {modes[i % 8]}"
+        for i in range(12)
+    ]
+    calm = " & ".join(f"!alarm_{j}" for j in range(12))
+    commands = [
+        f"whenever command_{i} & {calm} the pump shall immediately satisfy "
+        f"{calm.replace('!', '')} | {modes[i]} | command_{i + 1}"
+        for i in range(6)
+    ]
+    sentences = [*exclusive, *alarms, *commands]
+    inputs = [*(f"alarm_{i}" for i in range(12)), *(f"command_{i}" for i in range(7))]
+    made, named = rules(*sentences), roles(inputs, modes)
+    start = time.process_time()
+    found = analyze(made, named)
+    seconds = time.process_time() - start
+    print(f"a pump, {len(made)}: all {len(found.conflicts)} conflicts, {seconds:.2f} s", flush=True)
+
+
 def show(what: str, sentences: Sequence[str], named: Roles) -> None:
     verdict, seconds = ours(sentences, named)
     print(f"{what}: {'realizable' if verdict else 'unrealizable'}, {seconds:.2f} s", flush=True)
@@ -84,3 +116,4 @@ def show(what: str, sentences: Sequence[str], named: Roles) -> None:
 if __name__ == "__main__":
     against_spot()
     hard()
+    pump()

@@ -25,7 +25,8 @@ fretc.verification.engines  fretc.verification.monitor  fretc.verification.inter
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.analysis.arena  fretc.analysis.games  fretc.analysis.controllers  fretc.analysis
 fretc.report.traceability  fretc.attestation  fretc.reproduction
-fretc.report.model  fretc.report.pictures  fretc.report.sections  fretc.report.front
+fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
+fretc.report.sections  fretc.report.front
 fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
 simulation.world  simulation.nodes  simulation
 fretc.terminal  fretc.campaigns  fretc.api  fretc.commands  fretc

@@ -164,7 +164,7 @@ def controllers(
     options: Options,
     form: Form,
 ) -> tuple[Job, ...]:
-    """For each component: how it can be kept, in such a form; to be asked after its verdict."""
+    """For each component: how it is kept, in such a form; to be asked where each can be."""
     return tuple(
         _Setting(each, roles, assumptions, options).controller(number, form)
         for number, each in enumerate(by_outputs(rules, assumptions, roles), 1)
@@ -240,17 +240,11 @@ class _Setting:
         return Job(title, ask, partial(OpenQuestion, title))
 
     def controller(self, number: int, form: Form) -> Job:
-        """How a component is kept, where it can be."""
+        """How a component that can be kept is kept."""
         title = f"how can {self._name} be kept?"
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
-            if any(
-                isinstance(each, Component)
-                and each.requirements == self._ids
-                and each.verdict is Verdict.REALIZABLE
-                for each in known
-            ):
-                yield from self._answers(title, partial(strategy, number=number, form=form))
+            yield from self._answers(title, partial(strategy, number=number, form=form))
 
         return Job(title, ask, partial(OpenQuestion, title))
 

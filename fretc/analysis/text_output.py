@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 
 from fretc.analysis.findings import Analysis, Component, Conflict, Inconsistency, Repair, Verdict
@@ -40,10 +41,10 @@ def lines(analysis: Analysis, sentences: Mapping[str, str]) -> Iterator[Line]:
     if analysis.conflicts and not analysis.complete:
         yield "", None
         yield f"{signs.UNKNOWN.glyph} there may be more conflicts", signs.UNKNOWN.colour
-    remarks = [*_remarks(analysis)]
-    if remarks:
+    said = [*remarks(analysis)]
+    if said:
         yield "", None
-        yield from remarks
+        yield from said
     for clash in analysis.inconsistent:
         yield "", None
         yield from _inconsistency(clash, analysis)
@@ -116,21 +117,45 @@ def drawn(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> It
     """A lane for each variable, inputs first; equal ticks in one column."""
     if not play:
         return
-    names = sorted(play[0], key=lambda name: (roles.get(name) is Role.OUTPUT, name))
-    columns: list[tuple[str, list[str]]] = []
+    names = lanes(play, roles)
+    found = columns(play, names)
+    width = max(len("tick"), *(len(_lane(name, roles)) for name in names))
+    for start in range(0, len(found), _WIDEST):
+        shown = found[start : start + _WIDEST]
+        widths = [max(len(each.head), *map(len, each.values)) for each in shown]
+        yield _row("tick", [each.head for each in shown], width, widths)
+        for place, name in enumerate(names):
+            yield _row(_lane(name, roles), [each.values[place] for each in shown], width, widths)
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """Equal ticks in a row, and the value of each lane."""
+
+    first: int
+    last: int
+    values: tuple[str, ...]
+
+    @property
+    def head(self) -> str:
+        """`3`, or `3..7`."""
+        return str(self.first) if self.first == self.last else f"{self.first}..{self.last}"
+
+
+def lanes(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> list[str]:
+    """The names of a play, those of inputs first."""
+    names = play[0] if play else ()
+    return sorted(names, key=lambda name: (roles.get(name) is Role.OUTPUT, name))
+
+
+def columns(play: Sequence[Mapping[str, object]], names: Sequence[str]) -> list[Column]:
+    """A play with equal ticks in one column."""
+    found: list[Column] = []
     for _, group in groupby(enumerate(play), lambda pair: pair[1]):
         run = list(group)
-        first, last = run[0][0], run[-1][0]
-        head = str(first) if first == last else f"{first}..{last}"
-        columns.append((head, [_value(run[0][1][name]) for name in names]))
-    width = max(len("tick"), *(len(_lane(name, roles)) for name in names))
-    for start in range(0, len(columns), _WIDEST):
-        shown = columns[start : start + _WIDEST]
-        widths = [max(len(head), *map(len, values)) for head, values in shown]
-        heads = [head for head, _ in shown]
-        yield _row("tick", heads, width, widths)
-        for place, name in enumerate(names):
-            yield _row(_lane(name, roles), [v[place] for _, v in shown], width, widths)
+        values = tuple(_value(run[0][1][name]) for name in names)
+        found.append(Column(run[0][0], run[-1][0], values))
+    return found
 
 
 def _lane(name: str, roles: Mapping[str, Role]) -> str:
@@ -147,7 +172,7 @@ def _value(value: object) -> str:
     return str(int(value)) if isinstance(value, bool) else str(value)
 
 
-def _remarks(analysis: Analysis) -> Iterator[Line]:
+def remarks(analysis: Analysis) -> Iterator[Line]:
     """What single requirements say, or do not."""
     empty = signs.EMPTY
     if analysis.consistent is False:

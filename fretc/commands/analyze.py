@@ -37,8 +37,8 @@ if TYPE_CHECKING:
 
     from compiler.formalization.formalized import Formalized
     from compiler.project.folder import Project
-    from fretc.analysis.analysis import Finding
-    from fretc.analysis.controllers.files import Form
+    from fretc.analysis.analysis import Options
+    from fretc.analysis.arena.roles import Roles
     from fretc.analysis.findings import Analysis
 
 
@@ -61,21 +61,27 @@ if TYPE_CHECKING:
     type=click.Choice(("python", "hoa", "dot")),
     help="Write how a system keeps them: a program, or a Mealy machine.",
 )
-@output_option(default="build", show_default=True, help="Folder for `--emit`; `-` prints.")
+@path_option(
+    "--emit-to", default="build", show_default=True, help="Folder for `--emit`; `-` prints."
+)
 @click.option("--as-fret", is_flag=True, help="Answer as FRET does: `eventually` means at once.")
 @requirements_option
 @path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
 @format_option()
+@output_option(
+    default="build/analysis.json", show_default=True, help="Where evidence goes; `-` prints it."
+)
 def analyze(
     files: tuple[str, ...],
     component: str | None,
     seconds: float,
     emitted: str | None,
-    output: str,
+    emit_to: str,
     as_fret: bool,
     requirements: str,
     bindings: str | None,
     form: str,
+    output: str,
 ) -> None:
     """Say whether requirements can be kept together, which fight, and which say nothing.
 
@@ -86,13 +92,12 @@ def analyze(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from fretc.analysis.analysis import Options, assembled, controllers, jobs
+    from compiler.project.paths import companions
+    from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
-    from fretc.analysis.controllers.files import Form
+    from fretc.analysis.evidence import document
     from fretc.analysis.text_output import lines
-    from fretc.analysis.worker import Stopped, findings
-    from fretc.terminal.progress import at_work
     from fretish.printer import sentence as printed
 
     project, first = _project(files, requirements, bindings)
@@ -104,52 +109,81 @@ def analyze(
     chosen = roles([*rules, *assumed])
     if isinstance(chosen, tuple):
         stop(*chosen)
-    options = Options(seconds, as_fret)
-    found: list[Finding] = []
-    stopped = False
-    questions = [*jobs(rules, chosen, assumed, options)]
-    if emitted is not None:
-        questions.extend(controllers(rules, chosen, assumed, options, Form(emitted)))
-    try:
-        for finding in findings(questions, at_work):
-            found.append(finding)
-    except Stopped:
-        stopped = True
-    analysis = assembled(rules, chosen, assumed, options, found)
-    if output == "-" and emitted is not None:
-        pass  # what is printed is the file
+    analysis, stopped = asked(rules, assumed, chosen, Options(seconds, as_fret))
+    evidence = f"{to_json(plain(document(rules, assumed, analysis, as_fret=as_fret)))}\n"
+    if emitted is not None and emit_to == "-":
+        pass  # what is printed is the strategy
+    elif output == "-":
+        click.echo(evidence, nl=False)
     elif form == "json":
         click.echo(to_json(plain(analysis)))
     else:
         sentences = {rule.id: printed(rule.written) for rule in rules}
         click.echo(coloured([*lines(analysis, sentences)]), nl=False)
+    if output != "-":
+        sources = [requirement.wording.source.name for requirement in project.requirements]
+        deliver(
+            {Path(output): evidence}, [*sources, *companions(sources), *filter(None, [bindings])]
+        )
     if emitted is not None and not stopped:
-        _emit(analysis, found, rules, Form(emitted), output)
+        _emit(analysis, rules, assumed, chosen, Options(seconds, as_fret), emitted, emit_to)
     raise SystemExit(INTERRUPTED if stopped else _status(analysis))
+
+
+def asked(
+    rules: Sequence[Formalized],
+    assumed: Sequence[Formalized],
+    chosen: Roles,
+    options: Options,
+) -> tuple[Analysis, bool]:
+    """What is found of the requirements, and whether Ctrl-C has stopped it."""
+    from fretc.analysis.analysis import Finding, assembled, jobs
+    from fretc.analysis.worker import Stopped, findings
+    from fretc.terminal.progress import at_work
+
+    found: list[Finding] = []
+    stopped = False
+    try:
+        for finding in findings(jobs(rules, chosen, assumed, options), at_work):
+            found.append(finding)
+    except Stopped:
+        stopped = True
+    return assembled(rules, chosen, assumed, options, found), stopped
 
 
 def _emit(
     analysis: Analysis,
-    found: Sequence[Finding],
     rules: Sequence[Formalized],
-    form: Form,
+    assumed: Sequence[Formalized],
+    chosen: Roles,
+    options: Options,
+    emitted: str,
     output: str,
 ) -> None:
     """Write the strategies of all components, or none of them."""
+    from fretc.analysis.analysis import controllers
     from fretc.analysis.controllers.circuit import Circuit
     from fretc.analysis.controllers.files import Form, automata, controller
     from fretc.analysis.controllers.moves import Mealy
-    from fretc.analysis.findings import Verdict
+    from fretc.analysis.findings import OpenQuestion, Verdict
+    from fretc.analysis.worker import Stopped, findings
+    from fretc.terminal.progress import at_work
     from fretish.printer import sentence as printed
 
     if analysis.verdict is not Verdict.REALIZABLE:
         say_line(f"no strategy is written: {analysis.why}")
         return
+    form = Form(emitted)
+    try:
+        found = [*findings(controllers(rules, chosen, assumed, options, form), at_work)]
+    except Stopped:
+        raise SystemExit(INTERRUPTED) from None
     circuits = [each for each in found if isinstance(each, Circuit)]
     machines = [each for each in found if isinstance(each, Mealy)]
-    if len(circuits) + len(machines) < len(analysis.components):
-        (why, *_) = [each.why for each in analysis.open if each.question.startswith("how can ")]
-        stop(Diagnostic(Code.TOO_LARGE, f"no strategy can be written: {why}", help=_smaller(form)))
+    for each in found:
+        if isinstance(each, OpenQuestion):
+            message = f"no strategy can be written: {each.why}"
+            stop(Diagnostic(Code.TOO_LARGE, message, help=_smaller(form)))
     if form is Form.PYTHON:
         sentences = {rule.id: printed(rule.written) for rule in rules}
         assumed = {each.id: each.sentence for each in analysis.assumptions}
@@ -162,10 +196,8 @@ def _emit(
         deliver({Path(output) / each.path: each.text for each in artifacts})
 
 
-def _smaller(form: Form) -> str:
-    from fretc.analysis.controllers.files import Form
-
-    if form is Form.PYTHON:
+def _smaller(form: str) -> str:
+    if form == "python":
         return "ask for one component with `--component`, or for more time with `--time`"
     return "`--emit python` has no states, and writes far larger strategies"
 

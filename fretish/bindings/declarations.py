@@ -213,6 +213,8 @@ class Variable:
     """What an agent does to make it true; empty: `do_` and its name."""
     value: Expression | None = None
     """What it stands for in every sentence: FRET's assignment, in the words of FRETish."""
+    of: Mapping[str, Variable] = field(default_factory=dict)
+    """What it is in sentences about these components instead, each as a whole."""
     span: Span | None = field(default=None, compare=False, repr=False)
     """Where `value` stands."""
 
@@ -355,6 +357,15 @@ class Declarations:
             for name, variable in self.variables.items()
             if variable.value is not None
         }
+
+    def about(self, component: str) -> Declarations:
+        """The same with the variables as they are in sentences about a component."""
+        own = {
+            name: each.of[component]
+            for name, each in self.variables.items()
+            if component in each.of
+        }
+        return replace(self, variables={**self.variables, **own}) if own else self
 
     def reading(self, propositions: Iterable[str]) -> Declarations:
         """The same without the signals that none of the propositions reads."""

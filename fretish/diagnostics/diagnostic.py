@@ -171,6 +171,8 @@ class Code(Enum):
     LABEL_CONFLICT = ("F552", "a run has several values of one label")
     NO_LABEL = ("F553", "a run has no value of a label")
     NOT_COMPARABLE = ("F560", "audits cannot be compared")
+    UNREALIZABLE = ("F561", "requirements cannot be kept together")
+    NOT_ANALYZED = ("F562", "it is not known whether requirements can be kept together")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
     OTHER_TEXTS = ("F546", "the texts of a review are not those of its fingerprints")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")

@@ -20,22 +20,38 @@ CHOSEN = (Role.INPUT, Role.OUTPUT)
 
 
 def roles(rules: Sequence[Formalized]) -> Roles | tuple[Diagnostic, ...]:
-    """The role of each variable; or F354 for each that has none, where it stands first."""
-    found: dict[str, Role] = {}
-    missing: dict[str, Diagnostic] = {}
+    """The role of each variable; or what is wrong with each that has none, or has two.
+
+    F354 stands where a variable without a role is read first. F907 is of one that is an input of
+    one component and an output of another one.
+    """
+    found: dict[str, tuple[Role, str]] = {}
+    wrong: dict[str, Diagnostic] = {}
     for rule in rules:
         for name in rule.variables:
-            if name in found or name in missing:
-                continue
-            role = _role(rule, name)
-            if role is None:
-                missing[name] = _no_role(rule, name, rules)
+            own, component = role(rule, name), rule.sentence.component
+            first, whose = found.get(name, (own, component))
+            if own is None:
+                wrong.setdefault(name, _no_role(rule, name, rules))
+            elif own is not first:
+                wrong.setdefault(name, _two_roles(rule, name, f"{first} of `{whose}`", own))
             else:
-                found[name] = role
-    return tuple(missing.values()) or found
+                found[name] = own, whose
+    return tuple(wrong.values()) or {name: own for name, (own, _) in found.items()}
 
 
-def _role(rule: Formalized, name: str) -> Role | None:
+def _two_roles(rule: Formalized, name: str, first: str, second: Role) -> Diagnostic:
+    """F907."""
+    component = rule.sentence.component
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"`{name}` is an {first}, and an {second} of `{component}`: these are two systems",
+        place(rule, name),
+        help=f"ask about one of them: `--component {component}`",
+    )
+
+
+def role(rule: Formalized, name: str) -> Role | None:
     """The role that is declared; that of its signals, where a proposition has none of its own."""
     variable = rule.glossary.get(name)
     if variable is not None and variable.role in CHOSEN:
@@ -49,8 +65,8 @@ def _common(declarations: Declarations, name: str) -> Role | None:
         return None
     signals = (declarations.signals.get(signal) for signal in proposition.signals)
     theirs = {signal.role if signal is not None else None for signal in signals}
-    role = theirs.pop() if len(theirs) == 1 else None
-    return role if role in CHOSEN else None
+    common = theirs.pop() if len(theirs) == 1 else None
+    return common if common in CHOSEN else None
 
 
 def _no_role(rule: Formalized, name: str, rules: Iterable[Formalized]) -> Diagnostic:
@@ -60,14 +76,14 @@ def _no_role(rule: Formalized, name: str, rules: Iterable[Formalized]) -> Diagno
         table = "proposition" if name in declared.propositions else table
         table = "signal" if name in declared.signals else table
     answered = any(name in _answers(each) for each in rules)
-    role = Role.OUTPUT if answered else Role.INPUT
+    likely = Role.OUTPUT if answered else Role.INPUT
     why = "stands in a response" if answered else "stands in no response"
     variable = rule.glossary.get(name)
     if variable is not None and variable.role == Role.MODE:
         message = f"`{name}` is a mode, and nothing says whether the system chooses it"
     else:
         message = f"nothing says who chooses `{name}`: the environment or the system"
-    line = f'role = "{role}"'
+    line = f'role = "{likely}"'
     return Diagnostic(
         Code.NO_ROLE,
         message,

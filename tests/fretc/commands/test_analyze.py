@@ -161,7 +161,7 @@ KEPT = (
 
 def test_a_strategy_is_a_program_that_runs(fretc: Fretc, tmp_path: Path) -> None:
     folder, out = written(tmp_path, KEPT), tmp_path / "out"
-    run = fretc("analyze", str(folder), "--emit", "python", "-o", str(out))
+    run = fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(out))
     assert run.status == 0, run.err
     program = [sys.executable, str(out / "controller.py")]
     ticks = [{"start": True, "stop": True}] + 2 * [{"start": False, "stop": False}]
@@ -181,17 +181,17 @@ def test_a_strategy_is_an_automaton_for_each_component(
 ) -> None:
     other = "whenever start the lamp shall immediately satisfy glow"
     folder, out = written(tmp_path, (*KEPT, other), ROLES | {"glow": "output"}), tmp_path / "out"
-    assert fretc("analyze", str(folder), "--emit", form, "-o", str(out)).status == 0
+    assert fretc("analyze", str(folder), "--emit", form, "--emit-to", str(out)).status == 0
     texts = [path.read_text() for path in sorted(out.iterdir())]
     assert [path.name for path in sorted(out.iterdir())] == [f"controller-{i}.{form}" for i in "12"]
     assert all(text.startswith(begin) for text in texts)
     assert "glow" in texts[1]
-    printed = fretc("analyze", str(folder), "--emit", form, "-o", "-")
+    printed = fretc("analyze", str(folder), "--emit", form, "--emit-to", "-")
     assert printed.out == "".join(texts)
 
 
 def test_no_strategy_is_written_where_there_is_none(fretc: Fretc, folder: Path) -> None:
-    run = fretc("analyze", str(folder), "--emit", "python", "-o", str(folder / "out"))
+    run = fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(folder / "out"))
     assert run.status == 1
     assert "no strategy is written: cannot be kept together: R1, R2" in run.err
     assert not (folder / "out").exists()
@@ -199,8 +199,93 @@ def test_no_strategy_is_written_where_there_is_none(fretc: Fretc, folder: Path) 
 
 def test_a_strategy_that_is_too_large_is_refused(fretc: Fretc, tmp_path: Path) -> None:
     folder = written(tmp_path, ["upon start the line shall for 5000 ticks satisfy run"])
-    run = fretc("analyze", str(folder), "--emit", "hoa", "-o", str(tmp_path / "out"))
+    run = fretc("analyze", str(folder), "--emit", "hoa", "--emit-to", str(tmp_path / "out"))
     assert run.status == 2
     assert "F670 no strategy can be written: its automaton has more than 1000 states" in run.err
     assert not (tmp_path / "out").exists()
-    assert fretc("analyze", str(folder), "--emit", "python", "-o", str(tmp_path)).status == 0
+    assert fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(tmp_path)).status == 0
+
+
+# FRET's exports --------------------------------------------------------------------------------
+
+
+def exported(folder: Path, sentences: dict[str, str], variables: Sequence[dict[str, str]]) -> str:
+    """An export of FRET: sentences by their ids, and its records of variables."""
+    requirements = [{"reqid": id, "fulltext": text} for id, text in sentences.items()]
+    path = folder / "export.json"
+    path.write_text(json.dumps({"requirements": requirements, "variables": list(variables)}))
+    return str(path)
+
+
+def variable(component: str, name: str, kind: str, type_: str, value: str = "") -> dict[str, str]:
+    names = {"component_name": component, "variable_name": name}
+    return {**names, "idType": kind, "dataType": type_, "assignment": value}
+
+
+def test_an_export_of_fret_is_analyzed_straight(fretc: Fretc, tmp_path: Path) -> None:
+    """Roles are FRET's, and a constant stands for its value: `state` cannot be two at once."""
+    sentences = {
+        "R1": "the sw shall always satisfy button -> state = idle",
+        "R2": "the sw shall always satisfy button -> state = busy",
+    }
+    variables = [
+        variable("sw", "button", "Input", "boolean"),
+        variable("sw", "state", "Output", "double"),
+        variable("sw", "idle", "Internal", "double", "0.0"),
+        variable("sw", "busy", "Internal", "double", "1.0"),
+    ]
+    folder = str(tmp_path / "in")
+    assert fretc("import", exported(tmp_path, sentences, variables), "-o", folder).status == 0
+    run = fretc("analyze", folder, "--format", "json")
+    found = json.loads(run.out)
+    assert found["roles"] == {"button": "input", "state": "output"}
+    assert [each["requirements"] for each in found["conflicts"]] == [["R1", "R2"]]
+
+
+def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) -> None:
+    """What is an output of one component is an input of the other one, which has to bear it."""
+    sentences = {
+        "S1": "the sender shall always satisfy link",
+        "R1": "the receiver shall always satisfy link",
+    }
+    variables = [
+        variable("sender", "link", "Output", "boolean"),
+        variable("receiver", "link", "Input", "boolean"),
+    ]
+    folder = str(tmp_path / "in")
+    assert fretc("import", exported(tmp_path, sentences, variables), "-o", folder).status == 0
+    assert fretc("analyze", folder, "--component", "sender").status == 0
+    assert fretc("analyze", folder, "--component", "receiver").status == 1
+    both = fretc("analyze", folder)
+    assert both.status == 2
+    assert both.err.startswith(
+        "F907 `link` is an output of `sender`, and an input of `receiver`: these are two systems\n"
+    )
+    assert both.err.endswith("help: ask about one of them: `--component receiver`\n")
+
+
+# `fretc check --analyze` -----------------------------------------------------------------------
+
+
+def test_check_names_each_conflict(fretc: Fretc, folder: Path) -> None:
+    run = fretc("check", str(folder), "--analyze")
+    assert "F561 warning: R1 and R2 cannot be kept together: at tick 2 R1 demands `run`" in run.err
+    assert "F561" not in fretc("check", str(folder)).err
+
+
+def test_check_takes_an_answer_only_while_it_is_about_these(fretc: Fretc, tmp_path: Path) -> None:
+    """The answer in the file was changed by hand, so that it shows where it is taken."""
+    good = (FIGHT[0], "upon stop the line shall within 3 ticks satisfy !run")
+    written(tmp_path, good)
+    assert fretc("analyze", str(tmp_path)).status == 0
+    assert "F56" not in fretc("check", str(tmp_path), "--analyze").err
+    text = Path("build/analysis.json").read_text().replace('"realizable"', '"not checked"')
+    Path("build/analysis.json").write_text(text)
+    assert "F562 warning" in fretc("check", str(tmp_path), "--analyze").err
+    written(tmp_path, FIGHT)
+    assert "F561 warning" in fretc("check", str(tmp_path), "--analyze").err
+
+
+def test_check_says_what_has_no_role(fretc: Fretc, folder: Path) -> None:
+    written(folder, FIGHT, {"start": "input", "run": "output"})
+    assert "F354" in fretc("check", str(folder), "--analyze").err
