@@ -6,8 +6,11 @@ import random
 from collections.abc import Mapping, Sequence
 from functools import cache
 
+import spot
+
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import Formalized
+from compiler.logic import printing
 from fretc.analysis.analysis import Options, analyze
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.findings import Analysis
@@ -47,16 +50,36 @@ def staged(
 
 
 def analyzed(
-    *sentences: str, roles: Roles = ROLES, assumed: Sequence[str] = (), as_fret: bool = False
+    *sentences: str,
+    roles: Roles = ROLES,
+    assumed: Sequence[str] = (),
+    as_fret: bool = False,
+    repairs: bool = False,
 ) -> Analysis:
     """All that is found of them."""
     assumptions = [rule(f"A{i}", sentence) for i, sentence in enumerate(assumed, 1)]
-    return analyze(rules(*sentences), roles, assumptions, Options(as_fret=as_fret))
+    return analyze(rules(*sentences), roles, assumptions, Options(as_fret=as_fret, repairs=repairs))
 
 
 def conflicts(analysis: Analysis) -> list[tuple[str, ...]]:
     """The ids of each."""
     return [each.requirements for each in analysis.conflicts]
+
+
+def synthesized(rules: Sequence[Formalized], assumptions: Sequence[Formalized] = ()) -> bool:
+    """What Spot says of the future-time formulas."""
+    kept, given = (
+        " & ".join(f"({printing.future(rule.ft_infinite)})" for rule in some) or "1"
+        for some in (rules, assumptions)
+    )
+    formula = f"({given}) -> ({kept})"
+    return bool(spot.solve_game(spot.ltl_to_game(formula, list(OUTPUTS))))
+
+
+def satisfiable(rules: Sequence[Formalized]) -> bool:
+    """Whether any run keeps them, as Spot says."""
+    formulas = (f"({printing.future(rule.ft_infinite)})" for rule in rules)
+    return not spot.translate(" & ".join(formulas)).is_empty()
 
 
 SCOPES = ("while {}", "before {}", "after {}", "only while {}", "only before {}", "only after {}",

@@ -23,7 +23,8 @@ fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.
 fretc.audit.selection  fretc.audit.outputs  fretc.audit.bindings
 fretc.verification.engines  fretc.verification.monitor  fretc.verification.interceptor
 fretc.verification.loop  fretc.verification.layers  fretc.verification
-fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis
+fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis.controllers
+fretc.analysis
 fretc.report.traceability  fretc.attestation  fretc.reproduction
 fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front

@@ -140,3 +140,27 @@ def witness(function: Function, prefer: bool = False) -> dict[int, bool]:
 def size(function: Function) -> int:
     """How many nodes it has."""
     return int(_buddy().bdd_nodecount(function))
+
+
+def branches(function: Function) -> tuple[int, Function, Function]:
+    """The topmost variable of a function that is not constant; where it is true, and where not."""
+    buddy = _buddy()
+    return buddy.bdd_var(function), buddy.bdd_high(function), buddy.bdd_low(function)
+
+
+def parts(functions: Iterable[Function]) -> tuple[Function, ...]:
+    """Every function within the diagrams that is not constant, each after those that it needs."""
+    found: dict[Function, None] = {}
+    waiting = [*functions]
+    while waiting:
+        function = waiting[-1]
+        needed = []
+        if function not in found and function not in (true(), false()):
+            _, high, low = branches(function)
+            needed = [n for n in (high, low) if n not in found and n not in (true(), false())]
+            if not needed:
+                found[function] = None
+        waiting.extend(needed)
+        if not needed:
+            waiting.pop()
+    return tuple(found)

@@ -15,6 +15,9 @@ from fretc.analysis import implications as of_runs
 from fretc.analysis.arena.alphabet import BeyondError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import by_outputs, by_variables
+from fretc.analysis.controllers.circuit import Circuit
+from fretc.analysis.controllers.files import Form
+from fretc.analysis.controllers.moves import Mealy
 from fretc.analysis.findings import (
     SCHEMA,
     Analysis,
@@ -24,12 +27,14 @@ from fretc.analysis.findings import (
     Inconsistency,
     OpenQuestion,
     Redundancy,
+    Repair,
     Vacuity,
     Verdict,
 )
 from fretc.analysis.implications import Consistency, Constant, Removable
+from fretc.analysis.repairs import repairs
 from fretc.analysis.stage import Stage, stage
-from fretc.analysis.verdicts import Completeness, component, conflicts, verdict
+from fretc.analysis.verdicts import Completeness, component, conflicts, strategy, verdict
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import deep
 
@@ -43,6 +48,8 @@ class Options:
     as_fret: bool = False
     """FRET's question: the past form of each requirement holds at every tick, so that `eventually`
     means at once."""
+    repairs: bool = True
+    """Whether what would settle conflicts is looked for."""
 
 
 DEFAULT = Options()
@@ -57,7 +64,10 @@ Finding = (
     | Removable
     | Vacuity
     | Inconsistency
+    | Repair
     | OpenQuestion
+    | Circuit
+    | Mealy
 )
 
 
@@ -128,6 +138,7 @@ def jobs(
             for title, question in _OF_GROUPS.items()
             for setting in groups
         ),
+        *(setting.repairs() for setting in components if options.repairs),
     )
 
 
@@ -144,6 +155,20 @@ def _promises(assumptions: Sequence[Formalized], roles: Roles, options: Options)
                     yield OpenQuestion("what follows from the assumptions", f"no run keeps {ids}")
 
     return Job(title, ask, partial(OpenQuestion, title))
+
+
+def controllers(
+    rules: Sequence[Formalized],
+    roles: Roles,
+    assumptions: Sequence[Formalized],
+    options: Options,
+    form: Form,
+) -> tuple[Job, ...]:
+    """For each component: how it is kept, in such a form; to be asked where each can be."""
+    return tuple(
+        _Setting(each, roles, assumptions, options).controller(number, form)
+        for number, each in enumerate(by_outputs(rules, assumptions, roles), 1)
+    )
 
 
 class _Setting:
@@ -199,6 +224,30 @@ class _Setting:
 
         return Job(title, ask, partial(OpenQuestion, title))
 
+    def repairs(self) -> Job:
+        """What would settle the conflicts of a component."""
+        title = f"what would settle the conflicts of {self._name}?"
+
+        def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            mine = [
+                each
+                for each in known
+                if isinstance(each, Conflict) and set(each.requirements) <= set(self._ids)
+            ]
+            if mine:
+                yield from repairs(self._stage, mine, self._options.seconds)
+
+        return Job(title, ask, partial(OpenQuestion, title))
+
+    def controller(self, number: int, form: Form) -> Job:
+        """How a component that can be kept is kept."""
+        title = f"how can {self._name} be kept?"
+
+        def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            yield from self._answers(title, partial(strategy, number=number, form=form))
+
+        return Job(title, ask, partial(OpenQuestion, title))
+
     def job(self, title: str, question: Question) -> Job:
         """A question about a group."""
         title = title.format(self._name)
@@ -246,6 +295,7 @@ def assembled(
         components=components,
         conflicts=tuple(fights),
         complete=known.issuperset(rule.id for rule in rules),
+        repairs=_of(Repair, found),
         redundant=_of(Redundancy, found),
         removable=tuple(sorted(id for each in _of(Removable, found) for id in each.requirements)),
         vacuous=_of(Vacuity, found),

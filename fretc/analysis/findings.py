@@ -52,6 +52,17 @@ class Conflict(Record, frozen=True):
     ] = None
 
 
+class Repair(Record, frozen=True):
+    """What would settle a conflict, as the game of the changed set has shown."""
+
+    conflict: Annotated[tuple[Name, ...], about("the ids of the conflict that it settles")]
+    requirement: Annotated[
+        Name | None, about("whose bound changes; null: the sentences are assumptions")
+    ]
+    sentences: Annotated[tuple[Name, ...], about("in FRETish")]
+    settles: Annotated[bool, about("whether all of the component can be kept then")]
+
+
 class Redundancy(Record, frozen=True):
     """A requirement that others imply: no run that keeps these breaks it."""
 
@@ -102,6 +113,7 @@ class Analysis(Record, frozen=True):
     components: tuple[Component, ...]
     conflicts: tuple[Conflict, ...]
     complete: Annotated[bool, about("whether these are all minimal conflicts")]
+    repairs: Annotated[tuple[Repair, ...], about("what would settle each conflict")]
     redundant: tuple[Redundancy, ...]
     removable: Annotated[
         tuple[Name, ...],

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from fretc.analysis.findings import Analysis, Component, Conflict, Inconsistency, Verdict
+from fretc.analysis.findings import Analysis, Component, Conflict, Inconsistency, Repair, Verdict
 from fretc.analysis.reasons import listed
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import signs
@@ -89,6 +89,19 @@ def _conflict(
         yield f"    {row}", None
     if conflict.loop is not None:
         yield f"    and from tick {conflict.loop} on the same again, for ever", None
+    mending = [each for each in analysis.repairs if each.conflict == ids]
+    if mending:
+        yield "  any of these would settle it (proved by the same game):", None
+    for repair in mending:
+        yield from _repair(repair)
+
+
+def _repair(repair: Repair) -> Iterator[Line]:
+    what = repair.requirement or "assume"
+    last = len(repair.sentences) - 1
+    for number, sentence in enumerate(repair.sentences):
+        rest = "" if repair.settles or number < last else "  (other conflicts stay)"
+        yield f"    {what if number == 0 else 'and'}: {sentence}{rest}", None
 
 
 def _inconsistency(clash: Inconsistency, analysis: Analysis) -> Iterator[Line]:

@@ -10,6 +10,10 @@ from compiler.formalization.formalized import Formalized
 from fretc.analysis.arena.alphabet import BeyondError
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.controllers.circuit import Circuit, circuit
+from fretc.analysis.controllers.files import Form
+from fretc.analysis.controllers.machine import NoMachineError, machine
+from fretc.analysis.controllers.moves import Mealy, mealy
 from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
 from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import Members, cores, minimal
@@ -72,6 +76,30 @@ def _is_lost(generous: Stage, counters: Sequence[Counter], budget: Budget) -> bo
     if generous.of_inputs is not None:
         return False
     return not generous.game(counters, budget).solution().is_realizable
+
+
+def strategy(
+    setting: Stage, seconds: float, *, number: int, form: Form
+) -> Iterator[Circuit | Mealy | OpenQuestion]:
+    """How a component that can be kept is kept.
+
+    Args:
+        setting: of the component.
+        seconds: of a processor.
+        number: of the component.
+        form: in which the strategy is to be written.
+    """
+    ids = tuple(rule.id for rule in setting.rules)
+    budget = Budget(seconds)
+    try:
+        game = setting.game(setting.arena.counters, budget)
+        found = machine(game, game.solution(), budget)
+        if form is Form.PYTHON:
+            yield circuit(found, ids, number)
+        else:
+            yield mealy(found, ids, budget)
+    except (BeyondError, NoMachineError, OutOfTimeError) as error:
+        yield OpenQuestion(f"how can {', '.join(ids)} be kept?", str(error))
 
 
 def _check_assumptions(setting: Stage, budget: Budget) -> None:

@@ -27,6 +27,7 @@ from fretc.terminal.output import (
     coloured,
     deliver,
     say_briefly,
+    say_line,
     stop,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
@@ -54,6 +55,15 @@ if TYPE_CHECKING:
     show_default=True,
     help="Seconds of a processor for each question.",
 )
+@click.option(
+    "--emit",
+    "emitted",
+    type=click.Choice(("python", "hoa", "dot")),
+    help="Write how a system keeps them: a program, or a Mealy machine.",
+)
+@path_option(
+    "--emit-to", default="build", show_default=True, help="Folder for `--emit`; `-` prints."
+)
 @click.option("--as-fret", is_flag=True, help="Answer as FRET does: `eventually` means at once.")
 @requirements_option
 @path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
@@ -65,6 +75,8 @@ def analyze(
     files: tuple[str, ...],
     component: str | None,
     seconds: float,
+    emitted: str | None,
+    emit_to: str,
     as_fret: bool,
     requirements: str,
     bindings: str | None,
@@ -99,7 +111,9 @@ def analyze(
         stop(*chosen)
     analysis, stopped = asked(rules, assumed, chosen, Options(seconds, as_fret))
     evidence = f"{to_json(plain(document(rules, assumed, analysis, as_fret=as_fret)))}\n"
-    if output == "-":
+    if emitted is not None and emit_to == "-":
+        pass  # what is printed is the strategy
+    elif output == "-":
         click.echo(evidence, nl=False)
     elif form == "json":
         click.echo(to_json(plain(analysis)))
@@ -111,6 +125,8 @@ def analyze(
         deliver(
             {Path(output): evidence}, [*sources, *companions(sources), *filter(None, [bindings])]
         )
+    if emitted is not None and not stopped:
+        _emit(analysis, rules, assumed, chosen, Options(seconds, as_fret), emitted, emit_to)
     raise SystemExit(INTERRUPTED if stopped else _status(analysis))
 
 
@@ -133,6 +149,57 @@ def asked(
     except Stopped:
         stopped = True
     return assembled(rules, chosen, assumed, options, found), stopped
+
+
+def _emit(
+    analysis: Analysis,
+    rules: Sequence[Formalized],
+    assumed: Sequence[Formalized],
+    chosen: Roles,
+    options: Options,
+    emitted: str,
+    output: str,
+) -> None:
+    """Write the strategies of all components, or none of them."""
+    from fretc.analysis.analysis import controllers
+    from fretc.analysis.controllers.circuit import Circuit
+    from fretc.analysis.controllers.files import Form, automata, controller
+    from fretc.analysis.controllers.moves import Mealy
+    from fretc.analysis.findings import OpenQuestion, Verdict
+    from fretc.analysis.worker import Stopped, findings
+    from fretc.terminal.progress import at_work
+    from fretish.printer import sentence as printed
+
+    if analysis.verdict is not Verdict.REALIZABLE:
+        say_line(f"no strategy is written: {analysis.why}")
+        return
+    form = Form(emitted)
+    try:
+        found = [*findings(controllers(rules, chosen, assumed, options, form), at_work)]
+    except Stopped:
+        raise SystemExit(INTERRUPTED) from None
+    circuits = [each for each in found if isinstance(each, Circuit)]
+    machines = [each for each in found if isinstance(each, Mealy)]
+    for each in found:
+        if isinstance(each, OpenQuestion):
+            message = f"no strategy can be written: {each.why}"
+            stop(Diagnostic(Code.TOO_LARGE, message, help=_smaller(form)))
+    if form is Form.PYTHON:
+        sentences = {rule.id: printed(rule.written) for rule in rules}
+        granted = {each.id: each.sentence for each in analysis.assumptions}
+        artifacts = [controller(circuits, sentences, granted)]
+    else:
+        artifacts = [*automata(machines, form)]
+    if output == "-":
+        deliver({Path("-"): "".join(each.text for each in artifacts)})
+    else:
+        deliver({Path(output) / each.path: each.text for each in artifacts})
+
+
+def _smaller(form: str) -> str:
+    if form == "python":
+        return "ask for one component with `--component`, or for more time with `--time`"
+    return "`--emit python` has no states, and writes far larger strategies"
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> tuple[Project, str]:

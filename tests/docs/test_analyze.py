@@ -13,7 +13,7 @@ def printed(subject: str) -> str:
     """`start, stop -> run; SENTENCE; SENTENCE`, and what is printed of these."""
     named, *sentences = subject.split("; ")
     inputs, outputs = (part.split(", ") for part in named.split(" -> "))
-    found = analyzed(*sentences, roles=roles(inputs, outputs))
+    found = analyzed(*sentences, roles=roles(inputs, outputs), repairs=True)
     written = {f"R{i}": sentence for i, sentence in enumerate(sentences, 1)}
     return "\n".join(f"    {line}".rstrip() for line, _ in lines(found, written))
 

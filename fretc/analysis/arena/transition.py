@@ -28,6 +28,10 @@ class Transition:
         """The one state before the first tick."""
         return bdd.point(self.start)
 
+    def step(self, bit: int) -> Function:
+        """The value of a bit after a tick, over a state and a letter."""
+        return self._steps[bit]
+
     def moved(self, states: Function) -> Function:
         """Over a state and a letter: whether the state after it is one of these.
 

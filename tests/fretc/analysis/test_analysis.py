@@ -66,7 +66,7 @@ def test_the_finite_state_machine_has_three_components_and_five_conflicts() -> N
         ("FSM-008", "FSM-009"), ("FSM-010", "FSM-011"),
     ]  # fmt: skip
     assert found.conflicts[0].because == (
-        "at tick 0 FSM-002 demands `(STATE = 3)` and FSM-003 demands `(STATE = 1)`"
+        "at tick 0 FSM-002 demands `(STATE = 3)`, and FSM-003 demands `(STATE = 1)`"
     )
 
 
@@ -79,7 +79,7 @@ def test_the_liquid_mixer_has_six_components_and_one_conflict() -> None:
     ]
     (conflict,) = found.conflicts
     assert conflict.requirements == ("LM-001", "LM-009")
-    assert conflict.because == ("at tick 0 LM-001 demands `valve_0` and LM-009 forbids `valve_0`")
+    assert conflict.because == "at tick 0 LM-001 demands `valve_0`, and LM-009 forbids it"
     assert {"start_button", "emergency_button"} <= named_true(conflict.play[0])
 
 

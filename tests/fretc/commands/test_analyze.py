@@ -1,6 +1,8 @@
 """`fretc analyze` as its users meet it."""
 
 import json
+import subprocess
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -40,9 +42,24 @@ def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
         "  ✘ R1, R2 (about run): the environment wins\n"
         "\n"
         "✘ conflict 1: R1 and R2 cannot be kept together\n"
-        "  at tick 2 R1 (since tick 0) demands `run` and R2 (since tick 0) forbids `run`\n"
+        "  at tick 2 R1 demands `run` (since tick 0, by tick 2), and R2 forbids it "
+        "(since tick 0, up to tick 3)\n"
     )
     assert "    run (output)   0  0  1\n" in run.out
+
+
+def test_what_would_settle_a_conflict_is_suggested(fretc: Fretc, tmp_path: Path) -> None:
+    fight = (
+        "upon start the line shall immediately satisfy run",
+        "upon stop the line shall for 3 ticks satisfy !run",
+    )
+    folder = written(tmp_path, fight)
+    run = fretc("analyze", str(folder))
+    (line,) = [line for line in run.out.splitlines() if "assume: " in line]
+    sentence = line.partition("assume: ")[2]
+    assert sentence == "whenever stop the environment shall for 3 ticks satisfy !start"
+    more = f'[[assume.requirement]]\nid = "A1"\nsentence = "{sentence}"\n'
+    assert fretc("analyze", str(written(tmp_path, fight, more=more))).status == 0
 
 
 def test_json_is_as_its_schema_says(fretc: Fretc, folder: Path) -> None:
@@ -136,6 +153,59 @@ def test_as_fret_eventually_means_at_once(fretc: Fretc, tmp_path: Path) -> None:
     assert fretc("analyze", folder, "--as-fret").status == 1
 
 
+KEPT = (
+    "whenever start the line shall within 2 ticks satisfy run",
+    "upon stop the line shall immediately satisfy !run",
+)
+
+
+def test_a_strategy_is_a_program_that_runs(fretc: Fretc, tmp_path: Path) -> None:
+    folder, out = written(tmp_path, KEPT), tmp_path / "out"
+    run = fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(out))
+    assert run.status == 0, run.err
+    program = [sys.executable, str(out / "controller.py")]
+    ticks = [{"start": True, "stop": True}] + 2 * [{"start": False, "stop": False}]
+    lines = "".join(f"{json.dumps(tick)}\n" for tick in ticks)
+    done = subprocess.run(program, input=lines, capture_output=True, text=True, check=True)
+    outputs = [json.loads(line)["run"] for line in done.stdout.splitlines()]
+    assert not outputs[0]
+    assert any(outputs)
+    wrong = subprocess.run(program, input="{}\n", capture_output=True, text=True, check=False)
+    assert wrong.returncode == 2
+    assert wrong.stderr == "line 1: the input start is to be true or false at each tick\n"
+
+
+@pytest.mark.parametrize(("form", "begin"), [("hoa", "HOA: v1\n"), ("dot", "digraph ")])
+def test_a_strategy_is_an_automaton_for_each_component(
+    fretc: Fretc, tmp_path: Path, form: str, begin: str
+) -> None:
+    other = "whenever start the lamp shall immediately satisfy glow"
+    folder, out = written(tmp_path, (*KEPT, other), ROLES | {"glow": "output"}), tmp_path / "out"
+    assert fretc("analyze", str(folder), "--emit", form, "--emit-to", str(out)).status == 0
+    texts = [path.read_text() for path in sorted(out.iterdir())]
+    assert [path.name for path in sorted(out.iterdir())] == [f"controller-{i}.{form}" for i in "12"]
+    assert all(text.startswith(begin) for text in texts)
+    assert "glow" in texts[1]
+    printed = fretc("analyze", str(folder), "--emit", form, "--emit-to", "-")
+    assert printed.out == "".join(texts)
+
+
+def test_no_strategy_is_written_where_there_is_none(fretc: Fretc, folder: Path) -> None:
+    run = fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(folder / "out"))
+    assert run.status == 1
+    assert "no strategy is written: cannot be kept together: R1, R2" in run.err
+    assert not (folder / "out").exists()
+
+
+def test_a_strategy_that_is_too_large_is_refused(fretc: Fretc, tmp_path: Path) -> None:
+    folder = written(tmp_path, ["upon start the line shall for 5000 ticks satisfy run"])
+    run = fretc("analyze", str(folder), "--emit", "hoa", "--emit-to", str(tmp_path / "out"))
+    assert run.status == 2
+    assert "F670 no strategy can be written: its automaton has more than 1000 states" in run.err
+    assert not (tmp_path / "out").exists()
+    assert fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(tmp_path)).status == 0
+
+
 # FRET's exports --------------------------------------------------------------------------------
 
 
@@ -199,7 +269,7 @@ def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) ->
 
 def test_check_names_each_conflict(fretc: Fretc, folder: Path) -> None:
     run = fretc("check", str(folder), "--analyze")
-    assert "F561 warning: R1 and R2 cannot be kept together: at tick 2 R1 (since tick 0)" in run.err
+    assert "F561 warning: R1 and R2 cannot be kept together: at tick 2 R1 demands `run`" in run.err
     assert "F561" not in fretc("check", str(folder)).err
 
 

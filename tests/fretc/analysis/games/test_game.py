@@ -4,37 +4,27 @@ import random
 from collections.abc import Sequence
 
 import pytest
-import spot
 from hypothesis import settings
 
-from compiler.formalization.formalized import Formalized
-from compiler.logic import printing
 from compiler.logic.formula import atoms
 from compiler.logic.spot import holds_on
 from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.plays import Counterstrategy, Letter, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches
 from fretc.analysis.stage import Stage
-from tests.requirement_sets import OUTPUTS, assumed, drawn, roles, rule, staged
+from tests.requirement_sets import (
+    assumed,
+    drawn,
+    roles,
+    rule,
+    satisfiable,
+    staged,
+    synthesized,
+)
 
 SETS = 5_000 if settings.default and settings.default.max_examples > 1_000 else 250
 """With `--hypothesis-profile=full` it takes two minutes."""
 ENDLESS = Budget(float("inf"))
-
-
-def synthesized(rules: Sequence[Formalized], assumptions: Sequence[Formalized] = ()) -> bool:
-    """What Spot says of the future-time formulas."""
-    kept, given = (
-        " & ".join(f"({printing.future(rule.ft_infinite)})" for rule in some) or "1"
-        for some in (rules, assumptions)
-    )
-    formula = f"({given}) -> ({kept})"
-    return bool(spot.solve_game(spot.ltl_to_game(formula, list(OUTPUTS))))
-
-
-def satisfiable(rules: Sequence[Formalized]) -> bool:
-    formulas = (f"({printing.future(rule.ft_infinite)})" for rule in rules)
-    return not spot.translate(" & ".join(formulas)).is_empty()
 
 
 def assert_lost(setting: Stage) -> None:
