@@ -186,8 +186,8 @@ def _emit(
             stop(Diagnostic(Code.TOO_LARGE, message, help=_smaller(form)))
     if form is Form.PYTHON:
         sentences = {rule.id: printed(rule.written) for rule in rules}
-        granted = {each.id: each.sentence for each in analysis.assumptions}
-        artifacts = [controller(circuits, sentences, granted)]
+        promises = {each.id: each.sentence for each in analysis.assumptions}
+        artifacts = [controller(circuits, sentences, promises)]
     else:
         artifacts = [*automata(machines, form)]
     if output == "-":
