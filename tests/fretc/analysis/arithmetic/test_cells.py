@@ -207,8 +207,8 @@ def test_a_play_has_numbers() -> None:
     (conflict,) = found.conflicts
     assert conflict.requirements == ("R1", "R2")
     assert conflict.because == (
-        "at tick 2 R1 (since tick 0) demands `(v > (t + 1))` and R2 demands `(v >= 25)` and "
-        "`(v <= 31)`"
+        "at tick 2 R1 demands `(v > (t + 1))` (since tick 0, by tick 2), and R2 demands "
+        "`(v >= 25)` and `(v <= 31)`"
     )
     for tick in conflict.play:
         assert isinstance(tick["t"], int | float)
