@@ -19,7 +19,6 @@ from fretish.checking import conditions
 from fretish.reading.recursion import deep
 from fretish.syntax import ScopeKind
 
-
 _ByFirst = Mapping[str, Sequence[Exclusion]]
 """What cannot be, by the first comparison: each part looks only at what speaks of it."""
 
