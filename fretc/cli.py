@@ -42,6 +42,7 @@ _COMMANDS = Registry(
         "info": "fretc.commands.info:info",
         "bind": "fretc.commands.bind:bind",
         "check": "fretc.commands.check:check",
+        "analyze": "fretc.commands.analyze:analyze",
         "audit": "fretc.commands.audit:audit",
         "report": "fretc.commands.report:report",
         "trends": "fretc.commands.trends:trends",

@@ -16,8 +16,9 @@ FIELDS = (
     "id", "title", "text", "parents", "rationale", "status", "verify", "params", "accept", "fret",
 )  # fmt: skip
 STATUSES = ("draft", "approved", "retired")
-_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
-_ID_LINE = re.compile(rf'^[ \t]*id[ \t]*=[ \t]*"(?P<id>{_ID.pattern})"', re.MULTILINE)
+IDENTIFIER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
+"""The id of a requirement."""
+_ID_LINE = re.compile(rf'^[ \t]*id[ \t]*=[ \t]*"(?P<id>{IDENTIFIER.pattern})"', re.MULTILINE)
 _FREE_TEXT = re.compile(r'"[^"]*"')
 _FENCE = re.compile(r"^\ufeff?\+\+\+[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
 
@@ -191,7 +192,7 @@ def _fits(key: str, value: Any) -> bool:
         case "params" | "accept" | "fret":
             return isinstance(value, dict) and all(isinstance(v, str) for v in value.values())
         case "id":
-            return isinstance(value, str) and _ID.fullmatch(value) is not None
+            return isinstance(value, str) and IDENTIFIER.fullmatch(value) is not None
         case "status":
             return value in STATUSES
         case _:

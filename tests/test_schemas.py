@@ -8,11 +8,13 @@ import pytest
 
 from compiler.files.templating import template_root, to_json
 from compiler.logic import claims
+from fretc.analysis import evidence, findings
 from fretc.audit.evidence import schema
 from fretc.audit.store import manifest
 
 SCHEMAS = {"evidence": schema.schema(), "verification": claims.schema()}
-SCHEMAS["store"] = manifest.schema()
+SCHEMAS |= {"store": manifest.schema(), "analysis": findings.schema()}
+SCHEMAS |= {"analyzed-set": evidence.schema()}
 
 
 @pytest.mark.parametrize(("name", "made"), SCHEMAS.items())

@@ -58,6 +58,7 @@ def _formalized(
     written = parse(requirement.wording)
     if isinstance(written, Diagnostic):
         return None, mistakes(requirement.wording)
+    declarations = declarations.about(written.component) if declarations else None
     definitions = used(written, declarations.definitions) if declarations else {}
     wrong = _misuses(written, definitions, declarations, requirement.wording)
     if wrong:

@@ -13,6 +13,7 @@ import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -250,19 +251,31 @@ def _variables(
 ) -> dict[str, dict[str, Any]]:
     """`[variable.NAME]` tables: names are those of one folder, whatever project they are of.
 
-    Of several variables of one name the first stays; F530 names the differences of the others.
+    What a name is for another component stands in a table `of` that component. Of several
+    variables of one name and one component the first stays; F530 names the differences of the
+    others.
     """
     tables: dict[str, dict[str, Any]] = {}
+    components: dict[str, dict[str, dict[str, Any]]] = {}
     for record in records:
         name = _text(record.get("variable_name"))
         if not name or record.get("modeldoc") is True:
             continue
         table = _variable(record)
+        component = table.get("component", "")
         first = tables.setdefault(name, table)
+        if component and component != first.get("component", ""):
+            own = {key: value for key, value in table.items() if key != "component"}
+            first, table = components.setdefault(name, {}).setdefault(component, own), own
         if first != table:
             diagnostics.append(_merged(name, first, table, source))
-    diagnostics.extend(_without_circles(tables, source))
-    return tables
+    for component in ("", *dict.fromkeys(chain.from_iterable(components.values()))):
+        own = {name: components.get(name, {}).get(component, tables[name]) for name in tables}
+        diagnostics.extend(_without_circles(own, source))
+    return {
+        name: {**table, "of": components[name]} if name in components else table
+        for name, table in tables.items()
+    }
 
 
 def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> Iterator[Diagnostic]:
@@ -272,15 +285,15 @@ def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> It
         value = parse_value(Source(name, table.get("value", "")).span())
         if not isinstance(value, Diagnostic):
             values[name] = value
-    while chain := circle(values):
-        for name in dict.fromkeys(chain):
+    while names := circle(values):
+        for name in dict.fromkeys(names):
             table = tables[name]
             kept = {assignment_field(table["role"]): lustre(values.pop(name)) or ""}
             table["fret"] = kept | table.get("fret", {})
             del table["value"]
         yield _warning(
             Code.DEFINITION_CIRCLE,
-            f"assignments lead in a circle: {' -> '.join(chain[:12])}; they are kept, and not read",
+            f"assignments lead in a circle: {' -> '.join(names[:12])}; they are kept, and not read",
             source,
             "let one of them stand for numbers and other variables alone",
         )

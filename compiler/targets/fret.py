@@ -81,7 +81,7 @@ def _with_names(rule: Formalized) -> Formalized:
     """The rule as if the names of its sentence stood for nothing."""
     assert rule.declarations is not None, "they define the names"
     variables = {
-        name: replace(variable, value=None)
+        name: replace(variable, value=None, of={})
         for name, variable in rule.declarations.variables.items()
     }
     plain, _ = formalize(rule.requirement, replace(rule.declarations, variables=variables))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from compiler.project.folder import Project
 from compiler.project.paths import beside
+from fretc.analysis.evidence import written as analysis_file
 from fretc.api.refusal import Refusal, bounded
 from fretc.attestation.signatures import SIGNERS
 from fretc.report.make import ReportBuild, make
@@ -50,6 +51,7 @@ def make_report(
     waivers: Path | None = None,
     signers: Path | None = None,
     ajpf: Iterable[Path] = (),
+    analysis: Path | None = None,
 ) -> Report:
     """Make the report.
 
@@ -61,6 +63,7 @@ def make_report(
         waivers: None: `waivers.toml` beside the requirements, if it is there.
         signers: whose keys count; None: `allowed_signers` beside the requirements, if it is there.
         ajpf: results of AJPF; none: each `build/*_ajpf/result.json`.
+        analysis: what `fretc analyze` wrote; None: `build/analysis.json`, if it is there.
 
     Raises:
         Refusal: a file cannot be read, or there is no requirement.
@@ -76,6 +79,7 @@ def make_report(
         verification=_path(verification) or verification_file(),
         ajpf=[os.fspath(path) for path in ajpf] or ajpf_results(),
         signers=_path(signers) or beside(first, SIGNERS),
+        analysis=_path(analysis) or analysis_file(),
     )
     if build.report is None:
         raise Refusal(build.diagnostics)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
@@ -20,6 +22,9 @@ from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say_all, say_l
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.rendering import as_json, visible
 
+if TYPE_CHECKING:
+    from compiler.project.folder import Project
+
 
 @click.command(short_help="Say what is wrong or missing in a project, before any run.")
 @click.argument("folder", required=False, type=PATH, metavar="")
@@ -28,6 +33,12 @@ from fretish.diagnostics.rendering import as_json, visible
 @hazards_option
 @evidence_option
 @verification_option
+@click.option(
+    "--analyze",
+    is_flag=True,
+    help="Ask whether all requirements can be kept together, too; what `fretc analyze` has written "
+    "counts as long as it is about these.",
+)
 @click.option("--fix", is_flag=True, help="Write the mends that are sure, then check.")
 @format_option()
 def check(
@@ -37,6 +48,7 @@ def check(
     hazards: str | None,
     evidence: str,
     verification: str | None,
+    analyze: bool,
     fix: bool,
     form: str,
 ) -> None:
@@ -102,9 +114,35 @@ def check(
     diagnostics.extend(idle_waivers(assessed))
     flawed = has_errors(diagnostics)
     diagnostics.extend(reason for _, why in refusals(project) for reason in why)
+    if analyze and not flawed:
+        diagnostics.extend(_together(project))
     if not flawed:
         diagnostics.extend(warnings(project, standings, lock, results))
     _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), form)
+
+
+def _together(project: Project) -> Iterator[Diagnostic]:
+    """F561 for each conflict, F562 where there is no answer."""
+    from fretc.analysis.analysis import DEFAULT
+    from fretc.analysis.arena.roles import roles
+    from fretc.analysis.assumptions import assumptions
+    from fretc.analysis.evidence import AnalyzedSet, read, remarks, suspicions, written
+    from fretc.commands.analyze import asked
+
+    rules = tuple(rule for rule in project.rules if rule.requirement.status != "retired")
+    assumed, said = assumptions(rules, project.declarations)
+    yield from said
+    chosen = roles([*rules, *assumed])
+    if isinstance(chosen, tuple):
+        yield from chosen
+    elif rules and not has_errors(said):
+        path = written()
+        known = read(path) if path is not None else None
+        if isinstance(known, AnalyzedSet) and not [*suspicions(known.document, rules, assumed)]:
+            analysis = known.document.analysis
+        else:
+            analysis, _ = asked(rules, assumed, chosen, DEFAULT)
+        yield from remarks(analysis, rules)
 
 
 def _mend(folder: str) -> None:

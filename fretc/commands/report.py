@@ -13,6 +13,7 @@ import click
 from fretc.report.forms.forms import FORMS, Form, Subject
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import (
+    analysis_option,
     bindings_option,
     evidence_option,
     hazards_option,
@@ -35,6 +36,7 @@ _HEADINGS = {
         "hazards",
         "evidence",
         "verification",
+        "analysis",
         "lock",
         "waivers",
         "signers",
@@ -70,6 +72,7 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
 @hazards_option
 @evidence_option
 @verification_option
+@analysis_option
 @path_option(
     "--ajpf",
     multiple=True,
@@ -91,6 +94,7 @@ def report(
     hazards: str | None,
     evidence: str,
     verification: str | None,
+    analysis: str | None,
     ajpf: tuple[str, ...],
     lock: str | None,
     waivers: str | None,
@@ -107,6 +111,7 @@ def report(
     """
     from compiler.project.folder import whole
     from compiler.project.paths import beside, companions, requirement_files
+    from fretc.analysis.evidence import written as analyzed
     from fretc.attestation.signatures import SIGNERS
     from fretc.audit.evidence.reader import not_audited
     from fretc.report.make import make
@@ -130,6 +135,7 @@ def report(
     waivers = waivers or beside(requirements, "waivers.toml")
     signers = signers or beside(requirements, SIGNERS)
     verification = verification or written()
+    analysis = analysis or analyzed()
     ajpf_results = ajpf or results()
     outcome = make(
         project,
@@ -139,12 +145,14 @@ def report(
         verification=verification,
         ajpf=ajpf_results,
         signers=signers,
+        analysis=analysis,
     )
     say_briefly([*project.diagnostics, *outcome.diagnostics], requirements)
     if outcome.report is None or outcome.details is None:
         raise SystemExit(BAD)
     subject = Subject(outcome.report, project, outcome.details, outcome.diagnostics)
-    inputs = filter(None, (bindings, hazards, verification, lock, waivers, signers, *ajpf_results))
+    others = (bindings, hazards, verification, analysis, lock, waivers, signers)
+    inputs = filter(None, (*others, *ajpf_results))
     read = [evidence, *files, *companions(files), *inputs, *outcome.details.logs]
     _deliver(outputs, subject, read)
     if has_errors([*project.diagnostics, *outcome.diagnostics]):
@@ -184,8 +192,10 @@ def _status(whole: Report) -> int:
         map(is_refuted, whole.requirements)
     ):
         return VIOLATION
-    if whole.withdrawn:
+    together = whole.analysis
+    if whole.withdrawn or (together and (together.is_broken or together.mark.suspect)):
         return VIOLATION
     in_force = [mark for mark in marks if mark.word != RETIRED]
     shown = all(mark.shows or mark.word == WAIVED for mark in in_force)
+    shown = shown and (together is None or together.is_good)
     return SHOWN if in_force and shown else NOT_SHOWN

@@ -306,6 +306,7 @@ def _report(
     """Whether the report that is made now is the one in the file, byte for byte."""
     from compiler.files.text_files import read
     from compiler.project.paths import beside
+    from fretc.analysis.evidence import written
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.make import make
 
@@ -320,6 +321,7 @@ def _report(
         waivers=names[1],
         verification=verification,
         signers=names[2],
+        analysis=written(),
     )
     return current.html == source.text
 

@@ -12,6 +12,7 @@ from types import MappingProxyType
 from compiler.files.edition import __version__
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
+from fretc.analysis.evidence import AnalyzedSet
 from fretc.attestation.signatures import NO_SIGNATURES, SignatureBook
 from fretc.audit.evidence.briefs import Briefs, EvidenceSource
 from fretc.audit.evidence.probabilities import AVERAGE
@@ -45,6 +46,7 @@ from fretc.report.sections.requirement import remark, section
 from fretc.report.sections.results import is_bounded
 from fretc.report.sections.runs import Run, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
+from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
 from fretc.report.traceability.acceptances import warnings
 from fretc.report.traceability.artefacts import shared_products
 from fretc.report.traceability.lock import Lock, withdrawn_requirements
@@ -64,6 +66,7 @@ def report(
     proofs: Proofs | None = None,
     ajpf: Sequence[Proof] = (),
     book: SignatureBook = NO_SIGNATURES,
+    together: AnalyzedSet | None = None,
 ) -> tuple[Report, Details, tuple[Diagnostic, ...]]:
     """The report, what it has in rows only, and diagnostics about its files.
 
@@ -76,6 +79,7 @@ def report(
         proofs: None where nothing was verified.
         ajpf: the results of AJPF.
         book: who signed what.
+        together: None where nobody has asked whether all requirements can be kept together.
     """
     briefs = Briefs.of(evidence) if evidence else None
     runs_by_key = runs(briefs)
@@ -112,11 +116,24 @@ def report(
     overall_result = overall(
         project, assessed, sections, all_runs, reservations, withdrawn, signature_list, changed
     )
+    analysis = set_analysis(together, project, anchors) if together else None
+    overall_result = in_overall(overall_result, analysis)
     rows = matrix(project, assessed, sections)
     run_list = run_summaries(all_runs, project)
     all_changes = (*changes, *reviews.withdrawals(withdrawn))
     components = tuple(sorted({rule.sentence.component for rule in project.rules}))
     checked = _checks(project, assessed, lock, evidence)
+    first_screen = front(
+        ": ".join(filter(None, [phrases.joined(components), folder_of(project)])),
+        overall_result,
+        sections,
+        rows,
+        assessed,
+        all_runs,
+        run_list,
+        all_changes,
+        [text for text in overall_result.sentences if text != trust(all_runs, project)],
+    )
     whole = Report(
         schema=SCHEMA,
         fretc=__version__,
@@ -125,17 +142,7 @@ def report(
         evidence=phrases.place(path) if evidence else "",
         audited_by=evidence.fretc if evidence else "",
         overall=overall_result,
-        front=front(
-            ": ".join(filter(None, [phrases.joined(components), folder_of(project)])),
-            overall_result,
-            sections,
-            rows,
-            assessed,
-            all_runs,
-            run_list,
-            all_changes,
-            [text for text in overall_result.sentences if text != trust(all_runs, project)],
-        ),
+        front=in_front(first_screen, analysis),
         runs=run_list,
         claims=_claims(assessed, len(all_runs), evidence.selection if evidence else None),
         counts=_counts(assessed),
@@ -156,9 +163,10 @@ def report(
         requirements=sections,
         assumptions=_assumptions(project, all_runs),
         commands=commands(project, sections, all_runs, path, proofs, _confidence(evidence)),
-        manifest=manifest(project, sections, all_runs, evidence, proofs, book.signers),
+        manifest=manifest(project, sections, all_runs, evidence, proofs, book.signers, together),
         across=across(details, [view.anchor for view in worst_first(sections)]),
         change_groups=groups,
+        analysis=analysis,
     )
     diagnostics = (
         *(each for each in checked if each.accepted),

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from compiler.files.dates import today
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import Project
+from fretc.analysis.evidence import read as read_analysis
 from fretc.attestation.signatures import read_signatures
 from fretc.audit.store.anywhere import StoreError, source
 from fretc.report.assembly import report
@@ -31,7 +32,7 @@ class ReportBuild:
     """A report, the diagnostics of the files, and what HTML, SARIF and others need beside them."""
 
     report: Report | None
-    """None where the evidence, the proofs, the lock or the signatures cannot be read.
+    """None where evidence, proofs, analysis, lock or signatures cannot be read.
 
     Waivers and results of AJPF that cannot be read do not count; what they would have shown or
     waived is then open in the report, and the diagnostics say why.
@@ -66,6 +67,7 @@ def make(
     verification: str | None = None,
     ajpf: Sequence[str] = (),
     signers: str | None = None,
+    analysis: str | None = None,
 ) -> ReportBuild:
     """Read the files and make the report.
 
@@ -77,6 +79,8 @@ def make(
         verification: path of a file that `fretc verify` wrote; None: nothing was proved.
         ajpf: paths of results that the `run.py` of bundles wrote.
         signers: path of a list of signers; None: no signature counts.
+        analysis: path of a file that `fretc analyze` wrote; None: nobody has asked whether all
+            requirements can be kept together.
     """
     audits = source(evidence)
     if isinstance(audits, Diagnostic) and audits.is_error:
@@ -84,6 +88,9 @@ def make(
     proofs = read_proofs(verification) if verification is not None else None
     if isinstance(proofs, Diagnostic):
         return ReportBuild(None, (proofs,))
+    together = read_analysis(analysis) if analysis is not None else None
+    if isinstance(together, Diagnostic):
+        return ReportBuild(None, (together,))
     reviews = read_lock(lock) if lock is not None else None
     if isinstance(reviews, Diagnostic):
         return ReportBuild(None, (reviews,))
@@ -105,6 +112,7 @@ def make(
             proofs=proofs,
             ajpf=proofs_of_ajpf,
             book=signatures,
+            together=together,
         )
     except StoreError as error:
         return ReportBuild(None, (error.diagnostic,))

@@ -105,6 +105,10 @@ verification_option = path_option(
     "--verification",
     help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
 )
+analysis_option = path_option(
+    "--analysis",
+    help="What `fretc analyze` found; build/analysis.json, if it is there and none is given.",
+)
 label_option = click.option(
     "--label",
     "labels",

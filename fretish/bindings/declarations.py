@@ -16,6 +16,7 @@ from typing import Any
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
+from fretish.documents import Requirement
 from fretish.expressions import Expression, names
 from fretish.reading.memory import remembered
 from fretish.units import Unit
@@ -212,6 +213,8 @@ class Variable:
     """What an agent does to make it true; empty: `do_` and its name."""
     value: Expression | None = None
     """What it stands for in every sentence: FRET's assignment, in the words of FRETish."""
+    of: Mapping[str, Variable] = field(default_factory=dict)
+    """What it is in sentences about these components instead, each as a whole."""
     span: Span | None = field(default=None, compare=False, repr=False)
     """Where `value` stands."""
 
@@ -337,6 +340,9 @@ class Declarations:
     map: Map | None = None
     labels: Mapping[str, tuple[LabelSource, ...]] = field(default_factory=dict)
     """`[run.label]`: each label of runs, with its sources; the first that says something counts."""
+    environment: tuple[Requirement, ...] = ()
+    """`[[assume.requirement]]`: what the environment is taken to keep, where requirements are
+    asked whether they can be kept together; no verdict on a log depends on it."""
 
     @property
     def signal_names(self) -> tuple[str, ...]:
@@ -351,6 +357,15 @@ class Declarations:
             for name, variable in self.variables.items()
             if variable.value is not None
         }
+
+    def about(self, component: str) -> Declarations:
+        """The same with the variables as they are in sentences about a component."""
+        own = {
+            name: each.of[component]
+            for name, each in self.variables.items()
+            if component in each.of
+        }
+        return replace(self, variables={**self.variables, **own}) if own else self
 
     def reading(self, propositions: Iterable[str]) -> Declarations:
         """The same without the signals that none of the propositions reads."""

@@ -10,7 +10,9 @@ from fretish import units
 from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
 from fretish.bindings.fields import Fields
 from fretish.diagnostics.diagnostic import Code
-from fretish.reading.toml_text import as_key
+from fretish.diagnostics.source import Source, Span
+from fretish.documents import IDENTIFIER, Requirement
+from fretish.reading.toml_text import Tables, as_key
 
 TABLE = """\
 [interceptor]
@@ -30,6 +32,13 @@ _TIMES = ("hold", "stop_timeout", "scan_timeout", "command_timeout")
 _OPTIONAL = (*_TIMES, "heartbeat")
 _INTERCEPTOR = (*_TOPICS, "period", *_TIMES, "form", "latching", "ros")
 _ASSUME = ("stands", "latency", "lost", "requests", "heartbeat", "planner", "braking")
+_SENTENCES = "requirement"
+"""The tables of `[assume]` that hold sentences."""
+_SENTENCE = ("id", "text", "sentence")
+_SENTENCE_HEADER = re.compile(
+    r"^[ \t]*\[\[[ \t]*assume[ \t]*\.[ \t]*requirement[ \t]*\]\]", re.MULTILINE
+)
+_ANY_HEADER = re.compile(r"^[ \t]*\[", re.MULTILINE)
 _TOPIC = re.compile(r"(?:/?[A-Za-z_]\w*|~)(?:/[A-Za-z_]\w*)*", re.ASCII)
 """A name of ROS; no part begins with a digit."""
 
@@ -77,10 +86,10 @@ class Loop(Fields):
             propositions: the names that are bound.
         """
         table = self._table("assume")
-        if table is None:
+        if table is None or table.keys() == {_SENTENCES}:
             return None
         before = len(self.diagnostics)
-        self._check_keys(table, _ASSUME, "[assume]", "assume")
+        self._check_keys(table, (*_ASSUME, _SENTENCES), "[assume]", "assume")
         stands = self._stands(table, propositions)
         latency = self._needed(table, "latency", "100 ms")
         braking = self._needed(table, "braking", "200 ms")
@@ -243,3 +252,62 @@ class Loop(Fields):
             place = self.tables.value("assume", "lost")
             self._say(Code.BAD_BINDING_FIELD, "`lost` cannot be below 0", place, "write `lost = 0`")
         return value or 0
+
+    # [[assume.requirement]]
+
+    def sentences(self) -> tuple[Requirement, ...]:
+        """`[[assume.requirement]]`: what the environment is taken to keep, sentence by sentence."""
+        table = self.tables.data.get("assume")
+        listed = table.get(_SENTENCES, []) if isinstance(table, dict) else []
+        if not isinstance(listed, list) or not all(isinstance(each, dict) for each in listed):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`assume.{_SENTENCES}` must be tables",
+                self.tables.place("assume", _SENTENCES),
+                f"write `[[assume.{_SENTENCES}]]`, and `id` and `sentence` below it",
+            )
+            return ()
+        found: dict[str, Requirement] = {}
+        for each, block in zip(listed, self._blocks(len(listed)), strict=True):
+            requirement = Loop(Tables(block, each), self.diagnostics)._sentence(each)
+            if requirement is not None and requirement.id in found:
+                self._say(Code.DUPLICATE_ID, f"the id `{requirement.id}` is taken", block)
+            elif requirement is not None:
+                found[requirement.id] = requirement
+        return tuple(found.values())
+
+    def _blocks(self, count: int) -> list[Span]:
+        """The text below each header; all of the bindings, where they are written otherwise."""
+        text = self.tables.text
+        starts = [match.end() for match in _SENTENCE_HEADER.finditer(text.text)]
+        if len(starts) != count:
+            return [text] * count
+        ends = [_ANY_HEADER.search(text.text, start) for start in starts]
+        return [
+            text.part(start, end.start() if end else len(text.text))
+            for start, end in zip(starts, ends, strict=True)
+        ]
+
+    def _sentence(self, table: Mapping[str, Any]) -> Requirement | None:
+        before = len(self.diagnostics)
+        where = f"[[assume.{_SENTENCES}]]"
+        self._check_keys(table, _SENTENCE, where)
+        texts = {
+            key: self._field(table, (key,), str, "a text in quotes") or "" for key in _SENTENCE
+        }
+        id, sentence = texts["id"], texts["sentence"]
+        if not sentence or IDENTIFIER.fullmatch(id) is None:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`{where}` needs an `id` and a `sentence`",
+                self.tables.text.part(0, 0),
+                'write `id = "A1"` and `sentence = "the operator shall never satisfy a & b"`',
+            )
+        if len(self.diagnostics) > before:
+            return None
+        value = self.tables.value("sentence")
+        start = value.text.find(sentence)
+        wording = value.part(start, start + len(sentence))
+        if start < 0:  # written with escapes: the text stands for itself
+            wording = Source(f"{value.source.name} ({id})", sentence).span()
+        return Requirement(id, wording, text=texts["text"])

@@ -117,7 +117,11 @@ class _Reader(Fields):
         signals = self._parts("signal", self._signal)
         propositions = self._parts("proposition", self._proposition)
         variables = {name: self._variable(name, f) for name, f in self._tables("variable").items()}
-        self._check_definitions(variables)
+        components = dict.fromkeys(name for each in variables.values() for name in each.of)
+        self._check_definitions(variables, "")
+        for component in components:
+            own = {name: each.of.get(component, each) for name, each in variables.items()}
+            self._check_definitions(own, component)
         loop = Loop(self.tables, self.diagnostics)
         return Declarations(
             self.tables.text.source,
@@ -131,6 +135,7 @@ class _Reader(Fields):
             self.mistakes,
             self._map(),
             self._labels(),
+            loop.sentences(),
         )
 
     def _map(self) -> Map | None:
@@ -356,9 +361,7 @@ class _Reader(Fields):
             max_age=self._max_age(table, at),
             footprint=footprint,
             sensor=self._sensor(table, at),
-            role=self._choice(table, (*at, "role"), Role, Role.INTERNAL)
-            if "role" in table
-            else None,
+            role=self._role(table, at),
             aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
             span=self.tables.value(*at, "path"),
         )
@@ -393,12 +396,19 @@ class _Reader(Fields):
             max_age=self._max_age(table, at),
             values=values,
             numbers=numbers,
+            role=self._role(table, at),
             aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
             span=self.tables.value(*at, "path"),
         )
         if values:
             self.signals[name] = signal
         return signal if where is not None and values else None
+
+    def _role(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Role | None:
+        """Of a signal; None where nothing says it."""
+        if "role" not in table:
+            return None
+        return self._choice(table, (*at, "role"), Role, Role.INTERNAL)
 
     def _words(
         self, written: object, at: tuple[str, ...]
@@ -705,6 +715,32 @@ class _Reader(Fields):
     def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
         at = ("variable", name)
         self._check_keys(table, _VARIABLE, f"[variable.{name}]", *at)
+        of = self._field(table, (*at, "of"), dict, "tables of components") or {}
+        if not all(isinstance(each, dict) for each in of.values()):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`of` must hold tables",
+                self.tables.value(*at, "of"),
+                f"write `[variable.{as_key(name)}.of.COMPONENT]`",
+            )
+            of = {}
+        whole = self._fields_of_variable(name, table, at)
+        own = {
+            component: replace(
+                self._fields_of_variable(name, each, (*at, "of", component)),
+                component=component,
+                modality=whole.modality,
+                action=whole.action,
+            )
+            for component, each in of.items()
+        }
+        return replace(whole, of=own)
+
+    def _fields_of_variable(
+        self, name: str, table: Mapping[str, Any], at: tuple[str, ...]
+    ) -> Variable:
+        if len(at) > 2:
+            self._check_keys(table, _OF_COMPONENT, f"[{'.'.join(at)}]", *at)
         texts = {
             key: self._field(table, (*at, key), str, "a text in quotes") or ""
             for key in ("component", "type", "role", "text")
@@ -720,7 +756,10 @@ class _Reader(Fields):
             )
         return Variable(
             name,
-            **texts,
+            component=texts["component"],
+            type=texts["type"],
+            role=texts["role"],
+            text=texts["text"],
             fret=fret,
             modality=self._modality(table, at),
             action=self._action(table, at),
@@ -742,8 +781,13 @@ class _Reader(Fields):
             return None, place
         return value, place
 
-    def _check_definitions(self, variables: Mapping[str, Variable]) -> None:
-        """F342 and F343: what a name stands for is said once, and not by way of itself."""
+    def _check_definitions(self, variables: Mapping[str, Variable], component: str) -> None:
+        """F342 and F343: what a name stands for is said once, and not by way of itself.
+
+        Args:
+            variables: as they are for a component.
+            component: empty: for those that no variable names.
+        """
         values = {name: v.value for name, v in variables.items() if v.value is not None}
         for name in values:
             kinds = [kind for kind in ("signal", "proposition") if name in self._tables(kind)]
@@ -752,7 +796,7 @@ class _Reader(Fields):
                 self._say(
                     Code.DOUBLE_DEFINITION,
                     f"`{name}` is defined twice: by its `value`, and {other}",
-                    self.tables.value("variable", name, "value"),
+                    self._of_value(name, component),
                     "take one of them out",
                 )
         chain = circle(values)
@@ -761,9 +805,14 @@ class _Reader(Fields):
                 Code.DEFINITION_CIRCLE,
                 f"the values of variables lead in a circle: {' -> '.join(chain[:_MOST_NAMES])}"
                 f"{' ...' if len(chain) > _MOST_NAMES else ''}",
-                self.tables.value("variable", chain[0], "value"),
+                self._of_value(chain[0], component),
                 "let one of them stand for numbers and signals alone",
             )
+
+    def _of_value(self, name: str, component: str) -> Span:
+        """Where it is written what a variable stands for."""
+        own = component in self._tables("variable")[name].get("of", {})
+        return self.tables.value("variable", name, *(("of", component) if own else ()), "value")
 
     def _modality(self, table: Mapping[str, Any], at: tuple[str, ...]) -> Modality:
         if table.get("modality") != "P":
@@ -840,7 +889,8 @@ def _label_source(name: str, written: object) -> LabelSource | str:
     return LabelSource(True, text) if name in found else f"`{{{name}}}` is not in the pattern"
 
 
-_VARIABLE = ("component", "type", "role", "text", "value", "fret", "modality", "action")
+_VARIABLE = ("component", "type", "role", "text", "value", "fret", "of", "modality", "action")
+_OF_COMPONENT = ("type", "role", "text", "value", "fret")
 _MOST_NAMES = 12
 """Of a circle that a message shows."""
 _ACTION = re.compile(r"[a-z][A-Za-z0-9_]*")

@@ -93,6 +93,7 @@ class Code(Enum):
         "F353",
         "samples of a tick combine in several ways",
     )
+    NO_ROLE = ("F354", "nothing says who chooses a variable")
     PROSE_DRIFT = ("F351", "title or text state another number than the requirement")
     DEFINITION_CIRCLE = ("F342", "the values of variables lead in a circle")
     DOUBLE_DEFINITION = ("F343", "a name is defined in two ways")
@@ -170,6 +171,8 @@ class Code(Enum):
     LABEL_CONFLICT = ("F552", "a run has several values of one label")
     NO_LABEL = ("F553", "a run has no value of a label")
     NOT_COMPARABLE = ("F560", "audits cannot be compared")
+    UNREALIZABLE = ("F561", "requirements cannot be kept together")
+    NOT_ANALYZED = ("F562", "it is not known whether requirements can be kept together")
     BAD_MANIFEST = ("F545", "the manifest cannot be read")
     OTHER_TEXTS = ("F546", "the texts of a review are not those of its fingerprints")
     BAD_SIGNERS = ("F548", "the list of signers cannot be read")

@@ -504,6 +504,100 @@ class Hash:
     sha256: str
 
 
+REALIZABLE, UNREALIZABLE = "can be kept together", "cannot be kept together"
+
+
+# All requirements together ------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class PlayLane:
+    """A variable in a play; `role` is empty where it is not one variable's."""
+
+    name: str
+    role: str
+    values: tuple[str, ...]
+    """One for each column: `0` and `1` are truth values."""
+
+
+@dataclass(frozen=True, slots=True)
+class Play:
+    """A run, tick by tick; equal ticks in a row share a column: `3..7`."""
+
+    ticks: tuple[str, ...]
+    lanes: tuple[PlayLane, ...]
+    loop: int | None
+    """The column to which the last one leads back for ever; None: the play ends in a breach."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetMember:
+    """A requirement as it was analyzed; `anchor` is empty where it is no more."""
+
+    requirement: str
+    anchor: str
+    sentence: str
+
+
+@dataclass(frozen=True, slots=True)
+class SetComponent:
+    """Requirements that share outputs, and whether they can be kept together."""
+
+    mark: Mark
+    members: tuple[SetMember, ...]
+    outputs: tuple[str, ...]
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class SetConflict:
+    """Requirements that cannot be kept together, or no longer after a run, and that run."""
+
+    members: tuple[SetMember, ...]
+    because: str
+    play: Play
+
+
+@dataclass(frozen=True, slots=True)
+class SetAnalysis:
+    """Can these requirements be kept together? What `fretc analyze` has found."""
+
+    file: str
+    fretc: str
+    """The version that analyzed."""
+    mark: Mark
+    headline: str
+    suspicions: tuple[str, ...]
+    """Why it is not of the requirements as they are now; empty where it is."""
+    left_out: tuple[str, ...]
+    """Requirements in force that it says nothing of, since they have no formula."""
+    components: tuple[SetComponent, ...]
+    conflicts: tuple[SetConflict, ...]
+    complete: bool
+    """Whether these are all minimal conflicts."""
+    clashes: tuple[SetConflict, ...]
+    """Real-time inconsistencies."""
+    remarks: tuple[str, ...]
+    """What is redundant, never triggered, kept by every run or by none."""
+    assumptions: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    terms: tuple[str, ...]
+    """What all of it rests on."""
+    open: tuple[str, ...]
+    """Questions without an answer, and why."""
+
+    @property
+    def is_good(self) -> bool:
+        """Whether all requirements in force, as they are now, can be kept together."""
+        return self.mark.word == REALIZABLE and not self.mark.suspect and not self.left_out
+
+    @property
+    def is_broken(self) -> bool:
+        """Whether they cannot."""
+        return self.mark.word == UNREALIZABLE
+
+
 @dataclass(frozen=True, slots=True)
 class Report:
     """The whole report."""
@@ -547,3 +641,5 @@ class Report:
     """All runs in one picture each: their violations, and what they used of the bounds."""
     change_groups: tuple[ChangeGroup, ...]
     """Each change since the review once, with the requirements that it touches."""
+    analysis: SetAnalysis | None
+    """Whether all requirements can be kept together; None: nobody has asked."""

@@ -14,8 +14,8 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from fretc.report.across.layout import drawn_lanes, drawn_map, drawn_uses
 from fretc.report.model.changes import Change, follows, new_violations
-from fretc.report.model.phrases import visible
-from fretc.report.model.views import Report
+from fretc.report.model.phrases import joined, visible
+from fretc.report.model.views import Report, SetConflict
 from fretc.report.page.matrix import Picture, picture
 from fretc.report.page.selection import Selection, selection, slimmed
 from fretc.report.page.tree import MOST, NAMES, Placement, grouped, pieces, placements, shortened
@@ -23,6 +23,8 @@ from fretc.report.pictures.plots import drawing, histogram
 from fretc.report.pictures.scales import scale
 from fretc.report.sections.argument import argument
 from fretc.report.sections.details import Details
+from fretc.report.set_analysis.drawing import DrawnPlay
+from fretc.report.set_analysis.drawing import drawing as play_drawing
 
 _MOST_CHANGES, _MOST_RUNS = 100, 20
 """The most changes in a list, and the most runs of one requirement with another verdict."""
@@ -53,6 +55,7 @@ def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> 
         matrix=visible_texts(asdict(matrix)),
         rows=_rows(matrix),
         argument=visible_texts(_argument(report)),
+        plays=visible_texts(_plays(report)),
         across=visible_texts(_across(report, choice, _links(choice))),
         changes=visible_texts({each.anchor: asdict(each) for each in page.changes if each.anchor}),
         consequences=visible_texts(_consequences(page.changes)),
@@ -91,6 +94,26 @@ def _pictures(choice: Selection) -> dict[str, list[dict[str, Any]]]:
         for section in choice.by_anchor.values()
         for result in (*section.details, *section.folded)
     }
+
+
+def _plays(report: Report) -> dict[str, list[dict[str, Any] | None]]:
+    """The pictures of the plays of conflicts, and of clashes."""
+    if report.analysis is None:
+        return {}
+    parts = {"conflict": report.analysis.conflicts, "clash": report.analysis.clashes}
+    return {
+        kind: [
+            asdict(drawn) if drawn else None
+            for number, each in enumerate(several, 1)
+            for drawn in [_play(each, f"{kind}-{number}", breaks=kind == "conflict")]
+        ]
+        for kind, several in parts.items()
+    }
+
+
+def _play(conflict: SetConflict, id: str, *, breaks: bool) -> DrawnPlay | None:
+    names = joined([each.requirement for each in conflict.members])
+    return play_drawing(conflict.play, id, f"A run with {names}", breaks=breaks)
 
 
 def _links(choice: Selection) -> frozenset[str]:

@@ -17,6 +17,7 @@ from compiler.files.shell_quoting import (
     words,
 )
 from compiler.project.folder import Project
+from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.evidence.basis import of_all, of_bindings
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
@@ -153,6 +154,7 @@ def manifest(
     evidence: EvidenceSource | None,
     proofs: Proofs | None,
     signers: Signers | None = None,
+    together: AnalyzedSet | None = None,
 ) -> tuple[Hash, ...]:
     """Every hash that the report rests on."""
     bindings = project.declarations
@@ -168,6 +170,8 @@ def manifest(
         lines.append(Hash("evidence", phrases.place(evidence.file), evidence.sha256))
     if proofs is not None:
         lines.append(Hash("verification", phrases.place(proofs.file), proofs.sha256))
+    if together is not None:
+        lines.append(Hash("analysis", phrases.place(together.file), together.sha256))
     if signers is not None:
         lines.append(Hash("signers", phrases.place(signers.file), signers.sha256))
     lines.extend(Hash("run", phrases.place(run.facts.run), run.facts.log) for run in runs)

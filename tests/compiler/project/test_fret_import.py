@@ -364,7 +364,6 @@ def test_a_variable_that_says_the_same_twice_is_one(fretc: Fretc) -> None:
     ("change", "lost"),
     [
         ({"project": "Arm"}, "project `Arm`"),
-        ({"component_name": "arm"}, "component `arm`"),
         ({"description": "of the arm"}, "text `of the arm`"),
         ({"dataType": "integer"}, "type `integer`"),
         ({"idType": "Input"}, "role `input`"),
@@ -383,6 +382,32 @@ def test_a_variable_that_says_something_else_is_told(
     warning = f"F530 warning: a second variable `stopped` is left out: it has {lost}\n"
     assert warning in run.err
     assert 'component = "rover"' in written()["bindings.toml"]
+
+
+def test_a_name_of_two_components_is_two_variables(fretc: Fretc) -> None:
+    """FRET keeps a variable for each component: no role, type or assignment is lost."""
+    other = {**SPEED, "component_name": "arm", "idType": "Input", "dataType": "integer"}
+    fast = {**SPEED, "variable_name": "fast", "assignment": "3.0"}
+    faster = {**fast, "component_name": "arm", "assignment": "speed"}
+    sentences = [
+        record(f"R-{name}", f"the {name} shall always satisfy speed < fast")
+        for name in ("rover", "arm", "hand")
+    ]
+    content = {"requirements": sentences, "variables": [SPEED, fast, other, faster]}
+    run = fretc("import", export(content))
+    assert "F530" not in run.err
+    assert run.err.endswith("imported 3 requirements, 2 variables\n")
+    rover, arm, hand = project().rules
+    assert [rule.glossary["speed"].role for rule in (rover, arm, hand)] == [
+        "internal",
+        "input",
+        "internal",
+    ]
+    assert [rule.glossary["speed"].type for rule in (rover, arm)] == ["double", "integer"]
+    values = [str(rule.ft_infinite) for rule in (rover, arm, hand)]
+    assert "3.0" in values[0]
+    assert "3.0" in values[2]
+    assert "3.0" not in values[1]
 
 
 # What cannot be read --------------------------------------------------------------------------

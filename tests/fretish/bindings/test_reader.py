@@ -506,3 +506,9 @@ def test_a_signal_of_another_dimension_than_the_unit_is_not_meant() -> None:
 @pytest.mark.parametrize("expression", ["v > (10 m) / s", "v > 10 km/h", "s > 2 s", "v * s > 1 m"])
 def test_a_signal_may_have_the_name_of_a_unit_that_is_not_at_stake(expression: str) -> None:
     read(NAMED_AS_UNITS.format(expression))
+
+
+def test_a_signal_of_words_has_a_role_too() -> None:
+    text = '[clock]\ntick = "1 s"\n[signal.mode]\npath = "/mode.data"\nvalues = ["idle"]\n'
+    assert read(f'{text}role = "output"\n').signals["mode"].role is Role.OUTPUT
+    assert read(text).signals["mode"].role is None

@@ -1,0 +1,119 @@
+"""Can a set be kept: our game against Spot's synthesis from formulas, and sets that are hard."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import spot
+
+from compiler.logic import printing
+from fretc.analysis.analysis import analyze
+from fretc.analysis.arena.roles import Roles
+from fretc.analysis.games.budget import Budget
+from tests.requirement_sets import ROLES, drawn, roles, rules, staged
+
+LIMIT = 60
+"""Seconds after which a set counts as not answered."""
+
+
+def ours(sentences: Sequence[str], named: Roles = ROLES) -> tuple[bool, float]:
+    """The verdict and the seconds, from rules on."""
+    rules(*sentences)
+    start = time.process_time()
+    setting = staged(*sentences, roles=named)
+    game = setting.game(setting.arena.counters, Budget(LIMIT))
+    return game.solution().is_realizable, time.process_time() - start
+
+
+def theirs(sentences: Sequence[str]) -> tuple[bool, float]:
+    """The same by Spot: formula, parity automaton, game."""
+    made = rules(*sentences)
+    start = time.process_time()
+    formula = " & ".join(f"({printing.future(rule.ft_infinite)})" for rule in made)
+    return bool(spot.solve_game(spot.ltl_to_game(formula, ["x", "y"]))), time.process_time() - start
+
+
+def against_spot() -> None:
+    """Random sets, then two requirements at growing bounds."""
+    sets = [drawn(("benchmark", seed)) for seed in range(300)]
+    one, other = (sum(each(sentences)[1] for sentences in sets) for each in (ours, theirs))
+    print(f"300 random sets: {one:.2f} s, Spot {other:.2f} s")
+    for bound in (2, 4, 6, 8, 10, 12):
+        sentences = [
+            f"whenever a the sw shall within {bound} ticks satisfy x",
+            f"upon b the sw shall for {bound // 2} ticks satisfy !x",
+        ]
+        (verdict, mine), (same, spots) = ours(sentences), theirs(sentences)
+        assert verdict is same
+        print(f"within {bound}, for {bound // 2}: {mine:.4f} s, Spot {spots:.4f} s")
+
+
+def hard() -> None:
+    """Sets of the field, and durations that no automaton would hold."""
+    for count, bound in ((8, 50), (8, 100_000), (10, 50)):
+        deadlines = [
+            f"whenever a{i} the sw shall within {bound + i} ticks satisfy x{i}"
+            for i in range(count)
+        ]
+        apart = [f"the sw shall never satisfy x{i} & x{j}" for i in range(count) for j in range(i)]
+        named = roles([f"a{i}" for i in range(count)], [f"x{i}" for i in range(count)])
+        show(f"{count} deadlines of {bound} on one resource", [*deadlines, *apart], named)
+    for count, bound in ((30, 50), (30, 100_000)):
+        chain = [
+            f"whenever {cause} the sw shall within {bound + i} ticks satisfy x{i}"
+            for i, cause in enumerate(["a", *(f"x{i}" for i in range(count - 1))])
+        ]
+        show(f"a chain of {count}, {bound}", chain, roles(["a"], [f"x{i}" for i in range(count)]))
+    fair = [f"whenever a{i} the sw shall eventually satisfy x{i}" for i in range(12)]
+    apart = [f"the sw shall never satisfy x{i} & x{j}" for i in range(12) for j in range(i)]
+    named = roles([f"a{i}" for i in range(12)], [f"x{i}" for i in range(12)])
+    show("12 responses, one at a time", [*fair, *apart], named)
+    for bound in (1_000, 10_000, 100_000):
+        sentences = [
+            f"whenever a the sw shall within {bound} ticks satisfy x",
+            f"whenever b the sw shall for {bound + 1} ticks satisfy !x",
+        ]
+        show(f"a conflict after {bound} ticks", sentences, ROLES)
+
+
+def pump() -> None:
+    """26 requirements like those of an infusion pump: alarms by priority, and commands.
+
+    Two of the alarms do not look at those above them, and fight with those that want other modes.
+    """
+    modes = [f"mode_{i}" for i in range(8)]
+    exclusive = [
+        f"the pump shall always satisfy {mode} -> !({' | '.join(m for m in modes if m != mode)})"
+        for mode in modes
+    ]
+    above = {i: " & ".join(f"!alarm_{j}" for j in range(i)) for i in range(1, 12)}
+    alarms = [
+        f"the pump shall always satisfy alarm_{i}{f' & {above[i]}' if i not in (0, 2, 7) else ''} "
+        f"-> {modes[i % 8]}"
+        for i in range(12)
+    ]
+    calm = " & ".join(f"!alarm_{j}" for j in range(12))
+    commands = [
+        f"whenever command_{i} & {calm} the pump shall immediately satisfy "
+        f"{calm.replace('!', '')} | {modes[i]} | command_{i + 1}"
+        for i in range(6)
+    ]
+    sentences = [*exclusive, *alarms, *commands]
+    inputs = [*(f"alarm_{i}" for i in range(12)), *(f"command_{i}" for i in range(7))]
+    made, named = rules(*sentences), roles(inputs, modes)
+    start = time.process_time()
+    found = analyze(made, named)
+    seconds = time.process_time() - start
+    print(f"a pump, {len(made)}: all {len(found.conflicts)} conflicts, {seconds:.2f} s", flush=True)
+
+
+def show(what: str, sentences: Sequence[str], named: Roles) -> None:
+    verdict, seconds = ours(sentences, named)
+    print(f"{what}: {'realizable' if verdict else 'unrealizable'}, {seconds:.2f} s", flush=True)
+
+
+if __name__ == "__main__":
+    against_spot()
+    hard()
+    pump()

@@ -1,0 +1,166 @@
+"""Boolean functions as binary decision diagrams: BuDDy, as it comes with Spot.
+
+A variable is a number, and numbers are the order of variables: those that are read together stand
+side by side, or diagrams grow. Functions have the operators `&`, `|`, `^`, `-f` and `f - g`; equal
+functions are equal. All of a process share one table of nodes, and one numbering.
+
+Source: Bryant, Graph-based algorithms for Boolean function manipulation, IEEE Trans. Computers 35
+(1986); Duret-Lutz et al., From Spot 2.0 to Spot 2.10, CAV 2022.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from typing import Any
+
+Function = Any
+"""A diagram; its library has no types."""
+
+
+@lru_cache(maxsize=1)
+def _buddy() -> Any:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of SWIG, not ours
+        import spot
+
+        spot.make_bdd_dict()  # it starts BuDDy
+        import buddy
+    return buddy
+
+
+_STEP = 256
+_allocated = 0
+
+
+def true() -> Function:
+    """The function that is true."""
+    return _buddy().bddtrue
+
+
+def false() -> Function:
+    """The function that is false."""
+    return _buddy().bddfalse
+
+
+def variable(number: int) -> Function:
+    """The function that is true where the variable is."""
+    global _allocated
+    buddy = _buddy()
+    while number >= _allocated:
+        buddy.bdd_extvarnum(_STEP)
+        _allocated += _STEP
+    return buddy.bdd_ithvar(number)
+
+
+def literal(number: int, value: bool) -> Function:
+    """The function that is true where the variable has the value."""
+    return variable(number) if value else -variable(number)
+
+
+def cube(variables: Iterable[int]) -> Function:
+    """The conjunction of variables, as quantifiers take it."""
+    return point(dict.fromkeys(variables, True))
+
+
+def point(values: Mapping[int, bool]) -> Function:
+    """The conjunction of the literals."""
+    found = true()
+    for number in sorted(values, reverse=True):  # from the bottom up each step is one node
+        found = literal(number, values[number]) & found
+    return found
+
+
+def choice(condition: Function, then: Function, otherwise: Function) -> Function:
+    """`condition ? then : otherwise`."""
+    return _buddy().bdd_ite(condition, then, otherwise)
+
+
+def some(function: Function, variables: Function) -> Function:
+    """Whether some values of the variables of a cube make it true."""
+    return _buddy().bdd_exist(function, variables)
+
+
+def every(function: Function, variables: Function) -> Function:
+    """Whether all values of the variables of a cube make it true."""
+    return _buddy().bdd_forall(function, variables)
+
+
+def some_of_both(left: Function, right: Function, variables: Function) -> Function:
+    """`some(left & right, variables)`, without the conjunction ever being built."""
+    buddy = _buddy()
+    return buddy.bdd_appex(left, right, buddy.bddop_and, variables)
+
+
+def every_implied(left: Function, right: Function, variables: Function) -> Function:
+    """`every(left >> right, variables)`, without the implication ever being built."""
+    buddy = _buddy()
+    return buddy.bdd_appall(left, right, buddy.bddop_imp, variables)
+
+
+def composed(function: Function, number: int, value: Function) -> Function:
+    """The function with another one in the place of a variable."""
+    return _buddy().bdd_compose(function, value, number)
+
+
+def at(function: Function, known: Function) -> Function:
+    """The function where the literals of a cube hold."""
+    return _buddy().bdd_restrict(function, known)
+
+
+def support(function: Function) -> tuple[int, ...]:
+    """The variables that it depends on, in their order."""
+    buddy = _buddy()
+    found, rest = [], buddy.bdd_support(function)
+    while rest != buddy.bddtrue:
+        found.append(buddy.bdd_var(rest))
+        rest = buddy.bdd_high(rest)
+    return tuple(found)
+
+
+def witness(function: Function, prefer: bool = False) -> dict[int, bool]:
+    """Values of some variables that make it true; each is `prefer` where it can be.
+
+    Args:
+        function: not false.
+        prefer: the value that is tried first, variable by variable in their order.
+    """
+    buddy = _buddy()
+    assert function != buddy.bddfalse
+    values = {}
+    while function != buddy.bddtrue:
+        branches = {False: buddy.bdd_low(function), True: buddy.bdd_high(function)}
+        value = prefer if branches[prefer] != buddy.bddfalse else not prefer
+        values[buddy.bdd_var(function)] = value
+        function = branches[value]
+    return values
+
+
+def size(function: Function) -> int:
+    """How many nodes it has."""
+    return int(_buddy().bdd_nodecount(function))
+
+
+def branches(function: Function) -> tuple[int, Function, Function]:
+    """The topmost variable of a function that is not constant; where it is true, and where not."""
+    buddy = _buddy()
+    return buddy.bdd_var(function), buddy.bdd_high(function), buddy.bdd_low(function)
+
+
+def parts(functions: Iterable[Function]) -> tuple[Function, ...]:
+    """Every function within the diagrams that is not constant, each after those that it needs."""
+    found: dict[Function, None] = {}
+    waiting = [*functions]
+    while waiting:
+        function = waiting[-1]
+        needed = []
+        if function not in found and function not in (true(), false()):
+            _, high, low = branches(function)
+            needed = [n for n in (high, low) if n not in found and n not in (true(), false())]
+            if not needed:
+                found[function] = None
+        waiting.extend(needed)
+        if not needed:
+            waiting.pop()
+    return tuple(found)

@@ -1,0 +1,1 @@
+"""Requirement sets: can they be kept together, which fight, which say nothing."""

@@ -1,0 +1,366 @@
+"""The analysis of a requirement set: every question of it, component by component."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import TypeVar
+
+from compiler.files.edition import __version__
+from compiler.files.records import replace
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import comparisons, temporal_predicate
+from fretc.analysis import implications as of_runs
+from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.roles import Roles
+from fretc.analysis.components import by_outputs, by_variables
+from fretc.analysis.controllers.circuit import Circuit
+from fretc.analysis.controllers.files import Form
+from fretc.analysis.controllers.moves import Mealy
+from fretc.analysis.findings import (
+    SCHEMA,
+    Analysis,
+    Assumption,
+    Component,
+    Conflict,
+    Inconsistency,
+    OpenQuestion,
+    Redundancy,
+    Repair,
+    Vacuity,
+    Verdict,
+)
+from fretc.analysis.implications import Consistency, Constant, Removable
+from fretc.analysis.repairs import repairs
+from fretc.analysis.stage import Stage, stage
+from fretc.analysis.verdicts import Completeness, component, conflicts, strategy, verdict
+from fretish.printer import sentence as printed
+from fretish.reading.recursion import deep
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What a caller may choose."""
+
+    seconds: float = 20.0
+    """Of a processor, for each question about each component."""
+    as_fret: bool = False
+    """FRET's question: the past form of each requirement holds at every tick, so that `eventually`
+    means at once."""
+    repairs: bool = True
+    """Whether what would settle conflicts is looked for."""
+
+
+DEFAULT = Options()
+F = TypeVar("F", bound="Finding")
+Finding = (
+    Component
+    | Conflict
+    | Completeness
+    | Consistency
+    | Constant
+    | Redundancy
+    | Removable
+    | Vacuity
+    | Inconsistency
+    | Repair
+    | OpenQuestion
+    | Circuit
+    | Mealy
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """One question about some requirements."""
+
+    title: str
+    """The question, for people who wait."""
+    ask: Callable[[Sequence[Finding]], Iterator[Finding]]
+    """It is given what is known so far."""
+    lost: Callable[[str], Finding]
+    """What stands in its place where it ends without an answer, for a reason."""
+
+
+@deep
+def analyze(
+    rules: Sequence[Formalized],
+    roles: Roles,
+    assumptions: Sequence[Formalized] = (),
+    options: Options = DEFAULT,
+) -> Analysis:
+    """All that can be known of the requirements together, computed in this process.
+
+    Args:
+        rules: the requirements, in the order of the files.
+        roles: of every variable of rules and assumptions (`roles`).
+        assumptions: what the environment keeps.
+        options: limits, and FRET's reading.
+    """
+    found: list[Finding] = []
+    for job in jobs(rules, roles, assumptions, options):
+        found.extend(job.ask(found))
+    return assembled(rules, roles, assumptions, options, found)
+
+
+Question = Callable[[Stage, float], Iterator[Finding]]
+_OF_GROUPS: Mapping[str, Question] = {
+    "can any run keep {}?": of_runs.consistency,
+    "does each of {} say anything?": of_runs.constants,
+    "is each of {} ever triggered?": of_runs.vacuities,
+    "do some of {} imply others?": of_runs.redundancies,
+    "can a run lead to where {} clash?": of_runs.inconsistencies,
+}
+
+
+def jobs(
+    rules: Sequence[Formalized],
+    roles: Roles,
+    assumptions: Sequence[Formalized],
+    options: Options,
+) -> tuple[Job, ...]:
+    """All questions, the most important ones first."""
+    components = [
+        _Setting(each, roles, assumptions, options)
+        for each in by_outputs(rules, assumptions, roles)
+    ]
+    groups = [
+        _Setting(each, roles, assumptions, options)
+        for each in by_variables(rules, assumptions, roles)
+    ]
+    return (
+        *([_promises(assumptions, roles, options)] if assumptions else []),
+        *(setting.verdict() for setting in components),
+        *(setting.conflicts() for setting in components),
+        *(
+            setting.job(title, question)
+            for title, question in _OF_GROUPS.items()
+            for setting in groups
+        ),
+        *(setting.repairs() for setting in components if options.repairs),
+    )
+
+
+def _promises(assumptions: Sequence[Formalized], roles: Roles, options: Options) -> Job:
+    """Whether the assumptions can be kept at all: from those that cannot, everything follows."""
+    title = f"can any run keep the assumptions {', '.join(each.id for each in assumptions)}?"
+
+    def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+        for group in by_variables(assumptions, (), roles):
+            setting = stage(group, (), roles)
+            for each in of_runs.consistency(setting, options.seconds):
+                if isinstance(each, Consistency) and each.holds is False:
+                    ids = ", ".join(each.requirements)
+                    yield OpenQuestion("what follows from the assumptions", f"no run keeps {ids}")
+
+    return Job(title, ask, partial(OpenQuestion, title))
+
+
+def controllers(
+    rules: Sequence[Formalized],
+    roles: Roles,
+    assumptions: Sequence[Formalized],
+    options: Options,
+    form: Form,
+) -> tuple[Job, ...]:
+    """For each component: how it is kept, in such a form; to be asked where each can be."""
+    return tuple(
+        _Setting(each, roles, assumptions, options).controller(number, form)
+        for number, each in enumerate(by_outputs(rules, assumptions, roles), 1)
+    )
+
+
+class _Setting:
+    """Requirements that are looked at together; their arena is built when it is needed first."""
+
+    def __init__(
+        self,
+        rules: Sequence[Formalized],
+        roles: Roles,
+        assumptions: Sequence[Formalized],
+        options: Options,
+    ) -> None:
+        self._rules, self._roles, self._assumptions = rules, roles, assumptions
+        self._options = options
+        ids = [rule.id for rule in rules]
+        self._name = (
+            f"{ids[0]} and {len(ids) - 1} others" if len(ids) > _MOST_NAMES else ", ".join(ids)
+        )
+        self._ids = tuple(ids)
+
+    @cached_property
+    def _stage(self) -> Stage:
+        return stage(self._rules, self._assumptions, self._roles, as_fret=self._options.as_fret)
+
+    def verdict(self) -> Job:
+        """Whether a component can be kept."""
+
+        def not_checked(why: str) -> Component:
+            return component(self._rules, self._roles, Verdict.NOT_CHECKED, why)
+
+        def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            try:
+                yield from verdict(self._stage, self._options.seconds)
+            except BeyondError as error:
+                yield not_checked(str(error))
+
+        return Job(f"can {self._name} be kept together?", ask, not_checked)
+
+    def conflicts(self) -> Job:
+        """Which of a component fight, where it cannot be kept, or nobody knows."""
+        title = f"which of {self._name} fight?"
+
+        def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            mine = [
+                each
+                for each in known
+                if isinstance(each, Component) and each.requirements == self._ids
+            ]
+            if any(each.verdict is Verdict.REALIZABLE for each in mine):
+                yield Completeness(self._ids)
+            else:
+                yield from self._answers(title, conflicts)
+
+        return Job(title, ask, partial(OpenQuestion, title))
+
+    def repairs(self) -> Job:
+        """What would settle the conflicts of a component."""
+        title = f"what would settle the conflicts of {self._name}?"
+
+        def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            mine = [
+                each
+                for each in known
+                if isinstance(each, Conflict) and set(each.requirements) <= set(self._ids)
+            ]
+            if mine:
+                yield from repairs(self._stage, mine, self._options.seconds)
+
+        return Job(title, ask, partial(OpenQuestion, title))
+
+    def controller(self, number: int, form: Form) -> Job:
+        """How a component that can be kept is kept."""
+        title = f"how can {self._name} be kept?"
+
+        def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            yield from self._answers(title, partial(strategy, number=number, form=form))
+
+        return Job(title, ask, partial(OpenQuestion, title))
+
+    def job(self, title: str, question: Question) -> Job:
+        """A question about a group."""
+        title = title.format(self._name)
+        return Job(
+            title, lambda known: self._answers(title, question), partial(OpenQuestion, title)
+        )
+
+    def _answers(self, title: str, question: Question) -> Iterator[Finding]:
+        try:
+            yield from question(self._stage, self._options.seconds)
+        except BeyondError as error:
+            yield OpenQuestion(title, str(error))
+
+
+_MOST_NAMES = 4
+
+
+# Assembly -------------------------------------------------------------------------------------
+
+
+def assembled(
+    rules: Sequence[Formalized],
+    roles: Roles,
+    assumptions: Sequence[Formalized],
+    options: Options,
+    findings: Iterable[Finding],
+) -> Analysis:
+    """The findings as one value; what has no finding is not known."""
+    found = tuple(findings)
+    conflicting = [frozenset(each.requirements) for each in _of(Conflict, found)]
+    components = tuple(_fought(each, conflicting) for each in _of(Component, found))
+    fights = sorted(
+        _of(Conflict, found), key=lambda each: (len(each.requirements), each.requirements)
+    )
+    open_ = _of(OpenQuestion, found)
+    missing = [rule.id for rule in rules if not any(rule.id in c.requirements for c in components)]
+    overall, why = _verdict(components, missing)
+    constants = _of(Constant, found)
+    known = {id for each in _of(Completeness, found) for id in each.requirements}
+    return Analysis(
+        schema=SCHEMA,
+        fretc=__version__,
+        verdict=overall,
+        why=why,
+        components=components,
+        conflicts=tuple(fights),
+        complete=known.issuperset(rule.id for rule in rules),
+        repairs=_of(Repair, found),
+        redundant=_of(Redundancy, found),
+        removable=tuple(sorted(id for each in _of(Removable, found) for id in each.requirements)),
+        vacuous=_of(Vacuity, found),
+        consistent=_consistent(rules, _of(Consistency, found)),
+        inconsistent=_of(Inconsistency, found),
+        always=tuple(each.requirement for each in constants if each.always),
+        never=tuple(each.requirement for each in constants if not each.always),
+        assumptions=tuple(
+            Assumption(each.id, each.requirement.text, printed(each.written))
+            for each in assumptions
+        ),
+        roles={name: roles[name] for name in sorted(roles)},
+        terms=tuple(_terms(rules, options)),
+        open=open_,
+    )
+
+
+def _of(kind: type[F], found: Sequence[Finding]) -> tuple[F, ...]:
+    return tuple(each for each in found if isinstance(each, kind))
+
+
+def _verdict(components: Sequence[Component], missing: Sequence[str]) -> tuple[Verdict, str]:
+    """Of the whole: one component that cannot be kept is enough."""
+    bad = [each for each in components if each.verdict is Verdict.UNREALIZABLE]
+    unknown = [each for each in components if each.verdict is Verdict.NOT_CHECKED]
+    if bad:
+        which = "; ".join(", ".join(each.requirements) for each in bad)
+        return Verdict.UNREALIZABLE, f"cannot be kept together: {which}"
+    if missing:
+        return Verdict.NOT_CHECKED, f"not looked at: {', '.join(missing)}"
+    if unknown:
+        return Verdict.NOT_CHECKED, "; ".join(each.why for each in unknown)
+    return Verdict.REALIZABLE, "for each component the system has a strategy"
+
+
+def _fought(component: Component, conflicts: Sequence[frozenset[str]]) -> Component:
+    """A component is decided by a conflict in it, too, where it took too long as a whole."""
+    if component.verdict is Verdict.NOT_CHECKED and any(
+        each.issubset(component.requirements) for each in conflicts
+    ):
+        return replace(component, verdict=Verdict.UNREALIZABLE, why="some of them fight")
+    return component
+
+
+def _consistent(rules: Sequence[Formalized], found: Sequence[Consistency]) -> bool | None:
+    if any(each.holds is False for each in found):
+        return False
+    known = {id for each in found if each.holds for id in each.requirements}
+    return True if known.issuperset(rule.id for rule in rules) else None
+
+
+def _terms(rules: Sequence[Formalized], options: Options) -> Iterator[str]:
+    """What the findings rest on."""
+    yield (
+        "at each tick the environment sets all inputs, then the system all outputs, which may "
+        "depend on them (Mealy)"
+    )
+    if options.as_fret:
+        yield (
+            "as FRET: the past form of each requirement holds at every tick, so that `eventually` "
+            "means at once"
+        )
+    else:
+        yield "`eventually` may take as long as it likes, but not for ever"
+    if any(temporal_predicate(rule.sentence) for rule in rules):
+        yield "before the first tick nothing was true; `preBool` states its own first value"
+    if any(comparisons(rule) for rule in rules):
+        yield "numbers are exact: whole or real, without bounds; floats round, which is not seen"

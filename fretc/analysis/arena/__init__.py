@@ -1,0 +1,1 @@
+"""Requirements as one machine over Boolean functions: letters, counters, states."""

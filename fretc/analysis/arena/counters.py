@@ -1,0 +1,287 @@
+"""A requirement as a counter over Boolean functions: what it forbids, and how it goes on.
+
+It says symbol by symbol what `compiler.formalization.reference` says tick by tick: the phase of
+the scope, the trigger of the condition, the count of the timing. Tests hold the two together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import assert_never
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.obligation import Kind, Obligation, obligation
+from compiler.formalization.predicates import Past as PastWords
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers
+from fretc.analysis.arena.memory import (
+    LONGEST_DELAY,
+    Bit,
+    Memory,
+    Past,
+    constant,
+    either,
+    equals,
+    only,
+    predecessor,
+    some,
+    successor,
+)
+from fretish.reading.recursion import deep
+from fretish.syntax import ConditionKind, ScopeKind
+
+
+@dataclass(frozen=True, slots=True)
+class Counter:
+    """One requirement. Its state has all bits false before the first tick."""
+
+    id: str
+    bits: tuple[Bit, ...]
+    steps: tuple[Function, ...]
+    """Of each bit its value after a tick, over the bits before it and the letter of the tick."""
+    safe: Function
+    """Whether a tick breaks nothing; once it does, nothing repairs it, and steps mean nothing."""
+    fair: Function | None
+    """Over bits: an endless run keeps the requirement by such states again and again; None: it has
+    no other duty than to be safe."""
+    words: tuple[tuple[Bit, ...], ...]
+    """The bits of each of its counts, the least first."""
+    enforced: Function
+    """Whether a tick lies in an interval of the scope."""
+    triggered: Function
+    """Whether a demand begins at a tick."""
+
+    @property
+    def longest(self) -> int:
+        """Bits of its largest count."""
+        return max(map(len, self.words), default=0)
+
+    @property
+    def idle(self) -> Function:
+        """Over bits: nothing is counted, so that nothing is owed by a deadline."""
+        return bdd.point({bit.now: False for word in self.words for bit in word})
+
+
+@deep
+def counter(
+    rule: Formalized,
+    alphabet: Alphabet,
+    fresh: Numbers,
+    shared: dict[Function, Bit],
+    *,
+    as_fret: bool = False,
+) -> Counter:
+    """The counter of a rule.
+
+    Args:
+        rule: what is formalized.
+        alphabet: of all rules.
+        fresh: variables for its bits.
+        shared: bits that keep the value of the tick before, of all counters, by that value.
+        as_fret: whether nothing may be owed at the end of any tick, as where FRET's past form
+            holds at every tick.
+
+    Raises:
+        BeyondError: it says something that has no counter.
+    """
+    if rule.sentence.probability is not None:
+        raise BeyondError("it states a probability")
+    demanded = obligation(rule.sentence, rule.ticks or 0, PastWords())
+    memory = Memory(fresh, shared)
+    past = Past(alphabet.atom, memory)
+    tick = _Tick(demanded, memory, past.value)
+    timing = _timing(tick, demanded.demand.ticks)
+    safe, fair = -timing.broken, timing.fair
+    if as_fret and timing.owed is not None:
+        safe, fair = safe - timing.owed, None
+    roots = [safe, tick.enforced, tick.triggered, *([] if fair is None else [fair])]
+    bits = memory.needed(roots)
+    steps = tuple(memory.steps[bit] for bit in bits)
+    return Counter(
+        rule.id, bits, steps, safe, fair, tuple(memory.words), tick.enforced, tick.triggered
+    )
+
+
+class _Tick:
+    """What scope and condition say of a tick."""
+
+    def __init__(
+        self, demanded: Obligation, memory: Memory, value: Callable[..., Function]
+    ) -> None:
+        self.demanded, self.memory = demanded, memory
+        self.q = value(demanded.demand.response)
+        self.stop = value(demanded.demand.stop)
+        p, m = value(demanded.trigger), value(demanded.mode)
+        self.enforced, before = _interval(demanded.scope, m, memory)
+        match demanded.condition:
+            case None:
+                self.triggered = self.enforced - before
+            case ConditionKind.HOLDING:
+                self.triggered = self.enforced & p
+            case ConditionKind.TRIGGER:
+                held = memory.keep(self.enforced & p)
+                self.triggered = (self.enforced & p) - held
+            case _:
+                assert_never(demanded.condition)
+
+
+def _interval(scope: ScopeKind | None, m: Function, memory: Memory) -> tuple[Function, Function]:
+    """Whether a tick lies in an interval, and whether the one before it did."""
+
+    def after(begun: Callable[[Function], Function]) -> tuple[Function, Function]:
+        """What is so from a tick on, and whether it was so at the tick before."""
+        bit = memory.bit()
+        was = bdd.variable(bit.now)
+        memory.steps[bit] = begun(was)
+        return memory.steps[bit], was
+
+    match scope:
+        case None:
+            enforced = bdd.true()
+        case ScopeKind.IN:
+            enforced = m
+        case ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
+            enforced = -m
+        case ScopeKind.BEFORE:
+            over, _ = after(lambda was: was | m)
+            enforced = -over
+        case ScopeKind.AFTER:
+            inside, first_run = memory.bit(), memory.bit()
+            was, run = bdd.variable(inside.now), bdd.variable(first_run.now)
+            enforced = was | (run - m)
+            memory.steps |= {inside: enforced, first_run: m - enforced}
+        case ScopeKind.ONLY_BEFORE:
+            enforced, _ = after(lambda was: was | m)
+        case ScopeKind.ONLY_AFTER:
+            last_run, over = memory.bit(), memory.bit()
+            run, was = bdd.variable(last_run.now), bdd.variable(over.now)
+            ended = was | (run - m)
+            enforced = -ended
+            memory.steps |= {last_run: m - ended, over: ended}
+        case _:
+            assert_never(scope)
+    return enforced, memory.keep(enforced)
+
+
+@dataclass(frozen=True, slots=True)
+class _Timing:
+    broken: Function
+    owed: Function | None = None
+    """Whether the run may not end with this tick."""
+    fair: Function | None = None
+
+
+def _timing(tick: _Tick, n: int) -> _Timing:
+    """What the timing forbids; its count becomes a part of the memory."""
+    enforced, triggered, q, stop = tick.enforced, tick.triggered, tick.q, tick.stop
+    kind = tick.demanded.demand.kind
+    match kind:
+        case Kind.IMMEDIATELY:
+            return _Timing(triggered - q)
+        case Kind.NEXT:
+            due = enforced & tick.memory.keep(triggered)
+            return _Timing(due - q)
+        case Kind.EVENTUALLY:
+            return _eventually(tick)
+        case Kind.FINALLY:
+            return _finally(tick)
+        case Kind.ALWAYS if tick.demanded.condition is None:
+            return _Timing(enforced - q)
+        case Kind.ALWAYS:
+            return _Timing(_open(tick, lambda due: due) - q)
+        case Kind.UNTIL:
+            return _Timing(_open(tick, lambda due: due - stop) - stop - q)
+        case Kind.BEFORE:
+            return _Timing(_open(tick, lambda due: due - q) & stop)
+        case Kind.WITHIN:
+            return _within(tick, n)
+        case Kind.FOR:
+            return _for(tick, n)
+        case Kind.AFTER:
+            return _after(tick, n)
+        case Kind.NOT_AFTER:
+            return _not_after(tick, n) if tick.demanded.condition is None else _register(tick, n)
+        case _:
+            assert_never(kind)
+
+
+def _open(tick: _Tick, stays: Callable[[Function], Function]) -> Function:
+    """Whether a demand is open at a tick; one that `stays` is open at the next one, too."""
+    bit = tick.memory.bit()
+    due = tick.triggered | (tick.enforced & bdd.variable(bit.now))
+    tick.memory.steps[bit] = stays(due)
+    return due
+
+
+def _eventually(tick: _Tick) -> _Timing:
+    bit = tick.memory.bit()
+    was = bdd.variable(bit.now)
+    owed = (tick.triggered | (tick.enforced & was)) - tick.q
+    tick.memory.steps[bit] = owed
+    return _Timing(was - tick.enforced, owed, -was)
+
+
+def _finally(tick: _Tick) -> _Timing:
+    """An interval that never ends has no last tick: there nothing is owed."""
+    bit = tick.memory.bit()
+    was = bdd.variable(bit.now)
+    due = tick.triggered | (tick.enforced & was)
+    tick.memory.steps[bit] = due
+    answered = tick.memory.keep(tick.q)
+    return _Timing(was - answered - tick.enforced, due - tick.q)
+
+
+def _within(tick: _Tick, n: int) -> _Timing:
+    """The count is the ticks that the oldest open trigger has seen."""
+    bits, count = tick.memory.word(n)
+    open_ = (tick.triggered | (tick.enforced & some(count))) - tick.q
+    tick.memory.set(bits, only(open_, successor(count)))
+    return _Timing(open_ & equals(count, n))
+
+
+def _for(tick: _Tick, n: int) -> _Timing:
+    """The count is the ticks that the newest trigger is still owed."""
+    bits, count = tick.memory.word(n)
+    due = tick.triggered | (tick.enforced & some(count))
+    rest = only(tick.enforced, predecessor(count))
+    tick.memory.set(bits, either(tick.triggered, constant(n, count), rest))
+    return _Timing(due - tick.q)
+
+
+def _after(tick: _Tick, n: int) -> _Timing:
+    """The count is the ticks that the oldest trigger has seen.
+
+    Another trigger before it is answered forbids the response at the very tick at which the oldest
+    demands it: only the end of the interval can keep both.
+    """
+    bits, count = tick.memory.word(n + 1)
+    clash = tick.memory.bit()
+    seen = some(count)
+    clashes = tick.enforced & (bdd.variable(clash.now) | (seen & tick.triggered))
+    due = tick.triggered | (tick.enforced & seen)
+    last = equals(count, n + 1)
+    tick.memory.set(bits, only(due - last, successor(count)))
+    tick.memory.steps[clash] = clashes - last
+    return _Timing(due & bdd.choice(last, clashes | -tick.q, tick.q))
+
+
+def _not_after(tick: _Tick, n: int) -> _Timing:
+    """With one trigger in an interval, a count gives its time."""
+    bits, count = tick.memory.word(n + 1)
+    due = tick.triggered | (tick.enforced & some(count))
+    last = equals(count, n + 1)
+    tick.memory.set(bits, only(due - last - tick.q, successor(count)))
+    return _Timing(tick.enforced & last & tick.q)
+
+
+def _register(tick: _Tick, n: int) -> _Timing:
+    """Each trigger forbids the response at a tick of its own, so each is remembered."""
+    if n > LONGEST_DELAY:
+        raise BeyondError(f"each of its triggers is remembered for {n} ticks")
+    unanswered = tick.enforced - tick.q
+    ago = tick.triggered
+    for _ in range(n + 1):
+        ago = tick.memory.keep(ago & unanswered)
+    return _Timing(tick.enforced & tick.q & ago)

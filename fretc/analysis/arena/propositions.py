@@ -1,0 +1,196 @@
+"""An alphabet of truth values: each atom is a bit of the environment or of the system.
+
+Comparisons of numbers and words are bits, too, with the patterns left out that no values have
+(`compiler.logic.orders`). Where more patterns may be impossible than order alone tells, the
+alphabet says so.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from itertools import chain
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import comparisons
+from compiler.formalization.resolution import candidates
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from compiler.logic.orders import Exclusion, exclusions
+from fretc.analysis.arena.alphabet import BeyondError, Numbers, Tick
+from fretc.analysis.arena.roles import Roles
+from fretish import expressions as e
+from fretish.bindings.declarations import Role
+from fretish.bindings.types import Kind
+from fretish.bindings.types import kind as kind_of
+
+
+class Propositions:
+    """An `Alphabet` in which each atom is a bit.
+
+    Args:
+        rules: whose atoms it has.
+        roles: of their variables.
+        fresh: variables for its bits.
+        elsewhere: atoms that another alphabet has.
+        refused: why that has no others of those that compare numbers.
+    """
+
+    def __init__(
+        self,
+        rules: Sequence[Formalized],
+        roles: Roles,
+        fresh: Numbers,
+        elsewhere: frozenset[str] = frozenset(),
+        refused: Mapping[str, str] | None = None,
+    ) -> None:
+        self._fresh = fresh
+        self._elsewhere, self._refused = elsewhere, refused or {}
+        self._roles = roles
+        self._parts = dict(chain.from_iterable(candidates(rule.sentence) for rule in rules))
+        self._read = {name: _read(name, part, rules) for name, part in self._parts.items()}
+        self._numbers: dict[str, int] = {}
+        self.doubts: dict[Role, str] = {}
+        self._doubted: set[str] = set()
+        self._compared = dict(chain.from_iterable(comparisons(rule).items() for rule in rules))
+        self._excluded = _exclusions(self._compared, rules)
+        for role, reason in self._doubtful(rules):
+            self.doubts.setdefault(role, reason)
+
+    @property
+    def doubtful(self) -> frozenset[str]:
+        """The atoms that these doubts are about."""
+        return frozenset(self._doubted)
+
+    def memory(self) -> None:
+        """Nothing is remembered beside what counters do."""
+
+    def atom(self, name: str) -> Function:
+        """The bit of an atom."""
+        if name not in self._numbers:
+            self.role(name)
+            self._numbers[name] = next(self._fresh)
+        return bdd.variable(self._numbers[name])
+
+    def role(self, name: str) -> Role:
+        """Who decides an atom.
+
+        Raises:
+            BeyondError: both do, or it is no atom of one tick.
+        """
+        part = self._parts.get(name)
+        if part is None:
+            raise BeyondError(f"`{name}` is more than a value at one tick")
+        called = next((each for each in e.parts(part) if isinstance(each, e.Call)), None)
+        if called is not None and called.name.lower() not in _ABSOLUTE:
+            raise BeyondError(f"it calls `{called.name}`")
+        found = {self._roles[each.id] for each in e.names(part)}
+        if len(found) > 1:
+            both = f"`{name}` compares what the environment and the system choose"
+            raise BeyondError(self._refused.get(name, both))
+        return found.pop() if found else Role.INPUT
+
+    @property
+    def inputs(self) -> Sequence[int]:
+        """The bits of the environment."""
+        return self._of(Role.INPUT)
+
+    @property
+    def outputs(self) -> Sequence[int]:
+        """The bits of the system."""
+        return self._of(Role.OUTPUT)
+
+    def _of(self, role: Role) -> Sequence[int]:
+        return [number for name, number in self._numbers.items() if self.role(name) is role]
+
+    @property
+    def legal(self) -> Function:
+        """The patterns of inputs that some values have."""
+        return self._possible(Role.INPUT)
+
+    @property
+    def reachable(self) -> Function:
+        """The patterns of outputs that some values have."""
+        return self._possible(Role.OUTPUT)
+
+    def _possible(self, role: Role) -> Function:
+        found = bdd.true()
+        for each in self._excluded:
+            if all(name in self._numbers and self.role(name) is role for name, _ in each):
+                found = found - bdd.point({self._numbers[name]: value for name, value in each})
+        return found
+
+    @property
+    def labels(self) -> Mapping[int, str]:
+        """The atom of each bit."""
+        return {number: name for name, number in self._numbers.items()}
+
+    def values(self, letter: Mapping[int, bool]) -> Tick:
+        """Each atom by the name that formulas have for it."""
+        return {name: letter[number] for name, number in self._numbers.items() if number in letter}
+
+    def _doubtful(self, rules: Sequence[Formalized]) -> Iterator[tuple[Role, str]]:
+        """Variables that several atoms read in ways that order alone does not tell apart."""
+        readers: defaultdict[str, list[str]] = defaultdict(list)
+        for name, read in self._read.items():
+            for each in read:
+                readers[each].append(name)
+        glossary = {name: each for rule in rules for name, each in rule.glossary.items()}
+        for name, atoms in readers.items():
+            if self._elsewhere.issuperset(atoms):
+                continue
+            whole = name in glossary and kind_of(glossary[name].type) in (Kind.WHOLE, Kind.NATURAL)
+            plain = all(_is_plain(self._compared.get(each), whole=whole) for each in atoms)
+            plain = plain and self._elsewhere.isdisjoint(atoms)
+            if (len(atoms) > 1 or not isinstance(self._parts[atoms[0]], e.Name)) and not plain:
+                yield from self._doubt(atoms)
+
+    def _doubt(self, atoms: Sequence[str]) -> Iterator[tuple[Role, str]]:
+        """Why letters of these atoms are not certain to be possible, for each role among them."""
+        shown = f"`{atoms[0]}` compares numbers, and is taken as true or false at will"
+        if len(atoms) > 1:
+            both = " and ".join(f"`{each}`" for each in atoms[:2])
+            shown = f"{both} read the same numbers, and are taken as independent"
+        refused = next((self._refused[atom] for atom in atoms if atom in self._refused), None)
+        shown = shown if refused is None else f"{refused}: {shown}"
+        self._doubted.update(atoms)
+        for atom in atoms:
+            with suppress(BeyondError):
+                yield self.role(atom), shown
+
+
+_ABSOLUTE = ("abs", "absreal", "absint")
+
+
+def _read(name: str, part: e.Expression, rules: Iterable[Formalized]) -> frozenset[str]:
+    """The signals or variables that decide an atom."""
+    for rule in rules:
+        declared = rule.declarations
+        bound = declared.propositions.get(name) if declared else None
+        if bound is not None:
+            return frozenset(bound.signals)
+    return frozenset(each.id for each in e.names(part))
+
+
+def _is_plain(part: e.Comparison | None, *, whole: bool) -> bool:
+    """Whether order alone tells what else a comparison excludes."""
+    if part is None:
+        return False
+    sides = (part.left, part.right)
+    simple = all(isinstance(s, e.Name | e.Number | e.Quantity | e.Word) for s in sides)
+    return simple and (not whole or part.op in ("=", "!="))
+
+
+def _exclusions(
+    compared: Mapping[str, e.Comparison], rules: Sequence[Formalized]
+) -> tuple[Exclusion, ...]:
+    """Patterns of comparisons that no values have."""
+    signals = {
+        name: each
+        for rule in rules
+        for name, each in (rule.declarations.signals if rule.declarations else {}).items()
+    }
+    scales = {name: signal.scale for name, signal in signals.items()}
+    words = {name: signal.values for name, signal in signals.items() if signal.values}
+    return exclusions(compared, scales, words)

@@ -1,0 +1,98 @@
+"""Who chooses each variable: the environment its inputs, the system its outputs.
+
+A role is declared, never guessed: whether requirements can be kept together depends on it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from compiler.formalization.binding_agreement import place
+from compiler.formalization.formalized import Formalized
+from fretish import expressions as e
+from fretish.bindings.declarations import Declarations, Role
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.reading.toml_text import as_key
+
+Roles = Mapping[str, Role]
+"""Input or output, of every variable of the requirements."""
+CHOSEN = (Role.INPUT, Role.OUTPUT)
+
+
+def roles(rules: Sequence[Formalized]) -> Roles | tuple[Diagnostic, ...]:
+    """The role of each variable; or what is wrong with each that has none, or has two.
+
+    F354 stands where a variable without a role is read first. F907 is of one that is an input of
+    one component and an output of another one.
+    """
+    found: dict[str, tuple[Role, str]] = {}
+    wrong: dict[str, Diagnostic] = {}
+    for rule in rules:
+        for name in rule.variables:
+            own, component = role(rule, name), rule.sentence.component
+            first, whose = found.get(name, (own, component))
+            if own is None:
+                wrong.setdefault(name, _no_role(rule, name, rules))
+            elif own is not first:
+                wrong.setdefault(name, _two_roles(rule, name, f"{first} of `{whose}`", own))
+            else:
+                found[name] = own, whose
+    return tuple(wrong.values()) or {name: own for name, (own, _) in found.items()}
+
+
+def _two_roles(rule: Formalized, name: str, first: str, second: Role) -> Diagnostic:
+    """F907."""
+    component = rule.sentence.component
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"`{name}` is an {first}, and an {second} of `{component}`: these are two systems",
+        place(rule, name),
+        help=f"ask about one of them: `--component {component}`",
+    )
+
+
+def role(rule: Formalized, name: str) -> Role | None:
+    """The role that is declared; that of its signals, where a proposition has none of its own."""
+    variable = rule.glossary.get(name)
+    if variable is not None and variable.role in CHOSEN:
+        return Role(variable.role)
+    return _common(rule.declarations, name) if rule.declarations else None
+
+
+def _common(declarations: Declarations, name: str) -> Role | None:
+    proposition = declarations.propositions.get(name)
+    if proposition is None:
+        return None
+    signals = (declarations.signals.get(signal) for signal in proposition.signals)
+    theirs = {signal.role if signal is not None else None for signal in signals}
+    common = theirs.pop() if len(theirs) == 1 else None
+    return common if common in CHOSEN else None
+
+
+def _no_role(rule: Formalized, name: str, rules: Iterable[Formalized]) -> Diagnostic:
+    """F354."""
+    declared, table = rule.declarations, "variable"
+    if declared is not None:
+        table = "proposition" if name in declared.propositions else table
+        table = "signal" if name in declared.signals else table
+    answered = any(name in _answers(each) for each in rules)
+    likely = Role.OUTPUT if answered else Role.INPUT
+    why = "stands in a response" if answered else "stands in no response"
+    variable = rule.glossary.get(name)
+    if variable is not None and variable.role == Role.MODE:
+        message = f"`{name}` is a mode, and nothing says whether the system chooses it"
+    else:
+        message = f"nothing says who chooses `{name}`: the environment or the system"
+    line = f'role = "{likely}"'
+    return Diagnostic(
+        Code.NO_ROLE,
+        message,
+        place(rule, name),
+        help=f'say `role = "input"` (the environment) or `role = "output"` (the system) in '
+        f"`[{table}.{as_key(name)}]` of bindings.toml; `{name}` {why}",
+        paste=f"[{table}.{as_key(name)}]\n{line}",
+    )
+
+
+def _answers(rule: Formalized) -> frozenset[str]:
+    return frozenset(name.id for name in e.names(rule.sentence.response))

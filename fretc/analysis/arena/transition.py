@@ -1,0 +1,56 @@
+"""How a state of several counters goes on, tick by tick: as functions, and for one known state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.counters import Counter
+
+State = Mapping[int, bool]
+"""A value of each bit."""
+
+
+class Transition:
+    """The product of some counters: next-state functions, no relation."""
+
+    def __init__(self, counters: Sequence[Counter]) -> None:
+        self._after: dict[int, int] = {}
+        self._steps: dict[int, Function] = {}
+        for counter in counters:
+            for bit, step in zip(counter.bits, counter.steps, strict=True):
+                self._after[bit.now], self._steps[bit.now] = bit.after, step
+        self.start: State = dict.fromkeys(self._steps, False)
+
+    @property
+    def initial(self) -> Function:
+        """The one state before the first tick."""
+        return bdd.point(self.start)
+
+    def step(self, bit: int) -> Function:
+        """The value of a bit after a tick, over a state and a letter."""
+        return self._steps[bit]
+
+    def moved(self, states: Function) -> Function:
+        """Over a state and a letter: whether the state after it is one of these.
+
+        A state is renamed first: functions of bits before a tick stand in for bits after it, one
+        by one.
+        """
+        read = [number for number in bdd.support(states) if number in self._steps]
+        for number in read:
+            states = bdd.composed(states, number, bdd.variable(self._after[number]))
+        for number in read:
+            states = bdd.composed(states, self._after[number], self._steps[number])
+        return states
+
+    def moved_from(self, states: Function, known: Function) -> Function:
+        """The same where a cube holds the whole state: over what it leaves open of the letter."""
+        for number in [n for n in bdd.support(states) if n in self._steps]:
+            states = bdd.composed(states, number, bdd.at(self._steps[number], known))
+        return states
+
+    def next(self, known: Function) -> State:
+        """The state after a whole state and a whole letter, given as a cube."""
+        return {number: bdd.at(step, known) == bdd.true() for number, step in self._steps.items()}

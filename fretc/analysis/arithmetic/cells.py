@@ -1,0 +1,173 @@
+"""What numbers can make true together: patterns of comparisons, and cells of the inputs.
+
+A pattern is the truth of each comparison of a group, for some numbers. Where both players choose
+numbers of the group, two inputs are in one cell just where they leave the same patterns to the
+system; the inputs of a pattern are found by elimination of the outputs. So nothing is lost and
+nothing is added.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import z3
+
+from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arithmetic.projection import Limit, projected
+from fretc.analysis.arithmetic.projection import model as next_model
+from fretc.analysis.arithmetic.terms import Term, read_by
+
+MOST = 4_096
+"""Patterns, or cells, of a group; one with more is refused."""
+Pattern = tuple[bool, ...]
+"""The truth of each formula."""
+Point = dict[str, Fraction]
+"""A number for each variable."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """Inputs that leave the same patterns to the system."""
+
+    region: Term
+    patterns: frozenset[Pattern]
+
+
+def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Pattern, ...]:
+    """The truth values that the formulas can have together.
+
+    Raises:
+        BeyondError: there are too many, or it takes too long.
+    """
+    solver = z3.Solver()
+    solver.add(domain)
+    found: list[Pattern] = []
+
+    def follow(known: Pattern, model: z3.ModelRef | None) -> None:
+        """Find those that begin so; a model of these spares a question."""
+        if model is None:
+            model = next_model(solver, limit)
+        if model is None:
+            return
+        if len(known) == len(formulas):
+            found.append(known)
+            if len(found) > MOST:
+                raise BeyondError(f"have more than {MOST} patterns")
+            return
+        formula = formulas[len(known)]
+        seen = z3.is_true(model.eval(formula, model_completion=True))
+        for value in (seen, not seen):
+            solver.push()
+            solver.add(formula if value else z3.Not(formula))
+            follow((*known, value), model if value is seen else None)
+            solver.pop()
+
+    follow((), None)
+    return tuple(found)
+
+
+def cells(
+    formulas: Sequence[Term],
+    known: Sequence[Pattern],
+    outputs: Sequence[Term],
+    domains: tuple[Term, Term],
+    limit: Limit,
+) -> tuple[Cell, ...]:
+    """The cells of the inputs of a group.
+
+    Args:
+        formulas: of the group.
+        known: all their patterns.
+        outputs: the variables that the system chooses.
+        domains: of the inputs, and of the outputs.
+        limit: for the group.
+
+    Raises:
+        BeyondError: there are too many, or it takes too long.
+    """
+    of_inputs, of_outputs = domains
+    free = [number for number, each in enumerate(formulas) if reads(each, outputs)]
+    given = [number for number in range(len(formulas)) if number not in free]
+    regions: dict[Pattern, Term] = {}
+    for pattern in known:
+        part = _part(pattern, free)
+        if part not in regions:
+            kept = literals([formulas[number] for number in free], part)
+            regions[part] = projected(z3.And(*kept, of_outputs), outputs, limit)
+    marks = [*(formulas[number] for number in given), *regions.values()]
+    found = []
+    for signs in _seen(marks, of_inputs, limit):
+        inside = {part for part, on in zip(regions, signs[len(given) :], strict=True) if on}
+        left = frozenset(
+            pattern
+            for pattern in known
+            if _part(pattern, free) in inside and _part(pattern, given) == signs[: len(given)]
+        )
+        found.append(Cell(z3.And(of_inputs, *literals(marks, signs)), left))
+    return tuple(found)
+
+
+def _part(pattern: Pattern, numbers: Sequence[int]) -> Pattern:
+    return tuple(pattern[number] for number in numbers)
+
+
+def _seen(formulas: Sequence[Term], domain: Term, limit: Limit) -> Iterator[Pattern]:
+    """The same as `patterns`, for many formulas that have few."""
+    solver = z3.Solver()
+    solver.add(domain)
+    names = [z3.Bool(f"mark!{number}") for number in range(len(formulas))]
+    solver.add([name == formula for name, formula in zip(names, formulas, strict=True)])
+    count = 0
+    while (found := next_model(solver, limit)) is not None:
+        signs = tuple(z3.is_true(found.eval(name, model_completion=True)) for name in names)
+        yield signs
+        count += 1
+        if count > MOST:
+            raise BeyondError(f"have more than {MOST} cells")
+        solver.add(z3.Not(z3.And(literals(names, signs))))
+
+
+def reads(formula: Term, variables: Sequence[Term]) -> bool:
+    """Whether a formula is about one of the variables."""
+    names = read_by(formula)
+    return any(str(each) in names for each in variables)
+
+
+def literals(formulas: Sequence[Term], pattern: Sequence[bool]) -> list[Term]:
+    """The formulas, each as true or false as the pattern has it."""
+    pairs = zip(formulas, pattern, strict=True)
+    return [formula if value else z3.Not(formula) for formula, value in pairs]
+
+
+def point(constraints: Sequence[Term], variables: Sequence[Term]) -> Point:
+    """Numbers that keep constraints which some keep; whole ones, if they can be."""
+    solver = z3.Solver()
+    solver.set("timeout", _PATIENCE)
+    solver.add(*constraints)
+    solver.push()
+    solver.add([z3.IsInt(each) for each in variables if each.is_real()])
+    if solver.check() != z3.sat:
+        solver.pop()
+        solver.set("timeout", 0)
+        answer = solver.check()
+        assert answer == z3.sat, "the pattern has been seen"
+    model = solver.model()
+    values = [model.eval(each, model_completion=True) for each in variables]
+    return {
+        str(each): Fraction(str(value.as_fraction() if value.is_real() else value.as_long()))
+        for each, value in zip(variables, values, strict=True)
+    }
+
+
+_PATIENCE = 1_000
+"""Milliseconds to look for whole numbers, which read better."""
+
+
+def fixed(point_: Point, variables: Sequence[Term]) -> list[Term]:
+    """Constraints that say the numbers."""
+    return [
+        each == (z3.RealVal(str(point_[str(each)])) if each.is_real() else int(point_[str(each)]))
+        for each in variables
+    ]

@@ -1,0 +1,149 @@
+"""For which inputs some outputs keep a formula: quantifier elimination that needs no belief.
+
+A model of the formula says where each output lies between the bounds that comparisons set to it,
+and so a term of the inputs that keeps the formula wherever these bounds stand in the same order.
+What is found by putting the terms in is a part of the answer, whatever they are; when no model is
+left outside of it, it is all of it. `qe2` of z3 5.4 is not used: it makes `u = 1 & u < 0` true.
+
+Source: Loos, Weispfenning, Applying linear quantifier elimination, The Computer Journal 36 (1993);
+Bjorner, Janota, Playing with quantified satisfaction, LPAR 2015 (led by models).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+import z3
+
+from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arithmetic.terms import Term
+
+SECONDS = 10.0
+"""Of a processor, for a group of comparisons."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """Time for a group."""
+
+    start: float = field(default_factory=time.process_time)
+
+    @property
+    def milliseconds(self) -> int:
+        """What is left of it; at its end BeyondError."""
+        left = SECONDS - (time.process_time() - self.start)
+        if left <= 0:
+            raise BeyondError(f"are not sorted out within {SECONDS:g} s of a processor")
+        return max(1, int(1000 * left))
+
+
+def model(solver: z3.Solver, limit: Limit) -> z3.ModelRef | None:
+    """What keeps the constraints; None: nothing does."""
+    solver.set("timeout", limit.milliseconds)
+    answer = solver.check()
+    if answer == z3.unknown:
+        raise BeyondError("are more than z3 can sort out")
+    return solver.model() if answer == z3.sat else None
+
+
+def projected(formula: Term, variables: Sequence[Term], limit: Limit) -> Term:
+    """Where some values of the variables keep the formula, without them.
+
+    Raises:
+        BeyondError: it takes too long.
+    """
+    solver = z3.Solver()
+    solver.add(formula)
+    parts: list[Term] = []
+    while (found := model(solver, limit)) is not None:
+        part = formula
+        for variable in variables:
+            part = z3.substitute(part, (variable, _between(variable, part, found)))
+        part = z3.simplify(part)
+        if not z3.is_true(found.eval(part, model_completion=True)):
+            raise BeyondError("have regions of inputs that are not found")
+        parts.append(part)
+        solver.add(z3.Not(part))
+    return z3.simplify(z3.Or(parts))
+
+
+def _between(variable: Term, formula: Term, found: z3.ModelRef) -> Term:
+    """A term that lies as the variable does in a model, between the bounds next to it."""
+    here = _value(found, variable)
+    bounds = [(_value(found, bound), bound) for bound in _bounds(variable, formula, found)]
+    at = next((bound for value, bound in bounds if value == here), None)
+    below = max(((v, n) for n, (v, _) in enumerate(bounds) if v < here), default=None)
+    above = min(((v, n) for n, (v, _) in enumerate(bounds) if v > here), default=None)
+    whole = variable.is_int()
+    if at is not None:
+        return _floor(at) if whole else at
+    if below is not None:
+        least = bounds[below[1]][1]
+        if whole:
+            return _floor(least) + 1
+        return (least + bounds[above[1]][1]) / 2 if above is not None else least + 1
+    if above is not None:
+        most = bounds[above[1]][1]
+        return -_floor(-most) - 1 if whole else most - 1
+    return z3.IntVal(0) if whole else z3.RealVal(0)
+
+
+def _bounds(variable: Term, formula: Term, found: z3.ModelRef) -> Iterator[Term]:
+    """What the comparisons of a formula compare a variable with, as real terms or whole ones."""
+    for left, right in _comparisons(formula, found):
+        zero, one = (
+            z3.simplify(z3.substitute(left - right, (variable, _number(variable, n))))
+            for n in (0, 1)
+        )
+        factor = z3.simplify(one - zero)
+        if not (z3.is_rational_value(factor) or z3.is_int_value(factor)):
+            continue
+        exact = Fraction(str(factor))
+        if exact == 0:
+            continue
+        if zero.is_int() and abs(exact) == 1:
+            yield zero * int(-exact)
+        else:
+            real = z3.ToReal(zero) if zero.is_int() else zero
+            yield real * z3.RealVal(str(-1 / exact))
+
+
+def _comparisons(formula: Term, found: z3.ModelRef) -> Iterator[tuple[Term, Term]]:
+    """The sides of all comparisons, with the alternatives that a model takes."""
+    waiting, seen = [formula], set()
+    while waiting:
+        term = waiting.pop()
+        if term.get_id() in seen:
+            continue
+        seen.add(term.get_id())
+        sides = term.children()
+        if len(sides) == 2 and z3.is_bool(term) and all(map(z3.is_arith, sides)):
+            left, right = (_decided(side, found) for side in sides)
+            yield left, right
+        waiting.extend(sides)
+
+
+def _decided(term: Term, found: z3.ModelRef) -> Term:
+    """A number without alternatives."""
+    if z3.is_app_of(term, z3.Z3_OP_ITE):
+        condition, then, otherwise = term.children()
+        taken = z3.is_true(found.eval(condition, model_completion=True))
+        return _decided(then if taken else otherwise, found)
+    if not term.children():
+        return term
+    return term.decl()(*(_decided(each, found) for each in term.children()))
+
+
+def _floor(term: Term) -> Term:
+    return z3.ToInt(term) if term.is_real() else term
+
+
+def _number(like: Term, value: int) -> Term:
+    return z3.IntVal(value) if like.is_int() else z3.RealVal(value)
+
+
+def _value(found: z3.ModelRef, term: Term) -> Fraction:
+    return Fraction(str(z3.simplify(found.eval(term, model_completion=True))))

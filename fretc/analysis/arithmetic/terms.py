@@ -1,0 +1,293 @@
+"""Comparisons and propositions over signals as formulas of z3: linear, exact, whole or real.
+
+A variable has the unit of its signal. Where several units meet, all is converted to base units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import z3
+from z3 import z3util
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import comparisons
+from compiler.formalization.resolution import candidates
+from fretc.analysis.arena.alphabet import BeyondError
+from fretish import expressions as e
+from fretish import units
+from fretish.bindings import constants
+from fretish.bindings.declarations import Aggregate, Signal
+from fretish.bindings.expressions import ticks_back
+from fretish.bindings.types import Kind, kind
+from fretish.printer import expression as printed
+from fretish.reading.recursion import deep
+
+Term = Any
+"""A number or a truth value of z3, which has no types."""
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """A truth value of one tick that numbers and words decide."""
+
+    formula: Term
+    reads: frozenset[str]
+    """Variables or signals."""
+
+
+@dataclass(frozen=True, slots=True)
+class Before:
+    """The number that a variable had at the tick before."""
+
+    of: str
+    first: Term
+    """What it is at the first tick."""
+
+
+class Atoms:
+    """The atoms of some rules that are linear, by the names that formulas give them."""
+
+    @deep
+    def __init__(self, rules: Sequence[Formalized]) -> None:
+        self._signals = {
+            name: signal
+            for rule in rules
+            for name, signal in (rule.declarations.signals if rule.declarations else {}).items()
+        }
+        self._types = {name: each.type for rule in rules for name, each in rule.glossary.items()}
+        self._words: dict[str, int] = {}
+        self.variables: dict[str, Term] = {}
+        """Constants of z3 for all that is read."""
+        self.found: dict[str, Atom] = {}
+        self.refused: dict[str, str] = {}
+        """Why another comparison has no formula here."""
+        self.before: dict[str, Before] = {}
+        """What variables for numbers of the tick before are."""
+        for name, part in _parts(rules):
+            if name not in self.found and name not in self.refused:
+                self._add(name, part)
+
+    def _add(self, name: str, part: e.Expression) -> None:
+        try:
+            formula = z3.simplify(self._truth(part, is_base=self._meets_units(part)))
+        except BeyondError as error:
+            self.refused[name] = f"`{name}` {error}"
+        else:
+            self.found[name] = Atom(formula, read_by(formula))
+
+    def domain(self, name: str) -> Term:
+        """Which values a variable may have."""
+        if name in self.before:
+            before = self.before[name]
+            of, domain = self.variables[before.of], self.domain(before.of)
+            begins = z3.simplify(z3.substitute(domain, (of, before.first)))
+            then = z3.substitute(domain, (of, self.variables[name]))
+            return then if z3.is_true(begins) else z3.BoolVal(True)
+        variable, signal = self.variables[name], self._signals.get(name)
+        if signal is not None and signal.values:
+            return z3.Or([variable == self._place(word) for word in signal.values])
+        if self._kind(name) is Kind.NATURAL:
+            return variable >= 0
+        return z3.BoolVal(True)
+
+    def shown(self, name: str, value: Fraction) -> int | float | str:
+        """A value of a variable as people write it."""
+        signal = self._signals.get(name)
+        if signal is not None and signal.values:
+            return next(word for word, place in self._words.items() if place == value)
+        return value.numerator if value.denominator == 1 else float(value)
+
+    def _place(self, word: str) -> int:
+        return self._words.setdefault(word, len(self._words))
+
+    def _kind(self, name: str) -> Kind | None:
+        declared = self._types.get(name)
+        return kind(declared) if declared else None
+
+    def _meets_units(self, part: e.Expression) -> bool:
+        scales = {self._scale(name.id) for name in e.names(part)}
+        return len(scales) > 1 or e.has_unit(part)
+
+    def _scale(self, name: str) -> Fraction | None:
+        signal = self._signals.get(name)
+        return signal.scale if signal is not None else None
+
+    # Truth values
+
+    def _truth(self, part: e.Expression, *, is_base: bool) -> Term:
+        def read(each: e.Expression) -> Term:
+            return self._truth(each, is_base=is_base)
+
+        match part:
+            case e.Truth(value):
+                return z3.BoolVal(value)
+            case e.Not(arg):
+                return z3.Not(read(arg))
+            case e.And(args):
+                return z3.And([read(each) for each in args])
+            case e.Or(args):
+                return z3.Or([read(each) for each in args])
+            case e.Xor(left, right):
+                return z3.Xor(read(left), read(right))
+            case e.Implies(left, right):
+                return z3.Implies(read(left), read(right))
+            case e.Iff(left, right):
+                return read(left) == read(right)
+            case e.Comparison(op, left, right):
+                a, b = (self._number(side, is_base=is_base) for side in (left, right))
+                return _compared(op, a, b)
+            case _:
+                raise BeyondError("is no comparison of numbers")
+
+    # Numbers
+
+    def _number(self, part: e.Expression, *, is_base: bool) -> Term:
+        if not any(e.names(part)) and not isinstance(part, e.Word | e.Call):
+            return _constant(part)
+
+        def read(each: e.Expression) -> Term:
+            return self._number(each, is_base=is_base)
+
+        match part:
+            case e.Word(text):
+                return z3.IntVal(self._place(text))
+            case e.Name(id):
+                return self._variable(id, is_base=is_base)
+            case e.Negation(arg):
+                return -read(arg)
+            case e.Arithmetic(op, left, right):
+                return _computed(op, read(left), read(right))
+            case e.Call("preInt" | "preReal", (first, e.Name(id))) if not is_base:
+                return self._before(printed(part), read(first), id)
+            case e.Call(name, args):
+                return _called(name, [read(each) for each in args])
+            case _:
+                raise BeyondError("is no comparison of numbers")
+
+    def _before(self, name: str, first: Term, of: str) -> Term:
+        """The number of the tick before, as a variable of its own."""
+        now = self._variable(of, is_base=False)
+        if now.is_int() and first.is_real():
+            raise BeyondError("begins with what is no whole number")
+        first = z3.ToReal(first) if now.is_real() and first.is_int() else first
+        made = z3.Int(name) if now.is_int() else z3.Real(name)
+        self.before[name] = Before(of, first)
+        return self.variables.setdefault(name, made)
+
+    def _variable(self, name: str, *, is_base: bool) -> Term:
+        signal, known = self._signals.get(name), self._kind(name)
+        is_word = signal is not None and bool(signal.values)
+        if known is Kind.TRUTH:
+            raise BeyondError("compares a truth value with a number")
+        whole = is_word or known in (Kind.WHOLE, Kind.NATURAL)
+        made = z3.Int(name) if whole else z3.Real(name)
+        variable = self.variables.setdefault(name, made)
+        if not is_base or is_word:
+            return variable
+        scale = self._scale(name)
+        if scale is None:
+            raise BeyondError(f"needs the unit of `{name}`, which has none")
+        return variable if scale == 1 else _exact(scale) * variable
+
+
+def read_by(formula: Term) -> frozenset[str]:
+    """The variables that a formula is about."""
+    return frozenset(str(each) for each in z3util.get_vars(formula))
+
+
+def _parts(rules: Sequence[Formalized]) -> Iterator[tuple[str, e.Expression]]:
+    """Comparisons of one moment, and what declared propositions say in their place.
+
+    A proposition over samples of a tick, or with a value for what is unknown, says something else
+    than its expression.
+    """
+    for rule in rules:
+        yield from comparisons(rule).items()
+        declared = rule.declarations.propositions if rule.declarations else {}
+        signals: Mapping[str, Signal] = rule.declarations.signals if rule.declarations else {}
+        for name, part in candidates(rule.sentence):
+            bound = declared.get(name)
+            if not isinstance(part, e.Name) or bound is None:
+                continue
+            plain = bound.aggregate is Aggregate.LAST and bound.on_unknown is None
+            if plain and _is_measured(bound.expression, signals):
+                yield name, bound.expression
+
+
+def _is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool:
+    """Whether it compares numbers of signals in their own units, at one tick."""
+    read = [signals.get(name.id) for name in e.names(expression)]
+    return (
+        bool(read)
+        and not any(e.truths(expression))
+        and not ticks_back(expression)
+        and all(each is not None and each.scale == each.unit.factor for each in read)
+    )
+
+
+def _exact(value: Fraction) -> Term:
+    return z3.IntVal(value.numerator) if value.denominator == 1 else z3.RealVal(str(value))
+
+
+def _constant(part: e.Expression) -> Term:
+    try:
+        for each in e.parts(part):
+            if isinstance(each, e.Number | e.Quantity):
+                units.number(each.digits)  # it has no more digits than can be computed with
+        value = constants.number(part)
+    except ValueError:
+        value = None
+    if value is None:
+        raise BeyondError("computes with a number that there is not, or that is too long")
+    return _exact(value)
+
+
+def _compared(op: e.ComparisonOperator, left: Term, right: Term) -> Term:
+    match op:
+        case "<":
+            return left < right
+        case "<=":
+            return left <= right
+        case ">":
+            return left > right
+        case ">=":
+            return left >= right
+        case "=":
+            return left == right
+        case "!=":
+            return left != right
+
+
+def _computed(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
+    match op:
+        case "+":
+            return left + right
+        case "-":
+            return left - right
+        case "*" if _is_number(left) or _is_number(right):
+            return left * right
+        case "/" if _is_number(right) and not z3.simplify(right == 0).eq(z3.BoolVal(True)):
+            return (z3.ToReal(left) if left.is_int() else left) / right
+        case _:
+            raise BeyondError("is not linear")
+
+
+def _is_number(term: Term) -> bool:
+    simple = z3.simplify(term)
+    return bool(z3.is_rational_value(simple) or z3.is_int_value(simple))
+
+
+def _called(name: str, args: Sequence[Term]) -> Term:
+    match name.lower(), args:
+        case (("abs" | "absreal" | "absint"), [arg]):
+            return z3.If(arg >= 0, arg, -arg)
+        case (("min" | "minreal" | "minint"), [left, right]):
+            return z3.If(left <= right, left, right)
+        case (("max" | "maxreal" | "maxint"), [left, right]):
+            return z3.If(left >= right, left, right)
+        case _:
+            raise BeyondError(f"calls `{name}`")

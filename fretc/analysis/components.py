@@ -1,0 +1,77 @@
+"""Requirements that hang together: by the outputs that they share, or by any variable.
+
+Requirements without a common output can be kept apart: each component has a strategy of its own
+for the same inputs, and together these are one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from compiler.formalization.formalized import Formalized
+from fretc.analysis.arena.roles import Roles
+from fretish.bindings.declarations import Role
+
+Tokens = frozenset[str]
+
+
+def tokens(rule: Formalized, roles: Roles, *kinds: Role) -> Tokens:
+    """The variables of such roles that a rule reads; of a bound proposition its signals."""
+    found: set[str] = set()
+    for name in rule.variables:
+        if roles[name] in kinds:
+            bound = rule.declarations.propositions.get(name) if rule.declarations else None
+            found.update(bound.signals if bound else (name,))
+    return frozenset(found)
+
+
+def by_outputs(
+    rules: Sequence[Formalized], assumptions: Sequence[Formalized], roles: Roles
+) -> list[tuple[Formalized, ...]]:
+    """Components: those of which no output is shared; assumptions about outputs join them."""
+
+    def of(rule: Formalized) -> Tokens:
+        return tokens(rule, roles, Role.OUTPUT)
+
+    return _groups(rules, [each for each in assumptions if of(each)], of)
+
+
+def by_variables(
+    rules: Sequence[Formalized], assumptions: Sequence[Formalized], roles: Roles
+) -> list[tuple[Formalized, ...]]:
+    """Groups that share no variable at all."""
+    return _groups(rules, assumptions, lambda rule: tokens(rule, roles, Role.INPUT, Role.OUTPUT))
+
+
+def about(
+    rules: Sequence[Formalized], assumptions: Sequence[Formalized], roles: Roles
+) -> tuple[Formalized, ...]:
+    """The assumptions that bear upon the rules, directly or by way of other assumptions."""
+    kinds = (Role.INPUT, Role.OUTPUT)
+    reached = {token for rule in rules for token in tokens(rule, roles, *kinds)}
+    rest = list(assumptions)
+    found: list[Formalized] = []
+    while True:
+        near = [each for each in rest if reached & tokens(each, roles, *kinds)]
+        if not near:
+            return tuple(each for each in assumptions if each in found)
+        for each in near:
+            rest.remove(each)
+            found.append(each)
+            reached |= tokens(each, roles, *kinds)
+
+
+def _groups(
+    rules: Sequence[Formalized], links: Sequence[Formalized], of: Callable[[Formalized], Tokens]
+) -> list[tuple[Formalized, ...]]:
+    """The rules that are linked, in their order; links themselves are in no group."""
+    groups: list[tuple[set[int], set[str]]] = []
+    members = [*rules, *links]
+    for number, rule in enumerate(members):
+        mine = set(of(rule))
+        touched = [group for group in groups if group[1] & mine]
+        groups = [group for group in groups if group not in touched]
+        numbers = {number}.union(*(group[0] for group in touched))
+        groups.append((numbers, mine.union(*(group[1] for group in touched))))
+    kept = [sorted(n for n in numbers if n < len(rules)) for numbers, _ in groups]
+    return [tuple(members[n] for n in numbers) for numbers in sorted(filter(None, kept))]

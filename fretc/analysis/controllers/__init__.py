@@ -1,0 +1,1 @@
+"""Strategies as machines: what a system may do to keep its requirements, as files."""

@@ -1,0 +1,169 @@
+"""The strategy of a system as functions: each output, and each bit of what it remembers.
+
+Of all replies by which the system wins, one is chosen: output by output, false where it may be. A
+strategy that could win by what breaks the assumptions does so only where nothing else is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.games.budget import Budget
+from fretc.analysis.games.game import Game, Goal, Solution
+
+
+class NoMachineError(Exception):
+    """A strategy that has no such form; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """A Mealy machine. Before the first tick all bits are false."""
+
+    inputs: Mapping[int, str]
+    """The name of each variable that the environment sets."""
+    outputs: Mapping[int, str]
+    """The name of each variable that the machine sets."""
+    replies: Mapping[int, Function]
+    """Of each output its value, over bits and inputs."""
+    steps: Mapping[int, Function]
+    """Of each bit its value after a tick, over bits, inputs and outputs."""
+    legal: Function
+    """The inputs that can be."""
+
+
+def machine(game: Game, solution: Solution, budget: Budget) -> Machine:
+    """How the system wins.
+
+    Args:
+        game: which the system wins.
+        solution: of the game.
+        budget: of time.
+
+    Raises:
+        NoMachineError: its letters are no propositions.
+        OutOfTimeError: it takes too long.
+    """
+    alphabet = game.alphabet
+    named = alphabet.labels
+    if any(number not in named for number in (*alphabet.inputs, *alphabet.outputs)):
+        raise NoMachineError("it compares numbers, and a controller of numbers is not made yet")
+    goals = solution.goals
+    turns = _Turns(game, len(goals))
+    moves = [_Moves(game, budget).of(solution.winning, goal) for goal in goals or (None,)]
+    relation = bdd.false()
+    for number, move in enumerate(moves):
+        relation = relation | (turns.is_turn(number) & move)
+    steps = {bit: game.transition.step(bit) for bit in game.transition.start}
+    steps |= turns.steps([game.safe & game.transition.moved(goal.target) for goal in goals])
+    return Machine(
+        {number: named[number] for number in alphabet.inputs},
+        {number: named[number] for number in alphabet.outputs},
+        _chosen(_with_broken_word(game, relation), alphabet.outputs, budget),
+        steps,
+        game.legal,
+    )
+
+
+class _Turns:
+    """The number of the goal that is next, in bits of its own."""
+
+    def __init__(self, game: Game, size: int) -> None:
+        letters = (*game.alphabet.inputs, *game.alphabet.outputs)
+        first = 2 + max((*letters, *game.transition.start), default=0)  # each bit has an `after`
+        self._bits = [first + i for i in range((max(size, 1) - 1).bit_length())]
+        self._size = size
+
+    def is_turn(self, number: int) -> Function:
+        """Whether it is this one."""
+        return bdd.point({bit: bool(number >> i & 1) for i, bit in enumerate(self._bits)})
+
+    def steps(self, reached: Sequence[Function]) -> dict[int, Function]:
+        """Of each bit its value after a tick; a goal that is reached passes the turn on."""
+        found = dict.fromkeys(self._bits, bdd.false())
+        for number, ticks in enumerate(reached):
+            following = (number + 1) % self._size
+            for i, bit in enumerate(self._bits):
+                if following >> i & 1:
+                    found[bit] = found[bit] | (self.is_turn(number) & ticks)
+                if number >> i & 1:
+                    found[bit] = found[bit] | (self.is_turn(number) - ticks)
+        return found
+
+
+class _Moves:
+    """The ticks by which the system goes for one goal."""
+
+    def __init__(self, game: Game, budget: Budget) -> None:
+        self._game, self._budget = game, budget
+        self._outputs = bdd.cube(game.alphabet.outputs)
+
+    def _into(self, states: Function) -> Function:
+        self._budget.check()
+        return self._game.safe & self._game.transition.moved(states)
+
+    def or_else(self, first: Function, second: Function) -> Function:
+        """The first where the system has any such reply, else the second."""
+        return first | (second - bdd.some(first, self._outputs))
+
+    def of(self, winning: Function, goal: Goal | None) -> Function:
+        """All of them.
+
+        Args:
+            winning: the states that it never leaves.
+            goal: what it goes for; None: to stay there is all.
+        """
+        if goal is None:
+            return winning & self._into(winning)
+        nearer = self._into(goal.target)
+        found = bdd.false()
+        layers = (None, *goal.layers)
+        for before, layer in pairwise(layers):
+            assert layer is not None
+            own = layer.states if before is None else layer.states - before.states
+            found = found | (own & self._waiting(nearer, layer.stays))
+            nearer = self.or_else(nearer, self._into(layer.states))
+        return found
+
+    def _waiting(self, nearer: Function, stays: Sequence[Function]) -> Function:
+        """Nearer to the goal, or where a promise of the environment stays unkept."""
+        found, left = nearer, bdd.true()
+        for states, promise in zip(stays, self._game.promises, strict=True):
+            mine = states & left
+            left = left - states
+            found = found | self.or_else(nearer, mine & self._into(states - promise)) & mine
+        return found
+
+
+def _with_broken_word(game: Game, moves: Function) -> Function:
+    """What else to do where the environment breaks its word, or has done so."""
+    if game.kept == bdd.true():
+        return moves
+    outputs = bdd.cube(game.alphabet.outputs)
+    for other in _last_resorts(game):
+        moves = moves | (other - bdd.some(moves, outputs))
+    return moves
+
+
+def _last_resorts(game: Game) -> Iterator[Function]:
+    free = game.reachable - game.kept
+    yield free & game.safe
+    yield free
+    yield game.safe
+
+
+def _chosen(relation: Function, outputs: Sequence[int], budget: Budget) -> dict[int, Function]:
+    """One value of each output, over what is no output."""
+    found: dict[int, Function] = {}
+    for place, output in enumerate(outputs):
+        budget.check()
+        others = bdd.cube(outputs[place + 1 :])
+        when = {value: bdd.at(relation, bdd.literal(output, value)) for value in (False, True)}
+        possible = {value: bdd.some(when[value], others) for value in when}
+        found[output] = possible[True] - possible[False]
+        relation = bdd.choice(found[output], when[True], when[False])
+    return found

@@ -1,0 +1,110 @@
+"""A machine state by state: its moves, as automata have them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.controllers.machine import Machine, NoMachineError
+from fretc.analysis.games.budget import Budget
+
+MOST_STATES, MOST_MOVES = 1_000, 10_000
+"""Of an automaton that is written."""
+Term = Mapping[str, bool]
+"""The truth of some propositions."""
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """Where the machine goes upon some inputs, and what it sets."""
+
+    when: tuple[Term, ...]
+    """The inputs: one of these terms."""
+    outputs: Term
+    """All of them."""
+    after: int
+
+
+@dataclass(frozen=True, slots=True)
+class Mealy:
+    """The machine of some requirements, state by state; the first one is initial."""
+
+    requirements: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    states: tuple[tuple[Move, ...], ...]
+
+
+def mealy(machine: Machine, requirements: Sequence[str], budget: Budget) -> Mealy:
+    """The states that the machine can come to, and its moves in each.
+
+    Args:
+        machine: whatever its size.
+        requirements: their ids.
+        budget: of time.
+
+    Raises:
+        NoMachineError: it has too many.
+        OutOfTimeError: it takes too long.
+    """
+    numbers: dict[tuple[bool, ...], int] = {tuple(False for _ in machine.steps): 0}
+    states: list[tuple[Move, ...]] = []
+    size = 0
+    while len(states) < len(numbers):
+        budget.check()
+        state = next(each for each, number in numbers.items() if number == len(states))
+        moves = []
+        for inputs, outputs, after in _moves(machine, state):
+            number = numbers.setdefault(after, len(numbers))
+            when = tuple(_terms(inputs, machine.inputs))
+            moves.append(Move(when, {machine.outputs[o]: v for o, v in outputs.items()}, number))
+            size += len(when)
+        states.append(tuple(moves))
+        if len(numbers) > MOST_STATES or size > MOST_MOVES:
+            raise NoMachineError(
+                f"its automaton has more than {MOST_STATES} states or {MOST_MOVES} moves"
+            )
+    return Mealy(
+        tuple(requirements),
+        tuple(machine.inputs.values()),
+        tuple(machine.outputs.values()),
+        tuple(states),
+    )
+
+
+def _moves(
+    machine: Machine, state: tuple[bool, ...]
+) -> Iterator[tuple[Function, Mapping[int, bool], tuple[bool, ...]]]:
+    """Sets of inputs with the same outputs and the same state after them."""
+    known = bdd.point(dict(zip(machine.steps, state, strict=True)))
+    replies = {output: bdd.at(reply, known) for output, reply in machine.replies.items()}
+    for inputs, outputs in _split(bdd.at(machine.legal, known), replies):
+        there = known & bdd.point(outputs)
+        steps = {bit: bdd.at(step, there) for bit, step in machine.steps.items()}
+        for some, after in _split(inputs, steps):
+            yield some, outputs, tuple(after.values())
+
+
+def _split(
+    inputs: Function, functions: Mapping[int, Function]
+) -> list[tuple[Function, dict[int, bool]]]:
+    """The inputs apart by the values of functions."""
+    found: list[tuple[Function, dict[int, bool]]] = [(inputs, {})]
+    for number, function in functions.items():
+        found = [
+            (part, {**values, number: value})
+            for some, values in found
+            for value, part in ((False, some - function), (True, some & function))
+            if part != bdd.false()
+        ]
+    return found
+
+
+def _terms(inputs: Function, names: Mapping[int, str]) -> Iterator[Term]:
+    """Terms of which one is true for each of the inputs."""
+    while inputs != bdd.false():
+        term = bdd.witness(inputs)
+        inputs = inputs - bdd.point(term)
+        yield {names[number]: value for number, value in term.items()}

@@ -1,0 +1,226 @@
+"""An analysis as evidence: what it is of, to the letter, and whether that is what there is now.
+
+Nothing in a file is trusted: a verdict that does not follow from what stands beside it is F503.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal
+
+from compiler.files.checked_json import MisshapenError, parsed
+from compiler.files.edition import __version__
+from compiler.files.records import Name, Record, Sha256, about, decoded, json_schema
+from compiler.files.text_files import read as read_text
+from compiler.files.text_files import sha256
+from compiler.formalization.formalized import Formalized
+from fretc.analysis.arena.roles import role
+from fretc.analysis.findings import Analysis, Verdict
+from fretc.analysis.reasons import listed
+from fretish.bindings import canonical
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source
+from fretish.printer import sentence as printed
+
+SCHEMA: Final = "fretc-analyzed-set-1"
+DEFAULT = "build/analysis.json"
+"""Where `fretc analyze` writes."""
+
+
+class Member(Record, frozen=True):
+    """A requirement, or an assumption, as it was when it was analyzed."""
+
+    sentence: Annotated[str, about("in FRETish")]
+    sha256: Annotated[
+        Sha256,
+        about(
+            "SHA-256 of all that the analysis reads of it: formulas, ticks, what its names are "
+            "bound to, their types and roles"
+        ),
+    ]
+
+
+class Document(Record, frozen=True):
+    """What `build/analysis.json` holds."""
+
+    schema: Literal["fretc-analyzed-set-1"]
+    fretc: Annotated[str, about("version of the tool")]
+    as_fret: Annotated[
+        bool, about("whether it answers FRET's question: `eventually` means at once")
+    ]
+    requirements: Annotated[dict[Name, Member], about("all that were asked about, by their ids")]
+    assumptions: Annotated[dict[Name, Member], about("what the environment was taken to keep")]
+    analysis: Analysis
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of the file."""
+    return json_schema(
+        Document,
+        SCHEMA,
+        "Which requirements were analyzed, and what was found, as `fretc analyze` writes it",
+        "Nothing but `seconds` depends on when or where it was made.",
+    )
+
+
+def document(
+    rules: Sequence[Formalized],
+    assumptions: Sequence[Formalized],
+    analysis: Analysis,
+    *,
+    as_fret: bool,
+) -> Document:
+    """The evidence of an analysis of these."""
+    members = _members(rules), _members(assumptions)
+    return Document(SCHEMA, __version__, as_fret, *members, analysis)
+
+
+def _members(rules: Sequence[Formalized]) -> dict[str, Member]:
+    return {rule.id: Member(printed(rule.written), _digest(rule)) for rule in rules}
+
+
+def _digest(rule: Formalized) -> str:
+    """Of all that the analysis reads of a requirement."""
+    declared = rule.declarations
+    return canonical.digest(
+        {
+            "meaning": rule.fingerprint,
+            "formulas": [str(each) for each in (rule.ft_infinite, rule.ft_finite, rule.pt)],
+            "ticks": rule.ticks,
+            "bound": canonical.bound(declared, rule.propositions) if declared else None,
+            "roles": {name: str(role(rule, name)) for name in rule.variables},
+            "types": {
+                name: rule.glossary[name].type for name in rule.variables if name in rule.glossary
+            },
+        }
+    )
+
+
+def suspicions(
+    known: Document, rules: Sequence[Formalized], assumptions: Sequence[Formalized]
+) -> Iterator[str]:
+    """Why an analysis says nothing of these: what was added, was taken out, or has changed.
+
+    Args:
+        known: the evidence.
+        rules: the requirements in force now.
+        assumptions: what the environment is taken to keep now.
+    """
+    if known.as_fret:
+        yield "it answers FRET's question, in which `eventually` means at once"
+    yield from _changes(known.requirements, _members(rules), "")
+    yield from _changes(known.assumptions, _members(assumptions), "assumption ")
+
+
+def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -> Iterator[str]:
+    for id in (*then, *(each for each in now if each not in then)):
+        if id not in now:
+            yield f"{what}{id} was part of the set, and is not any more"
+        elif id not in then:
+            yield f"{what}{id} was no part of the set"
+        elif then[id].sha256 != now[id].sha256:
+            yield f"{what}{id} has changed since"
+
+
+def remarks(analysis: Analysis, rules: Sequence[Formalized]) -> Iterator[Diagnostic]:
+    """F561 for each conflict; F562 where nobody knows."""
+    places = {rule.id: rule.requirement.wording for rule in rules}
+    for each in analysis.conflicts:
+        ids = each.requirements
+        what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"
+        yield Diagnostic(
+            Code.UNREALIZABLE,
+            f"{listed(ids)} {what}: {each.because}",
+            places.get(ids[0]),
+            help="look at the run: `fretc analyze`",
+            severity=Severity.WARNING,
+        )
+    if analysis.verdict is Verdict.UNREALIZABLE and not analysis.conflicts:
+        yield Diagnostic(
+            Code.UNREALIZABLE,
+            f"requirements {analysis.why}",
+            help="look at them: `fretc analyze`",
+            severity=Severity.WARNING,
+        )
+    if analysis.verdict is Verdict.NOT_CHECKED:
+        yield Diagnostic(
+            Code.NOT_ANALYZED,
+            f"it is not known whether all requirements can be kept together: {analysis.why}",
+            help="see what is open: `fretc analyze`",
+            severity=Severity.WARNING,
+        )
+
+
+# Files ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class AnalyzedSet:
+    """A whole file, with its name and its SHA-256."""
+
+    file: str
+    sha256: str
+    document: Document
+
+
+def read(path: str) -> AnalyzedSet | Diagnostic:
+    """Read and check a file of `fretc analyze`."""
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return source
+    try:
+        found = decoded(parsed(source.text).value, Document)
+    except json.JSONDecodeError as error:
+        return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
+    except MisshapenError as error:
+        return _wrong(source, f"is not what `fretc analyze` writes: {error}")
+    except RecursionError:
+        return _wrong(source, "is not JSON that fretc can read: it is nested too deeply")
+    except ValueError as error:
+        return _wrong(source, f"is not JSON that fretc can read: {error}")
+    mistake = _contradiction(found)
+    if mistake:
+        return _wrong(source, f"contradicts itself: {mistake}")
+    return AnalyzedSet(source.name, sha256(source.text), found)
+
+
+def written() -> str | None:
+    """The file of `fretc analyze` at its usual place, if there is one."""
+    return DEFAULT if Path(DEFAULT).exists() else None
+
+
+def _contradiction(found: Document) -> str:
+    """Why the verdict does not follow; empty where it does."""
+    analysis = found.analysis
+    ids = found.requirements.keys()
+    named = {id for each in analysis.components for id in each.requirements}
+    named |= {id for each in analysis.conflicts for id in each.requirements}
+    if not named <= ids:
+        return f"it is not about `{min(named - ids)}`"
+    shown = {
+        id
+        for each in analysis.components
+        if each.verdict is Verdict.REALIZABLE
+        for id in each.requirements
+    }
+    if analysis.conflicts or any(
+        each.verdict is Verdict.UNREALIZABLE for each in analysis.components
+    ):
+        follows = Verdict.UNREALIZABLE
+    else:
+        follows = Verdict.REALIZABLE if ids <= shown else Verdict.NOT_CHECKED
+    if analysis.verdict is follows:
+        return ""
+    return f"the verdict is `{analysis.verdict}`, and `{follows}` is what its parts say"
+
+
+def _wrong(source: Source, what: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EVIDENCE,
+        f"`{source.name}` {what}",
+        Source(source.name, "").span(),
+        help="analyze again: `fretc analyze FILE...`",
+    )

@@ -1,0 +1,145 @@
+"""What an analysis of a requirement set has found, as it is written and printed.
+
+A requirement set is *realizable* where a system can choose its outputs tick by tick, knowing the
+inputs up to and including that tick, and keep every requirement whatever the inputs are. Whatever
+has no answer within its limits is `not checked`: no finding is ever left out in silence.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated, Any, Final, Literal
+
+from compiler.files.records import Count, Name, Record, about, json_schema
+from fretc.analysis.arena.alphabet import Tick
+from fretish.bindings.declarations import Role
+
+SCHEMA: Final = "fretc-analysis-1"
+
+
+class Verdict(StrEnum):
+    """Can the requirements be kept together? The values are the words of files."""
+
+    REALIZABLE = "realizable"
+    UNREALIZABLE = "unrealizable"
+    NOT_CHECKED = "not checked"
+
+
+class Component(Record, frozen=True):
+    """Requirements that share outputs, directly or by way of others; no other one has these."""
+
+    requirements: Annotated[tuple[Name, ...], about("ids, in the order of the files")]
+    outputs: Annotated[tuple[Name, ...], about("the outputs that they are about")]
+    verdict: Verdict
+    why: Annotated[str, about("how it is known, or why nothing is known")]
+    seconds: Annotated[float, about("of a processor")]
+
+
+class Conflict(Record, frozen=True):
+    """A minimal conflict: these cannot be kept together, and without any one of them they can."""
+
+    requirements: Annotated[tuple[Name, ...], about("ids, sorted")]
+    play: Annotated[
+        tuple[Tick, ...],
+        about("a run that the environment forces, tick by tick; empty where it takes too long"),
+    ]
+    because: Annotated[str, about("one sentence that says why")]
+    loop: Annotated[
+        Count | None,
+        about(
+            "the tick to which the last one leads back for ever; null: the play ends in a breach"
+        ),
+    ] = None
+
+
+class Repair(Record, frozen=True):
+    """What would settle a conflict, as the game of the changed set has shown."""
+
+    conflict: Annotated[tuple[Name, ...], about("the ids of the conflict that it settles")]
+    requirement: Annotated[
+        Name | None, about("whose bound changes; null: the sentences are assumptions")
+    ]
+    sentences: Annotated[tuple[Name, ...], about("in FRETish")]
+    settles: Annotated[bool, about("whether all of the component can be kept then")]
+
+
+class Redundancy(Record, frozen=True):
+    """A requirement that others imply: no run that keeps these breaks it."""
+
+    requirement: Name
+    by: Annotated[tuple[Name, ...], about("a minimal set of others that imply it; sorted")]
+
+
+class Vacuity(Record, frozen=True):
+    """A requirement of which a part never happens, in any run that keeps the others."""
+
+    requirement: Name
+    by: Annotated[tuple[Name, ...], about("a minimal set of others that exclude it; sorted")]
+    what: Annotated[Literal["trigger", "scope"], about("the part that never happens")]
+
+
+class Inconsistency(Record, frozen=True):
+    """Requirements that a run can lead to where they cannot be kept together any more.
+
+    No single one is broken then, or has become impossible.
+    """
+
+    requirements: Annotated[tuple[Name, ...], about("ids, sorted")]
+    play: Annotated[tuple[Tick, ...], about("a shortest run to there")]
+
+
+class Assumption(Record, frozen=True):
+    """What the environment is taken to keep."""
+
+    id: Name
+    text: Annotated[str, about("in natural language; it may be empty")]
+    sentence: Annotated[str, about("in FRETish")]
+
+
+class OpenQuestion(Record, frozen=True):
+    """A question without an answer."""
+
+    question: Name
+    why: Name
+
+
+class Analysis(Record, frozen=True):
+    """All that is known of a requirement set."""
+
+    schema: Literal["fretc-analysis-1"]
+    fretc: Annotated[str, about("version of the tool")]
+    verdict: Verdict
+    why: str
+    components: tuple[Component, ...]
+    conflicts: tuple[Conflict, ...]
+    complete: Annotated[bool, about("whether these are all minimal conflicts")]
+    repairs: Annotated[tuple[Repair, ...], about("what would settle each conflict")]
+    redundant: tuple[Redundancy, ...]
+    removable: Annotated[
+        tuple[Name, ...],
+        about("redundant requirements that the others imply even without all of these; sorted"),
+    ]
+    vacuous: tuple[Vacuity, ...]
+    consistent: Annotated[bool | None, about("whether any run keeps all of them; null: not known")]
+    inconsistent: Annotated[
+        tuple[Inconsistency, ...], about("real-time inconsistencies, of pairs and triples first")
+    ]
+    always: Annotated[tuple[Name, ...], about("requirements that every run keeps")]
+    never: Annotated[tuple[Name, ...], about("requirements that no run keeps")]
+    assumptions: tuple[Assumption, ...]
+    roles: Annotated[
+        dict[str, Role],
+        about("who chooses each variable: the environment inputs, the system outputs"),
+    ]
+    terms: Annotated[tuple[str, ...], about("what all of this rests on, in words")]
+    open: Annotated[tuple[OpenQuestion, ...], about("what was not answered, and why")]
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of what `fretc analyze --format json` prints."""
+    return json_schema(
+        Analysis,
+        SCHEMA,
+        "Whether requirements can be kept together, as `fretc analyze` writes it",
+        "Nothing but `seconds` depends on when or where it was made.",
+    )

@@ -1,0 +1,1 @@
+"""Questions about an arena: who wins, which runs there are, which sets fight."""

@@ -1,0 +1,89 @@
+"""All minimal conflicts of some requirements.
+
+Source: Liffiton, Previti, Malik, Marques-Silva, Fast, flexible MUS enumeration, Constraints 21
+(2016): a map of the sets that are not decided yet, here a decision diagram; each seed of it grows
+or shrinks to a border, which takes everything beyond it off the map.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import combinations
+
+from compiler.logic import decision_diagrams as bdd
+
+MOST_PAIRS = 2_000
+"""Of more pairs none is tried before the others."""
+Members = frozenset[int]
+
+
+def cores(
+    size: int, is_conflict: Callable[[Members], bool], near: Callable[[int, int], bool]
+) -> Iterator[Members]:
+    """Each minimal set with a conflict, as soon as it is known.
+
+    Args:
+        size: the members are 0..size-1.
+        is_conflict: monotone: a larger set than a conflict is one.
+        near: whether two members may conflict by themselves; those are tried first.
+    """
+    open_sets = bdd.true()
+    for found in _small(size, is_conflict, near):
+        yield found
+        open_sets = open_sets - bdd.point(dict.fromkeys(found, True))
+    while open_sets != bdd.false():
+        seed = _largest(open_sets, size)
+        if is_conflict(seed):
+            core = _shrunk(seed, is_conflict)
+            yield core
+            open_sets = open_sets - bdd.point(dict.fromkeys(core, True))
+        else:
+            border = _grown(seed, size, is_conflict)
+            rest = set(range(size)) - border
+            open_sets = open_sets - bdd.point(dict.fromkeys(rest, False))
+
+
+def _small(
+    size: int, is_conflict: Callable[[Members], bool], near: Callable[[int, int], bool]
+) -> Iterator[Members]:
+    """Single members, and pairs of others."""
+    alone = [frozenset({i}) for i in range(size) if is_conflict(frozenset({i}))]
+    yield from alone
+    fit = [i for i in range(size) if frozenset({i}) not in alone]
+    if len(fit) * (len(fit) - 1) // 2 > MOST_PAIRS:
+        return
+    for i, j in combinations(fit, 2):
+        if near(i, j) and is_conflict(frozenset({i, j})):
+            yield frozenset({i, j})
+
+
+def _largest(open_sets: bdd.Function, size: int) -> Members:
+    """A set on the map with many members."""
+    values = bdd.witness(open_sets, prefer=True)
+    return frozenset(i for i in range(size) if values.get(i, True))
+
+
+def _shrunk(members: Members, is_conflict: Callable[[Members], bool]) -> Members:
+    """A minimal conflict among the members of one."""
+    for each in sorted(members):
+        if is_conflict(members - {each}):
+            members = members - {each}
+    return members
+
+
+def _grown(members: Members, size: int, is_conflict: Callable[[Members], bool]) -> Members:
+    """A maximal set without a conflict that holds the members."""
+    for each in range(size):
+        if each not in members and not is_conflict(members | {each}):
+            members = members | {each}
+    return members
+
+
+def minimal(members: Sequence[str], holds: Callable[[Sequence[str]], bool]) -> tuple[str, ...]:
+    """A minimal subset of which something monotone holds, as it does of all."""
+    kept = list(members)
+    for each in members:
+        rest = [other for other in kept if other != each]
+        if holds(rest):
+            kept = rest
+    return tuple(kept)

@@ -1,0 +1,85 @@
+"""Plays judged once more, by the formulas that monitors are made of.
+
+Nothing of the game is believed here but the letters of a play: a finding is shown only where the
+monitors of its requirements find it, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from compiler.formalization.formalized import Formalized
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic import formula as f
+from compiler.logic.evaluation import evaluate
+from fretc.analysis.arena.alphabet import Alphabet
+from fretc.analysis.games.plays import Letter, Play
+
+ROUNDS = 3
+"""How often a loop is read: a demand that stays open that long stays open."""
+
+
+def columns(alphabet: Alphabet, letters: Sequence[Letter], atoms: Iterable[str]) -> dict[str, int]:
+    """Each atom over time, bit i for tick i."""
+    functions = {name: alphabet.atom(name) for name in atoms}
+    bits: dict[str, list[str]] = {name: [] for name in functions}
+    for letter in reversed(letters):
+        known = bdd.point(letter)
+        for name, function in functions.items():
+            bits[name].append("1" if bdd.at(function, known) == bdd.true() else "0")
+    return {name: int("".join(values) or "0", 2) for name, values in bits.items()}
+
+
+def broken(
+    rules: Sequence[Formalized], alphabet: Alphabet, play: Play, *, as_fret: bool = False
+) -> tuple[str, ...]:
+    """The requirements that the play breaks at its last tick, or never meets in its loop.
+
+    Args:
+        rules: those of a conflict.
+        alphabet: of the letters.
+        play: up to the first breach, or an endless one.
+        as_fret: whether nothing may be owed at the end of any tick.
+    """
+    letters = list(play.letters)
+    if play.loop is not None:
+        letters += letters[play.loop :] * (ROUNDS - 1)
+    return tuple(
+        rule.id for rule in rules if _is_broken(rule, alphabet, letters, play.loop, as_fret=as_fret)
+    )
+
+
+def _is_broken(
+    rule: Formalized,
+    alphabet: Alphabet,
+    letters: Sequence[Letter],
+    loop: int | None,
+    *,
+    as_fret: bool,
+) -> bool:
+    signals = (rule.watch.breach, rule.watch.fails)
+    atoms = dict.fromkeys(name for signal in signals for name in f.atoms(signal))
+    known = columns(alphabet, letters, atoms)
+    breach, fails = (evaluate(signal, known, len(letters)) for signal in signals)
+    last = 1 << len(letters) - 1
+    if loop is None:
+        return bool((breach | (fails if as_fret else 0)) & last)
+    rounds = ((1 << len(letters)) - 1) >> loop << loop
+    return breach == 0 and fails & rounds == rounds
+
+
+def first_breaches(
+    rules: Sequence[Formalized], known: Mapping[str, int], ticks: int
+) -> dict[str, int | None]:
+    """For each rule the tick at which it is broken; None: it is not.
+
+    Args:
+        rules: of which all atoms are known.
+        known: each atom over time.
+        ticks: the length of the run.
+    """
+    found: dict[str, int | None] = {}
+    for rule in rules:
+        breach = evaluate(rule.watch.breach, known, ticks)
+        found[rule.id] = (breach & -breach).bit_length() - 1 if breach else None
+    return found

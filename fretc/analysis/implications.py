@@ -1,0 +1,239 @@
+"""What requirements say of one another, whoever chooses the outputs: of runs, not of games."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+from compiler.formalization.formalized import Formalized
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.counters import Counter
+from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vacuity
+from fretc.analysis.games.budget import Budget, OutOfTimeError
+from fretc.analysis.games.cores import minimal
+from fretc.analysis.reasons import listed
+from fretc.analysis.stage import Stage, interleaved
+
+MOST_TRIPLES = 500
+"""Of requirements that hang together; of more none is looked at."""
+_FEW = 3
+"""So many requirements are looked at by themselves."""
+_LONG = 6
+"""Bits of a count that is worth an order of its own beside another one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Consistency:
+    """Whether a run keeps all of these; None: not known."""
+
+    requirements: tuple[str, ...]
+    holds: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A requirement that every run keeps, or none."""
+
+    requirement: str
+    always: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Removable:
+    """Redundant requirements that the others imply even together."""
+
+    requirements: tuple[str, ...]
+
+
+def consistency(setting: Stage, seconds: float) -> Iterator[Consistency | OpenQuestion]:
+    """Whether any run keeps all requirements."""
+    ids = tuple(rule.id for rule in setting.rules)
+    question = f"whether any run keeps {listed(ids)}"
+    try:
+        runs = setting.runs(setting.arena.counters, Budget(seconds))
+        is_possible = runs.is_possible()
+    except OutOfTimeError as error:
+        yield Consistency(ids, None)
+        yield OpenQuestion(question, str(error))
+        return
+    doubt = setting.left_out or setting.of_inputs or setting.of_outputs
+    if is_possible and doubt is not None:
+        yield Consistency(ids, None)
+        yield OpenQuestion(question, doubt)
+    else:
+        yield Consistency(ids, is_possible)
+
+
+def constants(setting: Stage, seconds: float) -> Iterator[Constant | OpenQuestion]:
+    """Requirements that say nothing, or ask for what cannot be."""
+    for counter in setting.arena.counters:
+        try:
+            if not setting.runs((counter,), Budget(seconds)).is_possible():
+                yield Constant(counter.id, always=False)
+            elif _is_implied(setting, counter, (), Budget(seconds)):
+                yield Constant(counter.id, always=True)
+        except OutOfTimeError as error:
+            yield OpenQuestion(f"whether {counter.id} says anything", str(error))
+
+
+def redundancies(setting: Stage, seconds: float) -> Iterator[Redundancy | Removable | OpenQuestion]:
+    """Requirements that others imply, one at a time; then those that go together."""
+    counters = setting.arena.counters
+    found: list[str] = []
+    for counter in counters:
+        others = [each for each in counters if each is not counter]
+        try:
+            by = _implying(setting, counter, others, Budget(seconds))
+        except OutOfTimeError as error:
+            yield OpenQuestion(f"whether others imply {counter.id}", str(error))
+            continue
+        if by is not None:
+            found.append(counter.id)
+            yield Redundancy(counter.id, tuple(sorted(by)))
+    try:
+        yield Removable(_removable(setting, found, Budget(seconds)))
+    except OutOfTimeError as error:
+        yield OpenQuestion(f"which of {listed(found)} may go together", str(error))
+
+
+def _removable(setting: Stage, redundant: Sequence[str], budget: Budget) -> tuple[str, ...]:
+    gone: list[str] = []
+    for id in redundant:
+        (counter,) = setting.counters([id])
+        rest = [each for each in setting.arena.counters if each.id not in (*gone, id)]
+        if _is_implied(setting, counter, rest, budget):
+            gone.append(id)
+    return tuple(sorted(gone))
+
+
+def _implying(
+    setting: Stage, counter: Counter, others: Sequence[Counter], budget: Budget
+) -> tuple[str, ...] | None:
+    """A minimal set of others that imply a counter, one of them if that is enough; None: none."""
+
+    def implied(ids: Sequence[str]) -> bool:
+        return _is_implied(setting, counter, setting.counters(ids), budget)
+
+    every = [each.id for each in others]
+    if not implied(every):
+        return None
+    single = next((ids for ids in ([], *([id] for id in every)) if implied(ids)), None)
+    return tuple(single) if single is not None else minimal(every, implied)
+
+
+def _is_implied(
+    setting: Stage, counter: Counter, others: Sequence[Counter], budget: Budget
+) -> bool:
+    """Whether there are runs that keep the others, and none of them breaks the counter."""
+    runs = setting.runs(others, budget, watched=(counter,))
+    lasting = runs.lasting()
+    if (runs.transition.initial & lasting) == bdd.false():
+        return False  # of no run anything is true
+    return not runs.can_break(counter, lasting)
+
+
+def vacuities(setting: Stage, seconds: float) -> Iterator[Vacuity | OpenQuestion]:
+    """Requirements of which a scope or a trigger never comes, in runs that keep the others."""
+    rules = {rule.id: rule for rule in setting.rules}
+    for counter in setting.arena.counters:
+        others = [each.id for each in setting.arena.counters if each is not counter]
+        try:
+            found = _vacuity(setting, rules[counter.id], counter, others, Budget(seconds))
+        except OutOfTimeError as error:
+            yield OpenQuestion(f"whether {counter.id} is ever triggered", str(error))
+            continue
+        if found is not None:
+            yield found
+
+
+def _vacuity(
+    setting: Stage, rule: Formalized, counter: Counter, others: Sequence[str], budget: Budget
+) -> Vacuity | None:
+    def excluded(ids: Sequence[str], ticks: Function) -> bool:
+        runs = setting.runs(setting.counters(ids), budget, watched=(counter,))
+        lasting = runs.lasting()
+        if (runs.transition.initial & lasting) == bdd.false():
+            return False
+        return not runs.can_reach(ticks, lasting)
+
+    if rule.sentence.scope is not None and excluded(others, counter.enforced):
+        by = minimal(others, lambda ids: excluded(ids, counter.enforced))
+        return Vacuity(counter.id, tuple(sorted(by)), "scope")
+    if rule.sentence.condition is not None and excluded(others, counter.triggered):
+        by = minimal(others, lambda ids: excluded(ids, counter.triggered))
+        return Vacuity(counter.id, tuple(sorted(by)), "trigger")
+    return None
+
+
+def inconsistencies(setting: Stage, seconds: float) -> Iterator[Inconsistency | OpenQuestion]:
+    """Pairs and triples that can be led to where they cannot be kept; the whole, where none is.
+
+    Source: Post, Hoenicke, Podelski, rt-Inconsistency: a new property for real-time requirements,
+    FASE 2011. It is not monotone, so nothing is made smaller by leaving requirements out.
+    """
+    doubt = setting.of_inputs or setting.of_outputs
+    counters = setting.arena.counters
+    question = (
+        f"whether a run can lead to where {listed([rule.id for rule in setting.rules])} clash"
+    )
+    if doubt is not None:
+        yield OpenQuestion(question, doubt)
+        return
+    budget = Budget(seconds)
+    found: list[frozenset[str]] = []
+    try:
+        alone = {each.id: setting.runs((each,), budget).lasting() for each in counters}
+        for members in _candidates(setting, counters):
+            ids = frozenset(each.id for each in members)
+            if any(smaller <= ids for smaller in found):
+                continue
+            if len(members) > _FEW and found:
+                continue
+            clash = _inconsistency(setting, members, alone, budget)
+            if clash is not None:
+                found.append(ids)
+                yield clash
+    except OutOfTimeError as error:
+        yield OpenQuestion(question, str(error))
+
+
+def _candidates(setting: Stage, counters: Sequence[Counter]) -> Iterator[tuple[Counter, ...]]:
+    """Pairs and triples that share variables, and all of them."""
+    read = {rule.id: frozenset(rule.variables) for rule in setting.rules}
+
+    def near(left: Counter, right: Counter) -> bool:
+        return bool(read[left.id] & read[right.id])
+
+    yield from (pair for pair in combinations(counters, 2) if near(*pair))
+    triples = [
+        (a, b, c)
+        for a, b, c in combinations(counters, 3)
+        if near(a, b) + near(b, c) + near(a, c) > 1
+    ]
+    if len(triples) <= MOST_TRIPLES:
+        yield from triples
+    if len(counters) > _FEW:
+        yield tuple(counters)
+
+
+def _inconsistency(
+    setting: Stage, members: Sequence[Counter], alone: Mapping[str, Function], budget: Budget
+) -> Inconsistency | None:
+    ids = sorted(each.id for each in members)
+    if len(members) <= _FEW and sum(each.longest >= _LONG for each in members) > 1:
+        setting = interleaved(setting, ids)
+        members = setting.arena.counters
+        alone = {each.id: setting.runs((each,), budget).lasting() for each in members}
+    runs = setting.runs(members, budget)
+    each_alone = bdd.true()
+    for counter in members:
+        each_alone = each_alone & alone[counter.id]
+    clash = each_alone - runs.lasting()
+    if clash == bdd.false():
+        return None
+    letters = runs.path(clash, each_alone)
+    if letters is None:
+        return None
+    return Inconsistency(tuple(ids), setting.ticks(ids, letters))

@@ -1,0 +1,210 @@
+"""Why a play is lost, in one sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.obligation import TRAITS, Demand, Kind, Trait, obligation
+from compiler.formalization.predicates import Past as PastWords
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic import formula as f
+from compiler.logic.decision_diagrams import Function
+from compiler.logic.evaluation import evaluate
+from fretc.analysis.arena.alphabet import Alphabet
+from fretc.analysis.arena.counters import Counter
+from fretc.analysis.games.game import Game
+from fretc.analysis.games.plays import Play
+from fretc.analysis.games.replay import broken, columns
+from fretish.printer import expression
+from fretish.syntax import Before, Timing, Until, ends_with_run
+
+_MOST_TERMS = 3
+"""Alternatives that a demand is shown with."""
+_LONGEST = 1_000
+"""Ticks of a play of which each is looked at."""
+
+
+def because(
+    rules: Sequence[Formalized], counters: Sequence[Counter], game: Game, play: Play
+) -> str:
+    """What the requirements ask for where the play is lost.
+
+    Args:
+        rules: of a minimal conflict.
+        counters: of the same.
+        game: of the same.
+        play: in which the environment wins.
+    """
+    details = {rule.id: _details(rule, game.alphabet, play) for rule in rules}
+    if play.loop is not None:
+        return _for_ever(rules, game, play, _asked(counters, game, play), details)
+    last = len(play.letters) - 1
+    now = _asked_last(counters, game, play)
+    if not now or len(rules) == 1:
+        id = rules[0].id
+        return f"at tick {last} no output keeps {id}{details[id]}, whatever was done before"
+    parts: list[str] = []
+    wanted = ""
+    for id, words in now.items():
+        verb, _, what = words.partition(" ")
+        same = what == wanted and verb in ("demands", "forbids")
+        parts.append(f"{id} {verb} {'it' if same else what}{details[id]}")
+        wanted = what
+    silent = _asked([each for each in counters if each.id not in now], game, play)
+    before = [each for id, words in silent.items() for each in _before(id, words)]
+    return f"at tick {last} {_joined(parts)}{''.join(f'; {each}' for each in before)}"
+
+
+def _asked_last(counters: Sequence[Counter], game: Game, play: Play) -> dict[str, str]:
+    """What outputs each requirement asks for at the last tick, in words; those that ask."""
+    inputs = {number: play.letters[-1][number] for number in game.alphabet.inputs}
+    known = bdd.point({**play.state, **inputs})
+    words = {counter.id: _words(bdd.at(counter.safe, known), game) for counter in counters}
+    return {id: each for id, each in words.items() if each}
+
+
+def _asked(counters: Sequence[Counter], game: Game, play: Play) -> Mapping[str, tuple[str, ...]]:
+    """What outputs each requirement asks for, tick by tick, in words; nothing of a long play."""
+    if not counters or len(play.letters) > _LONGEST:
+        return {}
+    states = [game.transition.start]
+    for letter in play.letters[:-1]:
+        states.append(game.transition.next(bdd.point({**states[-1], **letter})))
+    inputs = [{n: letter[n] for n in game.alphabet.inputs} for letter in play.letters]
+    known = [bdd.point({**state, **each}) for state, each in zip(states, inputs, strict=True)]
+    return {
+        counter.id: tuple(_words(bdd.at(counter.safe, tick), game) for tick in known)
+        for counter in counters
+    }
+
+
+def _before(id: str, words: Sequence[str]) -> Iterator[str]:
+    """What a requirement asked for when it last asked for anything."""
+    ticks = [tick for tick, each in enumerate(words) if each]
+    if ticks:
+        first = last = ticks[-1]
+        while first and words[first - 1] == words[last]:
+            first -= 1
+        yield f"{id} {words[last]} at {_span(first, last)}"
+
+
+def _span(first: int, last: int) -> str:
+    return f"tick {last}" if first == last else f"ticks {first} to {last}"
+
+
+def _joined(parts: Sequence[str]) -> str:
+    return ", and ".join(part for part in (", ".join(parts[:-1]), *parts[-1:]) if part)
+
+
+def _details(rule: Formalized, alphabet: Alphabet, play: Play) -> str:
+    """` (since tick 3, by tick 5)`: of the demand that is open at the last tick; or nothing."""
+    begun, last = _begun(rule, alphabet, play), len(play.letters) - 1
+    words = [] if begun in (None, last) else [f"since tick {begun}"]
+    if play.loop is None:
+        words.extend(_limit(rule, alphabet, begun, last))
+    return f" ({', '.join(words)})" if words else ""
+
+
+def _limit(rule: Formalized, alphabet: Alphabet, begun: int | None, last: int) -> Iterator[str]:
+    """How long the demand is open that began then, if that is known."""
+    scope = rule.sentence.scope
+    demand = _demand(rule)
+    match demand.kind:
+        case Kind.WITHIN if begun is not None and begun < last == begun + demand.ticks:
+            yield f"by tick {last}"
+        case Kind.FOR if (
+            begun is not None and demand.ticks and ends_with_run(scope.kind if scope else None)
+        ):
+            yield f"up to tick {begun + demand.ticks}"
+        case Kind.UNTIL | Kind.BEFORE:
+            yield f"{demand.kind.name.lower()} `{_stop(rule.written.timing)}`"
+            names = f.atoms(demand.stop)
+            inputs = {alphabet.labels.get(number) for number in alphabet.inputs}
+            if demand.kind is Kind.UNTIL and names and inputs.issuperset(names):
+                yield "which the environment withholds"
+        case _:
+            return
+
+
+def _stop(timing: Timing) -> str:
+    assert isinstance(timing, Until | Before)
+    return expression(timing.stop)
+
+
+def _demand(rule: Formalized) -> Demand:
+    return obligation(rule.sentence, rule.ticks or 0, PastWords()).demand
+
+
+def _begun(rule: Formalized, alphabet: Alphabet, play: Play) -> int | None:
+    """When the demand began that is open at the last tick; None: there is none, or no condition."""
+    if rule.sentence.condition is None:
+        return None
+    signals = (rule.watch.trigger, rule.watch.owed)
+    atoms = dict.fromkeys(name for signal in signals for name in f.atoms(signal))
+    known = columns(alphabet, play.letters, atoms)
+    ticks = len(play.letters)
+    trigger, owed = (evaluate(signal, known, ticks) for signal in signals)
+    if Trait.FORBIDS in TRAITS[_demand(rule).kind]:  # what is open was begun by the newest trigger
+        return trigger.bit_length() - 1 if trigger else None
+    tick = ticks - 1
+    while tick > 0 and owed >> (tick - 1) & 1:
+        tick -= 1
+    stretch = trigger >> tick << tick
+    if not stretch:
+        return None
+    return stretch.bit_length() - 1 if rule.watch.renewed else (stretch & -stretch).bit_length() - 1
+
+
+def _for_ever(
+    rules: Sequence[Formalized],
+    game: Game,
+    play: Play,
+    asked: Mapping[str, Sequence[str]],
+    details: Mapping[str, str],
+) -> str:
+    assert play.loop is not None
+    lost = broken(rules, game.alphabet, play)
+    others = [rule.id for rule in rules if rule.id not in lost]
+    open_ = listed([f"{id}{details[id]}" for id in lost])
+    again = _span(play.loop, len(play.letters) - 1)
+    always = {id: set(asked[id][play.loop :]) for id in others if id in asked}
+    if always and all(len(words) == 1 and any(words) for words in always.values()):
+        why = f", because {listed([f'{id} {words.pop()}' for id, words in always.items()])}"
+    else:
+        verb = "is" if len(others) == 1 else "are"
+        why = f", as long as {listed(others)} {verb} kept" if others else ""
+    verb = "is" if len(lost) == 1 else "are"
+    return f"{open_} {verb} never met{why}: the environment repeats {again} for ever"
+
+
+def _words(asked: Function, game: Game) -> str:
+    """What outputs a requirement asks for; empty: any."""
+    if asked == bdd.true():
+        return ""
+    if asked & game.reachable == bdd.false():
+        return "can be kept by no output"
+    terms: list[str] = []
+    rest = asked
+    while rest != bdd.false() and len(terms) < _MOST_TERMS:
+        term = bdd.witness(rest)
+        rest = rest - bdd.point(term)
+        terms.append(_term(term, game.alphabet))
+    more = " or other outputs" if rest != bdd.false() else ""
+    if len(terms) == 1 and terms[0].startswith("not ") and " and " not in terms[0]:
+        return f"forbids {terms[0].removeprefix('not ')}"
+    return f"demands {' or '.join(terms)}{more}"
+
+
+def _term(values: dict[int, bool], alphabet: Alphabet) -> str:
+    named = [
+        f"{'' if value else 'not '}`{alphabet.labels[number]}`"
+        for number, value in values.items()
+        if number in alphabet.labels
+    ]
+    return " and ".join(named) or "other outputs"
+
+
+def listed(names: Sequence[str]) -> str:
+    """`R1, R2 and R3`."""
+    return " and ".join(part for part in (", ".join(names[:-1]), *names[-1:]) if part)

@@ -1,0 +1,172 @@
+"""What each question of some requirements starts from: their arena, and what limits its answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from importlib.util import find_spec
+from itertools import chain
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import atoms_of, comparisons
+from compiler.formalization.resolution import candidates
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, numbers
+from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.product import Arena, arena
+from fretc.analysis.arena.propositions import Propositions
+from fretc.analysis.arena.roles import Roles
+from fretc.analysis.components import about
+from fretc.analysis.games.budget import Budget
+from fretc.analysis.games.game import Game, upheld
+from fretc.analysis.games.plays import Letter
+from fretc.analysis.games.runs import Runs
+from fretish.bindings.declarations import Role
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """Some requirements, the assumptions that bear upon them, and the arena of both."""
+
+    rules: tuple[Formalized, ...]
+    assumptions: tuple[Formalized, ...]
+    arena: Arena
+    roles: Roles
+    as_fret: bool
+    past: Role = Role.INPUT
+    """Who chooses numbers of the tick before, as far as nothing is remembered of them."""
+    _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
+    """What each game of the stage needs of the assumptions, once it has been computed."""
+
+    def counters(self, ids: Iterable[str]) -> tuple[Counter, ...]:
+        """Those of some requirements, in the order of the files."""
+        wanted = set(ids)
+        return tuple(each for each in self.arena.counters if each.id in wanted)
+
+    def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
+        """The game of some counters, under all assumptions."""
+        kept, assumptions = [*counters], [*self.arena.assumptions]
+        (kept if self.past is Role.OUTPUT else assumptions).extend(self._memory)
+        if not self._upheld:
+            self._upheld.append(upheld(self.arena.alphabet, assumptions, budget))
+        return Game(self.arena.alphabet, kept, assumptions, budget, self._upheld[0])
+
+    @property
+    def _memory(self) -> tuple[Counter, ...]:
+        return () if self.arena.memory is None else (self.arena.memory,)
+
+    def generous(self) -> Stage | None:
+        """The same where the system chooses numbers of the tick before; None: nobody does.
+
+        What cannot be kept even so cannot be kept.
+        """
+        if self.arena.memory is None:
+            return None
+        rules, near = self.rules, self.assumptions
+        return _built(rules, near, self.roles, numbers(), as_fret=self.as_fret, past=Role.OUTPUT)
+
+    def runs(
+        self, kept: Sequence[Counter], budget: Budget, watched: Sequence[Counter] = ()
+    ) -> Runs:
+        """The runs that keep some counters, and all assumptions."""
+        counters = [*kept, *self.arena.assumptions, *self._memory]
+        return Runs(self.arena.alphabet, counters, budget, watched)
+
+    def ticks(self, ids: Iterable[str], letters: Iterable[Letter]) -> tuple[Tick, ...]:
+        """Letters as values of the variables of some requirements and of the assumptions."""
+        wanted = set(ids)
+        rules = [*(rule for rule in self.rules if rule.id in wanted), *self.assumptions]
+        names = {name for rule in rules for name in (*rule.variables, *atoms_of(rule.sentence))}
+        each = map(self.arena.alphabet.values, letters)
+        return tuple({name: tick[name] for name in sorted(tick) if name in names} for tick in each)
+
+    @property
+    def certain(self) -> tuple[Counter, ...]:
+        """The counters of requirements whose letters are just those that there can be."""
+        doubtful = self.arena.alphabet.doubtful
+        if any(not doubtful.isdisjoint(_atoms(rule)) for rule in self.assumptions):
+            return ()
+        return self.counters(rule.id for rule in self.rules if doubtful.isdisjoint(_atoms(rule)))
+
+    @property
+    def of_inputs(self) -> str | None:
+        """Why the environment has more letters here than there can be; None: it has not."""
+        return self.arena.alphabet.doubts.get(Role.INPUT)
+
+    @property
+    def of_outputs(self) -> str | None:
+        """The same of the system."""
+        return self.arena.alphabet.doubts.get(Role.OUTPUT)
+
+    @property
+    def left_out(self) -> str | None:
+        """Which requirements have no counter, and why; None: each has one."""
+        return "; ".join(f"{id}: {why}" for id, why in self.arena.beyond.items()) or None
+
+
+def _atoms(rule: Formalized) -> frozenset[str]:
+    return frozenset(name for name, _ in candidates(rule.sentence))
+
+
+def stage(
+    rules: Sequence[Formalized],
+    assumptions: Sequence[Formalized],
+    roles: Roles,
+    *,
+    as_fret: bool = False,
+) -> Stage:
+    """The stage of some requirements.
+
+    Raises:
+        BeyondError: an assumption has no counter.
+    """
+    near = about(rules, assumptions, roles)
+    return _built(rules, near, roles, numbers(), as_fret=as_fret)
+
+
+def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
+    """The stage of a few of the requirements, with bits of the same weight side by side.
+
+    So one count stays easy to compare with another one; counters one after the other need as many
+    nodes for it as the counts have values. For many requirements that is worse.
+    """
+    wanted = set(ids)
+    rules = [rule for rule in setting.rules if rule.id in wanted]
+    near = about(rules, setting.assumptions, setting.roles)
+    used = numbers()
+    first = _built(rules, near, setting.roles, used, as_fret=setting.as_fret)
+    weights = {
+        number: weight
+        for each in (*first.arena.counters, *first.arena.assumptions)
+        for word in each.words
+        for weight, bit in enumerate(word)
+        for number in (bit.now, bit.after)
+    }
+    count = next(used)  # the same build takes as many again, in the same order
+    order = sorted(range(count), key=lambda number: (-weights.get(number, count), number))
+    places = {number: place for place, number in enumerate(order)}
+    fresh = chain((places[number] for number in range(count)), numbers(count))
+    return _built(rules, near, setting.roles, fresh, as_fret=setting.as_fret)
+
+
+def _built(
+    rules: Sequence[Formalized],
+    near: Sequence[Formalized],
+    roles: Roles,
+    fresh: Numbers,
+    *,
+    as_fret: bool,
+    past: Role = Role.INPUT,
+) -> Stage:
+    alphabet = _alphabet([*rules, *near], roles, fresh, past)
+    built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
+    return Stage(tuple(rules), tuple(near), built, roles, as_fret, past)
+
+
+def _alphabet(rules: Sequence[Formalized], roles: Roles, fresh: Numbers, past: Role) -> Alphabet:
+    """With the numbers that comparisons are about, where z3 is installed."""
+    if not any(comparisons(rule) or rule.declarations for rule in rules) or not find_spec("z3"):
+        return Propositions(rules, roles, fresh)
+    from fretc.analysis.arithmetic.alphabet import Cells
+
+    return Cells(rules, roles, fresh, past)

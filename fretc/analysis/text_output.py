@@ -1,0 +1,210 @@
+"""What `fretc analyze` prints: the answer, each conflict as a play, then what else is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from fretc.analysis.findings import Analysis, Component, Conflict, Inconsistency, Repair, Verdict
+from fretc.analysis.reasons import listed
+from fretish.bindings.declarations import Role
+from fretish.diagnostics import signs
+from fretish.diagnostics.signs import Sign
+
+Line = tuple[str, str | None]
+"""A line and its colour."""
+SIGNS: Mapping[Verdict, Sign] = {
+    Verdict.UNREALIZABLE: signs.BAD,
+    Verdict.NOT_CHECKED: signs.UNKNOWN,
+    Verdict.REALIZABLE: signs.GOOD,
+}
+"""The worst first, as for verdicts."""
+_WIDEST = 14
+"""Columns of a play that are drawn side by side; the next ones stand below them."""
+
+
+def lines(analysis: Analysis, sentences: Mapping[str, str]) -> Iterator[Line]:
+    """All of it.
+
+    Args:
+        analysis: what is known.
+        sentences: each requirement in FRETish, by its id.
+    """
+    sign = SIGNS[analysis.verdict]
+    yield f"{sign.glyph} {_headline(analysis)}", sign.colour
+    for component in analysis.components:
+        yield from _component(component)
+    for number, conflict in enumerate(analysis.conflicts, 1):
+        yield "", None
+        yield from _conflict(number, conflict, analysis, sentences)
+    if analysis.conflicts and not analysis.complete:
+        yield "", None
+        yield f"{signs.UNKNOWN.glyph} there may be more conflicts", signs.UNKNOWN.colour
+    said = [*remarks(analysis)]
+    if said:
+        yield "", None
+        yield from said
+    for clash in analysis.inconsistent:
+        yield "", None
+        yield from _inconsistency(clash, analysis)
+    yield "", None
+    yield from _rest(analysis)
+
+
+def _headline(analysis: Analysis) -> str:
+    count = len(analysis.components)
+    bad = sum(each.verdict is Verdict.UNREALIZABLE for each in analysis.components)
+    match analysis.verdict:
+        case Verdict.REALIZABLE:
+            how = (
+                "while the assumptions hold" if analysis.assumptions else "whatever the inputs are"
+            )
+            return f"realizable: a system can keep all requirements, {how}"
+        case Verdict.UNREALIZABLE if count == 1:
+            return "unrealizable: no system can keep all requirements"
+        case Verdict.UNREALIZABLE:
+            return f"unrealizable: {bad} of {count} components cannot be kept"
+        case Verdict.NOT_CHECKED:
+            return f"not checked: {analysis.why}"
+
+
+def _component(component: Component) -> Iterator[Line]:
+    sign = SIGNS[component.verdict]
+    about = f" (about {', '.join(component.outputs)})" if component.outputs else ""
+    yield f"  {sign.glyph} {', '.join(component.requirements)}{about}: {component.why}", sign.colour
+
+
+def _conflict(
+    number: int, conflict: Conflict, analysis: Analysis, sentences: Mapping[str, str]
+) -> Iterator[Line]:
+    ids = conflict.requirements
+    what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"
+    yield f"{signs.BAD.glyph} conflict {number}: {listed(ids)} {what}", signs.BAD.colour
+    yield f"  {conflict.because}", None
+    width = max(map(len, ids))
+    for id in ids:
+        yield f"  {id:<{width}}  {sentences.get(id, '')}".rstrip(), None
+    for row in drawn(conflict.play, analysis.roles):
+        yield f"    {row}", None
+    if conflict.loop is not None:
+        yield f"    and from tick {conflict.loop} on the same again, for ever", None
+    mending = [each for each in analysis.repairs if each.conflict == ids]
+    if mending:
+        yield "  any of these would settle it (proved by the same game):", None
+    for repair in mending:
+        yield from _repair(repair)
+
+
+def _repair(repair: Repair) -> Iterator[Line]:
+    what = repair.requirement or "assume"
+    last = len(repair.sentences) - 1
+    for number, sentence in enumerate(repair.sentences):
+        rest = "" if repair.settles or number < last else "  (other conflicts stay)"
+        yield f"    {what if number == 0 else 'and'}: {sentence}{rest}", None
+
+
+def _inconsistency(clash: Inconsistency, analysis: Analysis) -> Iterator[Line]:
+    sign = signs.OPEN
+    where = "from the start" if not clash.play else "after this run, which breaks none of them"
+    ids = listed(clash.requirements)
+    yield f"{sign.glyph} {ids} can no longer be kept together {where}", sign.colour
+    for row in drawn(clash.play, analysis.roles):
+        yield f"    {row}", None
+
+
+def drawn(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> Iterator[str]:
+    """A lane for each variable, inputs first; equal ticks in one column."""
+    if not play:
+        return
+    names = lanes(play, roles)
+    found = columns(play, names)
+    width = max(len("tick"), *(len(_lane(name, roles)) for name in names))
+    for start in range(0, len(found), _WIDEST):
+        shown = found[start : start + _WIDEST]
+        widths = [max(len(each.head), *map(len, each.values)) for each in shown]
+        yield _row("tick", [each.head for each in shown], width, widths)
+        for place, name in enumerate(names):
+            yield _row(_lane(name, roles), [each.values[place] for each in shown], width, widths)
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """Equal ticks in a row, and the value of each lane."""
+
+    first: int
+    last: int
+    values: tuple[str, ...]
+
+    @property
+    def head(self) -> str:
+        """`3`, or `3..7`."""
+        return str(self.first) if self.first == self.last else f"{self.first}..{self.last}"
+
+
+def lanes(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> list[str]:
+    """The names of a play, those of inputs first."""
+    names = play[0] if play else ()
+    return sorted(names, key=lambda name: (roles.get(name) is Role.OUTPUT, name))
+
+
+def columns(play: Sequence[Mapping[str, object]], names: Sequence[str]) -> list[Column]:
+    """A play with equal ticks in one column."""
+    found: list[Column] = []
+    for _, group in groupby(enumerate(play), lambda pair: pair[1]):
+        run = list(group)
+        values = tuple(_value(run[0][1][name]) for name in names)
+        found.append(Column(run[0][0], run[-1][0], values))
+    return found
+
+
+def _lane(name: str, roles: Mapping[str, Role]) -> str:
+    role = roles.get(name)
+    return name if role is None else f"{name} ({role})"
+
+
+def _row(head: str, cells: Iterable[str], width: int, widths: Sequence[int]) -> str:
+    padded = (cell.rjust(size) for cell, size in zip(cells, widths, strict=True))
+    return f"{head:<{width}}  {'  '.join(padded)}".rstrip()
+
+
+def _value(value: object) -> str:
+    return str(int(value)) if isinstance(value, bool) else str(value)
+
+
+def remarks(analysis: Analysis) -> Iterator[Line]:
+    """What single requirements say, or do not."""
+    empty = signs.EMPTY
+    if analysis.consistent is False:
+        yield f"{signs.BAD.glyph} no run at all keeps all requirements", signs.BAD.colour
+    for id in analysis.never:
+        yield f"{signs.BAD.glyph} no run keeps {id}", signs.BAD.colour
+    for id in analysis.always:
+        yield f"{empty.glyph} every run keeps {id}: it says nothing", empty.colour
+    for vacuity in analysis.vacuous:
+        never = "is never triggered" if vacuity.what == "trigger" else "has a scope that never is"
+        by = f" as long as {listed(vacuity.by)} is kept" if len(vacuity.by) == 1 else ""
+        by = f" as long as {listed(vacuity.by)} are kept" if len(vacuity.by) > 1 else by
+        yield f"{empty.glyph} {vacuity.requirement} {never}{by}", empty.colour
+    for each in analysis.redundant:
+        if each.by:
+            verb = "implies" if len(each.by) == 1 else "imply"
+            text = f"{each.requirement} is redundant: {listed(each.by)} {verb} it"
+            yield f"{empty.glyph} {text}", empty.colour
+    gone = [id for id in analysis.removable if id not in analysis.always]
+    if len([each for each in analysis.redundant if each.by]) > 1 and gone:
+        yield f"  {listed(gone)} can go together: the others say the same", None
+
+
+def _rest(analysis: Analysis) -> Iterator[Line]:
+    """What it rests on, and what is open."""
+    for each in analysis.open:
+        text = f"{signs.UNKNOWN.glyph} open: {each.question}: {each.why}"
+        yield text, signs.UNKNOWN.colour
+    for assumption in analysis.assumptions:
+        yield f"assumed {assumption.id}: {assumption.text or assumption.sentence}", None
+    for role in (Role.INPUT, Role.OUTPUT):
+        names = [name for name, own in analysis.roles.items() if own is role]
+        yield f"{role}s: {', '.join(names) or 'none'}", None
+    for term in analysis.terms:
+        yield f"taken for granted: {term}", None

@@ -1,0 +1,144 @@
+"""Questions answered in a process of their own: one that hangs or dies costs no other its answer.
+
+A single operation on large diagrams cannot be interrupted from Python, and may take any memory. The
+process is forked, so it has everything; what it finds comes back finding by finding.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import resource
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from multiprocessing.connection import Connection
+from multiprocessing.context import ForkProcess
+
+from compiler.files.processes import reply
+from fretc.analysis.analysis import Finding, Job
+from fretc.analysis.games.budget import guard
+from fretish.reading.recursion import deep
+
+MEMORY = 4 * 2**30
+"""Bytes of address space that the process may take."""
+
+
+class Stopped(Exception):  # noqa: N818
+    """Ctrl-C; what was found before it has been given."""
+
+
+def findings(jobs: Sequence[Job], progress: Callable[[str], None]) -> Iterator[Finding]:
+    """What the jobs find, and what each of them lacks whose process ended.
+
+    Args:
+        jobs: in the order in which they are done.
+        progress: is called with each question before it is looked at.
+
+    Raises:
+        Stopped: on Ctrl-C, after what each remaining job lacks.
+    """
+    found: list[Finding] = []
+    with _interruption() as is_stopped:
+        number = 0
+        while number < len(jobs) and not is_stopped():
+            process, answers = _started(jobs[number:], found)
+            progress(jobs[number].title)
+            try:
+                while not isinstance(finding := _next(process, answers, is_stopped), MemoryError):
+                    if isinstance(finding, Exception):
+                        raise finding
+                    if finding is not None:
+                        found.append(finding)
+                        yield finding
+                        continue
+                    number += 1
+                    if number < len(jobs):
+                        progress(jobs[number].title)
+            except EOFError:
+                pass
+            finally:
+                process.kill()
+                process.join()
+                answers.close()
+            if number < len(jobs) and not is_stopped():
+                found.append(jobs[number].lost(_ending(process.exitcode or 0)))
+                yield found[-1]
+                number += 1
+        if is_stopped():
+            for job in jobs[number:]:
+                yield job.lost("stopped by Ctrl-C")
+            raise Stopped
+
+
+@contextmanager
+def _interruption() -> Iterator[Callable[[], bool]]:
+    """Whether Ctrl-C was pressed: it breaks into nothing, so that nothing that was sent is lost."""
+    pressed: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
+    try:
+        yield lambda: bool(pressed)
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _next(
+    process: ForkProcess, answers: Connection, is_stopped: Callable[[], bool]
+) -> Finding | Exception | None:
+    """What was sent next; after Ctrl-C the rest of it.
+
+    Raises:
+        EOFError: nothing comes any more.
+    """
+    while not is_stopped() and not answers.poll(_PATIENCE):
+        pass
+    if is_stopped():
+        process.kill()
+    try:
+        sent: Finding | Exception | None = answers.recv()
+    except OSError as error:  # in the midst of it
+        raise EOFError from error
+    return sent
+
+
+_PATIENCE = 0.1
+"""Seconds after which Ctrl-C is looked at."""
+
+
+def _started(jobs: Sequence[Job], found: Sequence[Finding]) -> tuple[ForkProcess, Connection]:
+    context = multiprocessing.get_context("fork")
+    ours, theirs = context.Pipe(duplex=False)
+    process = context.Process(target=_answer, args=(theirs, jobs, tuple(found)), daemon=True)
+    process.start()
+    theirs.close()
+    return process, ours
+
+
+def _answer(connection: Connection, jobs: Sequence[Job], found: Sequence[Finding]) -> None:
+    """Send each finding, None at the end of each job, and a mistake of ours where there is one."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to both; the parent decides
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # BuDDy's last words
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    guard()
+    with suppress(OSError):
+        is_complete, error = reply(_answer_all, connection, jobs, found)
+        if not is_complete:
+            connection.send(error)
+
+
+@deep
+def _answer_all(connection: Connection, jobs: Sequence[Job], found: Sequence[Finding]) -> None:
+    known = list(found)
+    for job in jobs:
+        for finding in job.ask(known):
+            known.append(finding)
+            connection.send(finding)
+        connection.send(None)
+
+
+def _ending(status: int) -> str:
+    """Why the process ended before its answer."""
+    if status in (-signal.SIGPROF, -signal.SIGKILL):
+        return "it took longer than it may"
+    return f"it took more than {MEMORY // 2**30} GiB of memory, or failed (exit status {status})"

@@ -1,0 +1,255 @@
+"""`fretc analyze`: can requirements be kept together, which fight, which say nothing.
+
+`fretc.analysis` answers; this module reads the options and prints.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.options import (
+    PATH,
+    format_option,
+    output_option,
+    path_option,
+    places,
+    requirements_option,
+)
+from fretc.terminal.output import (
+    BAD,
+    INTERRUPTED,
+    NOT_SHOWN,
+    SHOWN,
+    VIOLATION,
+    coloured,
+    deliver,
+    say_briefly,
+    say_line,
+    stop,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from compiler.formalization.formalized import Formalized
+    from compiler.project.folder import Project
+    from fretc.analysis.analysis import Options
+    from fretc.analysis.arena.roles import Roles
+    from fretc.analysis.findings import Analysis
+
+
+@click.command(short_help="Say whether requirements can be kept together.")
+@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
+@click.option(
+    "--component", metavar="NAME", help="Only the requirements of this component of the sentences."
+)
+@click.option(
+    "--time",
+    "seconds",
+    type=click.FloatRange(min=0, min_open=True),
+    default=20,
+    show_default=True,
+    help="Seconds of a processor for each question.",
+)
+@click.option(
+    "--emit",
+    "emitted",
+    type=click.Choice(("python", "hoa", "dot")),
+    help="Write how a system keeps them: a program, or a Mealy machine.",
+)
+@path_option(
+    "--emit-to", default="build", show_default=True, help="Folder for `--emit`; `-` prints."
+)
+@click.option("--as-fret", is_flag=True, help="Answer as FRET does: `eventually` means at once.")
+@requirements_option
+@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@format_option()
+@output_option(
+    default="build/analysis.json", show_default=True, help="Where evidence goes; `-` prints it."
+)
+def analyze(
+    files: tuple[str, ...],
+    component: str | None,
+    seconds: float,
+    emitted: str | None,
+    emit_to: str,
+    as_fret: bool,
+    requirements: str,
+    bindings: str | None,
+    form: str,
+    output: str,
+) -> None:
+    """Say whether requirements can be kept together, which fight, and which say nothing.
+
+    FILE holds requirements, or is a folder of such files: in place of `--requirements`. The
+    bindings say which variables are inputs, chosen by the environment, and which are outputs.
+
+    Exit status: 0 a system can keep all of them, 1 none can, 2 bad use or input, 3 not checked.
+    """
+    from compiler.files.records import plain
+    from compiler.files.templating import to_json
+    from compiler.project.paths import companions
+    from fretc.analysis.analysis import Options
+    from fretc.analysis.arena.roles import roles
+    from fretc.analysis.assumptions import assumptions
+    from fretc.analysis.evidence import document
+    from fretc.analysis.text_output import lines
+    from fretish.printer import sentence as printed
+
+    project, first = _project(files, requirements, bindings)
+    rules = _rules(project, component)
+    assumed, remarks = assumptions(rules, project.declarations)
+    say_briefly(remarks, first)
+    if has_errors(remarks):
+        raise SystemExit(BAD)
+    chosen = roles([*rules, *assumed])
+    if isinstance(chosen, tuple):
+        stop(*chosen)
+    analysis, stopped = asked(rules, assumed, chosen, Options(seconds, as_fret))
+    evidence = f"{to_json(plain(document(rules, assumed, analysis, as_fret=as_fret)))}\n"
+    if emitted is not None and emit_to == "-":
+        pass  # what is printed is the strategy
+    elif output == "-":
+        click.echo(evidence, nl=False)
+    elif form == "json":
+        click.echo(to_json(plain(analysis)))
+    else:
+        sentences = {rule.id: printed(rule.written) for rule in rules}
+        click.echo(coloured([*lines(analysis, sentences)]), nl=False)
+    if output != "-":
+        sources = [requirement.wording.source.name for requirement in project.requirements]
+        deliver(
+            {Path(output): evidence}, [*sources, *companions(sources), *filter(None, [bindings])]
+        )
+    if emitted is not None and not stopped:
+        _emit(analysis, rules, assumed, chosen, Options(seconds, as_fret), emitted, emit_to)
+    raise SystemExit(INTERRUPTED if stopped else _status(analysis))
+
+
+def asked(
+    rules: Sequence[Formalized],
+    assumed: Sequence[Formalized],
+    chosen: Roles,
+    options: Options,
+) -> tuple[Analysis, bool]:
+    """What is found of the requirements, and whether Ctrl-C has stopped it."""
+    from fretc.analysis.analysis import Finding, assembled, jobs
+    from fretc.analysis.worker import Stopped, findings
+    from fretc.terminal.progress import at_work
+
+    found: list[Finding] = []
+    stopped = False
+    try:
+        for finding in findings(jobs(rules, chosen, assumed, options), at_work):
+            found.append(finding)
+    except Stopped:
+        stopped = True
+    return assembled(rules, chosen, assumed, options, found), stopped
+
+
+def _emit(
+    analysis: Analysis,
+    rules: Sequence[Formalized],
+    assumed: Sequence[Formalized],
+    chosen: Roles,
+    options: Options,
+    emitted: str,
+    output: str,
+) -> None:
+    """Write the strategies of all components, or none of them."""
+    from fretc.analysis.analysis import controllers
+    from fretc.analysis.controllers.circuit import Circuit
+    from fretc.analysis.controllers.files import Form, automata, controller
+    from fretc.analysis.controllers.moves import Mealy
+    from fretc.analysis.findings import OpenQuestion, Verdict
+    from fretc.analysis.worker import Stopped, findings
+    from fretc.terminal.progress import at_work
+    from fretish.printer import sentence as printed
+
+    if analysis.verdict is not Verdict.REALIZABLE:
+        say_line(f"no strategy is written: {analysis.why}")
+        return
+    form = Form(emitted)
+    try:
+        found = [*findings(controllers(rules, chosen, assumed, options, form), at_work)]
+    except Stopped:
+        raise SystemExit(INTERRUPTED) from None
+    circuits = [each for each in found if isinstance(each, Circuit)]
+    machines = [each for each in found if isinstance(each, Mealy)]
+    for each in found:
+        if isinstance(each, OpenQuestion):
+            message = f"no strategy can be written: {each.why}"
+            stop(Diagnostic(Code.TOO_LARGE, message, help=_smaller(form)))
+    if form is Form.PYTHON:
+        sentences = {rule.id: printed(rule.written) for rule in rules}
+        promises = {each.id: each.sentence for each in analysis.assumptions}
+        artifacts = [controller(circuits, sentences, promises)]
+    else:
+        artifacts = [*automata(machines, form)]
+    if output == "-":
+        deliver({Path("-"): "".join(each.text for each in artifacts)})
+    else:
+        deliver({Path(output) / each.path: each.text for each in artifacts})
+
+
+def _smaller(form: str) -> str:
+    if form == "python":
+        return "ask for one component with `--component`, or for more time with `--time`"
+    return "`--emit python` has no states, and writes far larger strategies"
+
+
+def _project(files: Sequence[str], requirements: str, bindings: str | None) -> tuple[Project, str]:
+    """The project, and where it is; a mistake in it stops the command."""
+    from compiler.project.folder import load
+    from compiler.project.paths import listed, requirement_files
+
+    (first, *_) = places(files, requirements)
+    paths = listed(files) if files else requirement_files(requirements)
+    if isinstance(paths, Diagnostic):
+        stop(paths)
+    project = load(paths, bindings)
+    say_briefly(project.diagnostics, first)
+    if has_errors(project.diagnostics):
+        raise SystemExit(BAD)
+    return project, first
+
+
+def _rules(project: Project, component: str | None) -> tuple[Formalized, ...]:
+    """The rules that are asked about: those that are in force."""
+    rules = tuple(rule for rule in project.rules if rule.requirement.status != "retired")
+    if component is not None:
+        rules = _of_component(rules, component)
+    if not rules:
+        stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
+    return rules
+
+
+def _of_component(rules: Sequence[Formalized], component: str) -> tuple[Formalized, ...]:
+    chosen = tuple(rule for rule in rules if rule.sentence.component == component)
+    if not chosen:
+        known = tuple(dict.fromkeys(rule.sentence.component for rule in rules))
+        near = suggestion(component, known)
+        stop(
+            Diagnostic(
+                Code.BAD_USAGE,
+                f"no requirement is about the component `{component}`",
+                help=f"did you mean `{near}`?" if near else f"there are {', '.join(known)}",
+            )
+        )
+    return chosen
+
+
+def _status(analysis: Analysis) -> int:
+    from fretc.analysis.findings import Verdict
+
+    match analysis.verdict:
+        case Verdict.REALIZABLE:
+            return SHOWN
+        case Verdict.UNREALIZABLE:
+            return VIOLATION
+        case Verdict.NOT_CHECKED:
+            return NOT_SHOWN

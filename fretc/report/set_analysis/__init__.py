@@ -1,0 +1,1 @@
+"""Part of the report: whether these requirements can be kept together."""

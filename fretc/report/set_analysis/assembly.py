@@ -1,0 +1,178 @@
+"""Evidence of `fretc analyze` → what the report says of it, and of its currency."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from compiler.project.folder import Project
+from fretc.analysis.assumptions import assumptions
+from fretc.analysis.evidence import AnalyzedSet, Document, suspicions
+from fretc.analysis.findings import Analysis, Verdict
+from fretc.analysis.text_output import SIGNS, columns, lanes, remarks
+from fretc.audit.evidence.verdicts import RETIRED
+from fretc.report.model import phrases
+from fretc.report.model.front import Front
+from fretc.report.model.views import (
+    REALIZABLE,
+    UNREALIZABLE,
+    Mark,
+    Overall,
+    Play,
+    PlayLane,
+    SetAnalysis,
+    SetComponent,
+    SetConflict,
+    SetMember,
+    sign_mark,
+)
+from fretish.bindings.declarations import Role
+from fretish.diagnostics import signs
+
+_WORDS: Mapping[Verdict, str] = {
+    Verdict.REALIZABLE: REALIZABLE,
+    Verdict.UNREALIZABLE: UNREALIZABLE,
+    Verdict.NOT_CHECKED: str(Verdict.NOT_CHECKED),
+}
+
+
+def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str]) -> SetAnalysis:
+    """All of it.
+
+    Args:
+        known: the evidence.
+        project: as it is now.
+        anchors: of the requirement of each id.
+    """
+    rules = [rule for rule in project.rules if rule.requirement.status != RETIRED]
+    assumed, mistakes = assumptions(rules, project.declarations)
+    old = [
+        *suspicions(known.document, rules, assumed),
+        *(f"an assumption has a mistake: {each.message}" for each in mistakes if each.is_error),
+    ]
+    analysis = known.document.analysis
+    view = _Views(known.document, anchors)
+    return SetAnalysis(
+        file=phrases.place(known.file),
+        fretc=known.document.fretc,
+        mark=replace(_mark(analysis.verdict), suspect=bool(old)),
+        headline=_headline(analysis),
+        suspicions=tuple(old),
+        left_out=tuple(each.id for each in project.without_rule if each.status != RETIRED),
+        components=tuple(
+            SetComponent(
+                _mark(each.verdict), view.members(each.requirements), each.outputs, each.why
+            )
+            for each in analysis.components
+        ),
+        conflicts=tuple(
+            SetConflict(
+                view.members(each.requirements), each.because, view.play(each.play, each.loop)
+            )
+            for each in analysis.conflicts
+        ),
+        complete=analysis.complete,
+        clashes=tuple(
+            SetConflict(view.members(each.requirements), "", view.play(each.play, None))
+            for each in analysis.inconsistent
+        ),
+        remarks=tuple(text.strip() for text, _ in remarks(analysis)),
+        assumptions=tuple(
+            f"{each.id}: {each.text or each.sentence}" for each in analysis.assumptions
+        ),
+        inputs=_of_role(analysis, Role.INPUT),
+        outputs=_of_role(analysis, Role.OUTPUT),
+        terms=analysis.terms,
+        open=tuple(f"{each.question}: {each.why}" for each in analysis.open),
+    )
+
+
+def _mark(verdict: Verdict) -> Mark:
+    return sign_mark(_WORDS[verdict], SIGNS[verdict])
+
+
+def _of_role(analysis: Analysis, role: Role) -> tuple[str, ...]:
+    return tuple(name for name, own in analysis.roles.items() if own is role)
+
+
+def _headline(analysis: Analysis) -> str:
+    """The answer, in a sentence."""
+    match analysis.verdict:
+        case Verdict.REALIZABLE:
+            held = ", while the assumptions hold" if analysis.assumptions else ""
+            return f"All requirements can be kept together{held}."
+        case Verdict.NOT_CHECKED:
+            return f"Whether all requirements can be kept together is not known: {analysis.why}."
+        case Verdict.UNREALIZABLE if analysis.conflicts:
+            ids = analysis.conflicts[0].requirements
+            what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"
+            more = len(analysis.conflicts) - 1
+            rest = f"; there {'is' if more == 1 else 'are'} {phrases.times(more, 'more conflict')}"
+            return f"{phrases.joined(ids)} {what}{rest if more else ''}."
+        case Verdict.UNREALIZABLE:
+            return f"No system can keep all requirements: they {analysis.why}."
+
+
+class _Views:
+    """What members and plays look like."""
+
+    def __init__(self, document: Document, anchors: Mapping[str, str]) -> None:
+        self._document, self._anchors = document, anchors
+
+    def members(self, ids: Sequence[str]) -> tuple[SetMember, ...]:
+        known = self._document.requirements
+        return tuple(SetMember(id, self._anchors.get(id, ""), known[id].sentence) for id in ids)
+
+    def play(self, ticks: Sequence[Mapping[str, object]], loop: int | None) -> Play:
+        """A play in columns; `loop` is a tick."""
+        roles = self._document.analysis.roles
+        names = lanes(ticks, roles)
+        found = columns(ticks, names)
+        back = [i for i, each in enumerate(found) if loop is not None and each.first <= loop]
+        return Play(
+            tuple(each.head for each in found),
+            tuple(
+                PlayLane(name, str(roles.get(name, "")), tuple(each.values[i] for each in found))
+                for i, name in enumerate(names)
+            ),
+            back[-1] if back else None,
+        )
+
+
+# The first screen ------------------------------------------------------------------------------
+
+
+def sentence(found: SetAnalysis) -> str:
+    """What the headline has to say of it; empty where all is well."""
+    if found.is_good:
+        return ""
+    parts = [] if found.mark.word == REALIZABLE else [found.headline]
+    if found.suspicions:
+        why = phrases.some(found.suspicions, 3)
+        parts.append(f"The analysis of all requirements together is suspect: {why}.")
+    if found.left_out:
+        names = phrases.some(found.left_out)
+        parts.append(f"Nobody has asked whether {names} can be kept with the others.")
+    return " ".join(parts)
+
+
+def in_overall(overall: Overall, found: SetAnalysis | None) -> Overall:
+    """The overall result with what is known of all requirements together."""
+    if found is None:
+        return overall
+    if found.is_good:
+        return replace(overall, sentences=(*overall.sentences, found.headline))
+    mark = overall.mark
+    if found.is_broken and mark.kind != signs.BAD.kind:
+        mark = found.mark
+    elif mark.kind == signs.GOOD.kind:
+        mark = sign_mark("not all shown", signs.OPEN)
+    return replace(overall, mark=mark, headline=f"{overall.headline} {sentence(found)}")
+
+
+def in_front(front: Front, found: SetAnalysis | None) -> Front:
+    """The first screen with the same; a headline of its own says it, too."""
+    said = "" if found is None else sentence(found)
+    if not said or said in front.headline:
+        return front
+    return replace(front, headline=f"{front.headline} {said}")

@@ -1,0 +1,261 @@
+"""Comparisons as letters: against all numbers of small ranges, and against monitors."""
+
+import random
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+from typing import Any
+
+import pytest
+import spot
+
+from compiler.formalization.formalized import Formalized
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic import printing
+from compiler.targets.python import monitor as target
+from fretc.analysis.analysis import analyze
+from fretc.analysis.arena.alphabet import Tick
+from fretc.analysis.findings import Verdict
+from fretc.analysis.games.budget import Budget
+from fretc.analysis.games.plays import Counterstrategy, Strategy
+from fretc.analysis.stage import Stage, stage
+from fretc.analysis.verdicts import verdict
+from fretish.bindings.declarations import Variable
+from monitors.loading import load
+from tests.requirement_sets import analyzed, roles, rule, rules, staged
+
+REALIZABLE, UNREALIZABLE = Verdict.REALIZABLE, Verdict.UNREALIZABLE
+ENDLESS = Budget(float("inf"))
+BITS = {"i": 2, "j": 1, "o": 2, "u": 1}
+"""Variables of drawn sets: whole numbers of so many bits."""
+SIZES = {**BITS, "p": 2}
+ROLES = roles(["i", "j"], ["o", "u"])
+TIMINGS = (
+    "immediately",
+    "always",
+    "eventually",
+    "within 2 ticks",
+    "at the next timepoint",
+    "for 1 tick",
+)
+SETS = 16
+
+
+def whole(found: Formalized) -> Formalized:
+    """The rule, with all of its variables declared as whole numbers."""
+    declared = {name: Variable(name, type="integer") for name in found.variables}
+    return replace(found, glossary=declared)
+
+
+def ranges(names: str) -> str:
+    return " & ".join(f"{name} >= 0 & {name} < {2 ** BITS[name]}" for name in names)
+
+
+def comparison(choose: random.Random, names: Sequence[str] = (*BITS,)) -> str:
+    left, right = choose.sample(names, 2)
+    factor = choose.choice(["", "2 * "])
+    term = choose.choice([left, f"{factor}{left} - {right}", f"{left} + {right}"])
+    return f"{term} {choose.choice(['<', '<=', '=', '!=', '>', '>='])} {choose.randint(-1, 4)}"
+
+
+def drawn(seed: int, names: Sequence[str] = (*BITS,)) -> tuple[list[str], dict[str, str]]:
+    """Sentences over atoms c0, c1, ..., and the comparison for which each of these stands."""
+    choose = random.Random(seed)
+    meant = {f"c{k}": comparison(choose, names) for k in range(choose.randint(2, 3))}
+
+    def literal() -> str:
+        return choose.choice(["", "!"]) + choose.choice([*meant])
+
+    def sentence() -> str:
+        condition = choose.choice(["", f"whenever {literal()}", f"upon {literal()}"])
+        timing = choose.choice(TIMINGS)
+        return f"{condition} the sw shall {timing} satisfy {literal()} | {literal()}"
+
+    return [sentence() for _ in range(choose.randint(1, 4))], meant
+
+
+def written(sentence: str, meant: Mapping[str, str]) -> str:
+    for name, text in meant.items():
+        sentence = sentence.replace(f"!{name}", f"!({text})").replace(name, f"({text})")
+    return sentence
+
+
+def synthesized(
+    sentences: Sequence[str], meant: Mapping[str, str], links: str = "1", outputs: str = "ou"
+) -> bool:
+    """What Spot says, with each number as its bits."""
+    text = " & ".join(f"({printing.future(rule('R', s).ft_infinite)})" for s in sentences)
+    for name, comparison in meant.items():
+        text = text.replace(name, f"({in_bits(comparison)})")
+    bits = [f"{name}{k}" for name in outputs for k in range(SIZES[name])]
+    return bool(spot.solve_game(spot.ltl_to_game(f"{text} & {links}", bits)))
+
+
+def in_bits(comparison: str) -> str:
+    names = [name for name in SIZES if name in comparison]
+    terms = []
+    python = comparison.replace(" = ", " == ")
+    for values in product(*(range(2 ** SIZES[name]) for name in names)):
+        numbers = dict(zip(names, values, strict=True))
+        if eval(python, {}, dict(numbers)):
+            bits = [(n, k, numbers[n] >> k & 1) for n in names for k in range(SIZES[n])]
+            terms.append(" & ".join(f"{'' if on else '!'}{n}{k}" for n, k, on in bits))
+    return " | ".join(terms) or "0"
+
+
+def staged_numbers(sentences: Sequence[str], meant: Mapping[str, str]) -> Stage:
+    texts = [written(each, meant) for each in sentences]
+    texts.append(f"the sw shall always satisfy {ranges('ou')}")
+    assumed = whole(rule("A1", f"the op shall always satisfy {ranges('ij')}"))
+    return stage([whole(each) for each in rules(*texts)], [assumed], ROLES)
+
+
+def setting(seed: int) -> Stage:
+    return staged_numbers(*drawn(seed))
+
+
+@pytest.mark.slow
+def test_the_tick_before_gives_no_wrong_verdict() -> None:
+    """`p` is the value that i or o had; for Spot an output whose bits are linked to theirs."""
+    answers = []
+    for seed in range(SETS // 2):
+        sentences, meant = drawn(seed, "ioup")
+        of = "io"[seed % 2]
+        links = " & ".join(f"!p{k} & G(X p{k} <-> {of}{k})" for k in range(2))
+        past = {name: text.replace("p", f"preInt(0, {of})") for name, text in meant.items()}
+        (found,) = verdict(staged_numbers(sentences, past), 60)
+        if found.verdict is not Verdict.NOT_CHECKED:
+            is_realizable = synthesized(sentences, meant, links, "oup")
+            assert (found.verdict is REALIZABLE) is is_realizable, (sentences, past)
+        answers.append(found.verdict)
+    for each in (REALIZABLE, UNREALIZABLE):
+        assert answers.count(each) > 1
+
+
+@pytest.mark.slow
+def test_cells_are_all_numbers() -> None:
+    """The verdict is Spot's for all numbers one by one; plays and strategies win in numbers."""
+    lost = 0
+    for seed in range(SETS):
+        found = setting(seed)
+        game = found.game(found.arena.counters, ENDLESS)
+        assert not found.arena.beyond
+        assert not found.arena.alphabet.doubts
+        is_realizable = game.solution().is_realizable
+        assert is_realizable is synthesized(*drawn(seed)), drawn(seed)
+        if is_realizable:
+            assert_won(found, random.Random(seed))
+        else:
+            assert_lost(found)
+            lost += 1
+    assert SETS // 5 < lost < SETS * 4 // 5
+
+
+def assert_lost(found: Stage) -> None:
+    """The environment's numbers keep its promise, and the system's break something at the end."""
+    game = found.game(found.arena.counters, ENDLESS)
+    play = Counterstrategy(game, game.solution(traps=True), ENDLESS).play()
+    rounds = 1 if play.loop is None else 3
+    letters = [*play.letters, *(play.letters[play.loop :] * (rounds - 1))]
+    verdicts = stepped(found, [found.arena.alphabet.values(letter) for letter in letters])
+    *before, last = verdicts
+    assert not any("violated" in each.values() for each in before)
+    assert last.get("A1") != "violated"
+    assert ("violated" in last.values()) is (play.loop is None)
+
+
+def assert_won(found: Stage, choose: random.Random) -> None:
+    """The numbers of a strategy break nothing."""
+    game = found.game(found.arena.counters, ENDLESS)
+    strategy = Strategy(game, game.solution())
+    place, ticks = strategy.start, []
+    for _ in range(12):
+        inputs: dict[int, bool] = {}
+        options = strategy.legal(place)
+        for bit in found.arena.alphabet.inputs:
+            wish = choose.random() < 0.5
+            inputs[bit] = wish if options & bdd.literal(bit, wish) != bdd.false() else not wish
+            options = options & bdd.literal(bit, inputs[bit])
+        outputs, place = strategy.reply(place, inputs)
+        ticks.append(found.arena.alphabet.values({**inputs, **outputs}))
+    for verdicts in stepped(found, ticks):
+        if verdicts.get("A1") == "violated":
+            return  # the environment has broken its promise
+        assert "violated" not in verdicts.values()
+
+
+def stepped(found: Stage, ticks: Sequence[Tick]) -> list[dict[str, str]]:
+    """Tick by tick the verdicts of the requirements and of the promise."""
+    machine: Any = load("monitor.py", target.text(*found.rules, *found.assumptions))
+    verdicts = []
+    for tick in ticks:
+        machine.step(**tick)
+        pairs = zip(machine.REQUIREMENTS, machine.verdicts(), strict=True)
+        verdicts.append({requirement.id: str(verdict) for requirement, verdict in pairs})
+    return verdicts
+
+
+# Published and written sets ---------------------------------------------------------------------
+
+
+def test_a_play_has_numbers() -> None:
+    found = analyzed(
+        "whenever t > 30 the sw shall within 2 ticks satisfy v > t + 1",
+        "whenever t > 20 the sw shall immediately satisfy v >= 25 & v <= 31",
+        roles=roles(["t"], ["v"]),
+    )
+    (conflict,) = found.conflicts
+    assert conflict.requirements == ("R1", "R2")
+    assert conflict.because == (
+        "at tick 2 R1 (since tick 0) demands `(v > (t + 1))` and R2 demands `(v >= 25)` and "
+        "`(v <= 31)`"
+    )
+    for tick in conflict.play:
+        assert isinstance(tick["t"], int | float)
+        assert tick["t"] > 30 or conflict.play[0]["t"] != tick["t"]
+    assert found.terms[-1].startswith("numbers are")
+
+
+@pytest.mark.parametrize(
+    ("sum_", "answer"), [("<= 20", REALIZABLE), ("< 20", UNREALIZABLE), ("!= 7", UNREALIZABLE)]
+)
+def test_what_the_system_can_reach_depends_on_the_inputs(sum_: str, answer: Verdict) -> None:
+    """Two pumps give what is asked of them, up to 10 each, where no more than 20 is asked."""
+    found = analyzed(
+        f"the sw shall always satisfy (v + w {sum_}) & v >= 0 & w >= 0 & v <= 10 & w <= 10",
+        "whenever t >= 0 & t <= 20 the sw shall immediately satisfy v + w = t",
+        roles=roles(["t"], ["v", "w"]),
+    )
+    assert found.verdict is answer
+
+
+@pytest.mark.parametrize("type_", ["integer", "double"])
+def test_whole_numbers_stay_whole(type_: str) -> None:
+    """Between 2 and 3 there is no whole number."""
+    found = rule("R1", "whenever a the sw shall immediately satisfy v > 2 & v < 3")
+    declared = replace(found, glossary={"v": Variable("v", type=type_)})
+    answer = analyze([declared], roles(["a"], ["v"])).verdict
+    assert answer is (UNREALIZABLE if type_ == "integer" else REALIZABLE)
+
+
+def test_opposites_share_a_bit() -> None:
+    sentence = "the sw shall always satisfy (v < 3 | v >= 3) & !(v < 3 & 3 <= v)"
+    found = staged(sentence, roles=roles([], ["v"]))
+    assert len(found.arena.alphabet.outputs) == 1
+
+
+def test_what_is_not_linear_is_not_checked() -> None:
+    named = roles(["t"], ["v"])
+    found = analyzed("whenever t > 1 the sw shall immediately satisfy v * t > 1", roles=named)
+    assert found.verdict is Verdict.NOT_CHECKED
+    assert found.why == "R1: `((v * t) > 1)` is not linear"
+
+
+def test_too_many_patterns_are_not_checked() -> None:
+    many = " & ".join(f"v{i} + v{i + 1} > {i}" for i in range(13))
+    found = analyzed(
+        f"whenever t > v0 the sw shall immediately satisfy {many}",
+        roles=roles(["t"], [f"v{i}" for i in range(14)]),
+    )
+    assert found.verdict is Verdict.NOT_CHECKED
+    assert "have more than 4096 patterns" in found.why

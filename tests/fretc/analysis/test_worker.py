@@ -1,0 +1,86 @@
+"""Questions in a process of their own: one that dies or hangs costs no other its answer."""
+
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator, Sequence
+
+import pytest
+
+from fretc.analysis.analysis import Finding, Job
+from fretc.analysis.findings import OpenQuestion
+from fretc.analysis.games.budget import Budget
+from fretc.analysis.worker import Stopped, findings
+
+
+def job(name: str, do: Callable[[], None] = lambda: None) -> Job:
+    """It finds its name; then it does something, and finds its name again."""
+
+    def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+        yield OpenQuestion(name, f"{len(known)} before")
+        do()
+        yield OpenQuestion(name, "end")
+
+    return Job(name, ask, lambda why: OpenQuestion(name, f"lost: {why}"))
+
+
+def told(jobs: Sequence[Job]) -> list[tuple[str, str]]:
+    return [(each.question, each.why) for each in findings(jobs, lambda words: None)]  # type: ignore[union-attr]
+
+
+def hang() -> None:
+    Budget(0.01)
+    end = time.process_time() + 60
+    while time.process_time() < end:
+        pass
+
+
+def test_a_process_that_dies_is_replaced() -> None:
+    jobs = [job("a"), job("b", lambda: os._exit(6)), job("c")]
+    assert told(jobs) == [
+        ("a", "0 before"), ("a", "end"), ("b", "2 before"),
+        ("b", "lost: it took more than 4 GiB of memory, or failed (exit status 6)"),
+        ("c", "4 before"), ("c", "end"),
+    ]  # fmt: skip
+
+
+@pytest.mark.slow
+def test_a_question_that_hangs_is_ended() -> None:
+    jobs = [job("a", hang), job("b")]
+    assert told(jobs) == [
+        ("a", "0 before"), ("a", "lost: it took longer than it may"),
+        ("b", "2 before"), ("b", "end"),
+    ]  # fmt: skip
+
+
+def test_a_mistake_of_ours_is_one() -> None:
+    def fail() -> None:
+        raise AssertionError("ours")
+
+    with pytest.raises(AssertionError, match="ours"):
+        told([job("a", fail)])
+
+
+def test_ctrl_c_keeps_what_is_known() -> None:
+    parent, received = os.getpid(), multiprocessing.get_context("fork").Event()
+
+    def interrupt() -> None:
+        assert received.wait(60)
+        os.kill(parent, signal.SIGINT)
+        time.sleep(60)
+
+    known: list[str] = []
+
+    def ask() -> None:
+        for finding in findings([job("a"), job("b", interrupt), job("c")], known.append):
+            assert isinstance(finding, OpenQuestion)
+            known.append(finding.why)
+            if finding.why == "2 before":
+                received.set()
+
+    with pytest.raises(Stopped):
+        ask()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    stopped = "lost: stopped by Ctrl-C"
+    assert known == ["a", "0 before", "end", "b", "2 before", stopped, stopped]

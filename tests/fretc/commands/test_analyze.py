@@ -1,0 +1,291 @@
+"""`fretc analyze` as its users meet it."""
+
+import json
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+
+from fretc.analysis import findings
+from tests.command import Fretc
+
+FIGHT = (
+    "whenever start the line shall within 2 ticks satisfy run",
+    "upon stop the line shall for 3 ticks satisfy !run",
+)
+ROLES = {"start": "input", "stop": "input", "run": "output"}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    return written(tmp_path, FIGHT)
+
+
+def written(
+    folder: Path, sentences: Sequence[str], roles: dict[str, str] = ROLES, more: str = ""
+) -> Path:
+    for number, sentence in enumerate(sentences, 1):
+        (folder / f"r{number}.fret").write_text(f'+++\nid = "R{number}"\n+++\n{sentence}\n')
+    tables = "".join(f'[variable.{name}]\nrole = "{role}"\n' for name, role in roles.items())
+    (folder / "bindings.toml").write_text(tables + more)
+    return folder
+
+
+def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
+    run = fretc("analyze", str(folder))
+    assert run.status == 1
+    assert run.out.startswith(
+        "✘ unrealizable: no system can keep all requirements\n"
+        "  ✘ R1, R2 (about run): the environment wins\n"
+        "\n"
+        "✘ conflict 1: R1 and R2 cannot be kept together\n"
+        "  at tick 2 R1 demands `run` (since tick 0, by tick 2), and R2 forbids it "
+        "(since tick 0, up to tick 3)\n"
+    )
+    assert "    run (output)   0  0  1\n" in run.out
+
+
+def test_what_would_settle_a_conflict_is_suggested(fretc: Fretc, tmp_path: Path) -> None:
+    fight = (
+        "upon start the line shall immediately satisfy run",
+        "upon stop the line shall for 3 ticks satisfy !run",
+    )
+    folder = written(tmp_path, fight)
+    run = fretc("analyze", str(folder))
+    (line,) = [line for line in run.out.splitlines() if "assume: " in line]
+    sentence = line.partition("assume: ")[2]
+    assert sentence == "whenever stop the environment shall for 3 ticks satisfy !start"
+    more = f'[[assume.requirement]]\nid = "A1"\nsentence = "{sentence}"\n'
+    assert fretc("analyze", str(written(tmp_path, fight, more=more))).status == 0
+
+
+def test_json_is_as_its_schema_says(fretc: Fretc, folder: Path) -> None:
+    run = fretc("analyze", str(folder), "--format", "json")
+    assert run.status == 1
+    found = json.loads(run.out)
+    jsonschema.validate(found, findings.schema())
+    (conflict,) = found["conflicts"]
+    assert conflict["requirements"] == ["R1", "R2"]
+    assert conflict["play"][0] == {"run": False, "start": True, "stop": True}
+    assert found["roles"] == {"run": "output", "start": "input", "stop": "input"}
+
+
+def test_an_assumption_makes_it_realizable(fretc: Fretc, tmp_path: Path) -> None:
+    assumed = (
+        '[[assume.requirement]]\nid = "A1"\ntext = "one button"\n'
+        'sentence = "upon stop the man shall for 3 ticks satisfy !start"\n'
+        '[[assume.requirement]]\nid = "A2"\n'
+        'sentence = "whenever start the man shall for 3 ticks satisfy !stop"\n'
+    )
+    run = fretc("analyze", str(written(tmp_path, FIGHT, more=assumed)))
+    assert run.status == 0, run.out
+    assert run.out.startswith("✔ realizable: a system can keep all requirements, while the assump")
+    assert "assumed A1: one button\nassumed A2: whenever start the man shall" in run.out
+
+
+@pytest.mark.parametrize(
+    ("table", "code", "place"),
+    [
+        ('id = "R1"\nsentence = "m shall never satisfy stop"', "F201", "bindings.toml:9:"),
+        ('id = "A1"\nsentence = "m shall newer satisfy stop"', "F1", "bindings.toml:9:"),
+        ('id = "A1"', "F303", "bindings.toml:"),
+        ('id = "A1"\nsentence = "m shall never satisfy stop"\nsince = 3', "F302", "toml:10:1"),
+        ('id = "A1"\nsentence = "m shall never satisfy fog"', "F354", "bindings.toml:9:"),
+    ],
+)
+def test_a_mistaken_assumption_is_told_where_it_stands(
+    fretc: Fretc, tmp_path: Path, table: str, code: str, place: str
+) -> None:
+    folder = written(tmp_path, FIGHT, more=f"[[assume.requirement]]\n{table}\n")
+    run = fretc("analyze", str(folder))
+    assert run.status == 2
+    assert run.err.startswith(code), run.err
+    assert place in run.err
+
+
+def test_a_variable_without_a_role_is_an_error_with_lines_to_paste(
+    fretc: Fretc, tmp_path: Path
+) -> None:
+    folder = written(tmp_path, FIGHT, {"start": "input", "stop": "mode"})
+    run = fretc("analyze", str(folder))
+    assert run.status == 2
+    assert "F354 nothing says who chooses `run`: the environment or the system" in run.err
+    assert '[variable.run]\nrole = "output"' in run.err
+    assert "F354 `stop` is a mode, and nothing says whether the system chooses it" in run.err
+    assert '[variable.stop]\nrole = "input"' in run.err
+
+
+def test_a_component_is_asked_about_alone(fretc: Fretc, tmp_path: Path) -> None:
+    other = "whenever start the lamp shall immediately satisfy glow"
+    folder = written(tmp_path, (*FIGHT, other), ROLES | {"glow": "output"})
+    run = fretc("analyze", str(folder), "--component", "lamp")
+    assert run.status == 0
+    assert "R1" not in run.out
+    run = fretc("analyze", str(folder), "--component", "lamb")
+    assert run.status == 2
+    assert "no requirement is about the component `lamb`" in run.err
+    assert "did you mean `lamp`?" in run.err
+
+
+def test_what_is_not_checked_exits_with_3(fretc: Fretc, tmp_path: Path) -> None:
+    ahead = "whenever start the line shall immediately satisfy persists(2, run)"
+    run = fretc("analyze", str(written(tmp_path, [ahead], {"start": "input", "run": "output"})))
+    assert run.status == 3
+    assert run.out.startswith("? not checked: R1: `persists(2,run)` is more than a value")
+
+
+def test_a_retired_requirement_is_no_part_of_the_set(fretc: Fretc, folder: Path) -> None:
+    path = folder / "r2.fret"
+    path.write_text(path.read_text().replace('"R2"', '"R2"\nstatus = "retired"'))
+    assert fretc("analyze", str(folder)).status == 0
+
+
+def test_as_fret_eventually_means_at_once(fretc: Fretc, tmp_path: Path) -> None:
+    sentences = (
+        "whenever start the line shall eventually satisfy run",
+        "upon stop the line shall immediately satisfy !run",
+    )
+    folder = str(written(tmp_path, sentences))
+    assert fretc("analyze", folder).status == 0
+    assert fretc("analyze", folder, "--as-fret").status == 1
+
+
+KEPT = (
+    "whenever start the line shall within 2 ticks satisfy run",
+    "upon stop the line shall immediately satisfy !run",
+)
+
+
+def test_a_strategy_is_a_program_that_runs(fretc: Fretc, tmp_path: Path) -> None:
+    folder, out = written(tmp_path, KEPT), tmp_path / "out"
+    run = fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(out))
+    assert run.status == 0, run.err
+    program = [sys.executable, str(out / "controller.py")]
+    ticks = [{"start": True, "stop": True}] + 2 * [{"start": False, "stop": False}]
+    lines = "".join(f"{json.dumps(tick)}\n" for tick in ticks)
+    done = subprocess.run(program, input=lines, capture_output=True, text=True, check=True)
+    outputs = [json.loads(line)["run"] for line in done.stdout.splitlines()]
+    assert not outputs[0]
+    assert any(outputs)
+    wrong = subprocess.run(program, input="{}\n", capture_output=True, text=True, check=False)
+    assert wrong.returncode == 2
+    assert wrong.stderr == "line 1: the input start is to be true or false at each tick\n"
+
+
+@pytest.mark.parametrize(("form", "begin"), [("hoa", "HOA: v1\n"), ("dot", "digraph ")])
+def test_a_strategy_is_an_automaton_for_each_component(
+    fretc: Fretc, tmp_path: Path, form: str, begin: str
+) -> None:
+    other = "whenever start the lamp shall immediately satisfy glow"
+    folder, out = written(tmp_path, (*KEPT, other), ROLES | {"glow": "output"}), tmp_path / "out"
+    assert fretc("analyze", str(folder), "--emit", form, "--emit-to", str(out)).status == 0
+    texts = [path.read_text() for path in sorted(out.iterdir())]
+    assert [path.name for path in sorted(out.iterdir())] == [f"controller-{i}.{form}" for i in "12"]
+    assert all(text.startswith(begin) for text in texts)
+    assert "glow" in texts[1]
+    printed = fretc("analyze", str(folder), "--emit", form, "--emit-to", "-")
+    assert printed.out == "".join(texts)
+
+
+def test_no_strategy_is_written_where_there_is_none(fretc: Fretc, folder: Path) -> None:
+    run = fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(folder / "out"))
+    assert run.status == 1
+    assert "no strategy is written: cannot be kept together: R1, R2" in run.err
+    assert not (folder / "out").exists()
+
+
+def test_a_strategy_that_is_too_large_is_refused(fretc: Fretc, tmp_path: Path) -> None:
+    folder = written(tmp_path, ["upon start the line shall for 5000 ticks satisfy run"])
+    run = fretc("analyze", str(folder), "--emit", "hoa", "--emit-to", str(tmp_path / "out"))
+    assert run.status == 2
+    assert "F670 no strategy can be written: its automaton has more than 1000 states" in run.err
+    assert not (tmp_path / "out").exists()
+    assert fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(tmp_path)).status == 0
+
+
+# FRET's exports --------------------------------------------------------------------------------
+
+
+def exported(folder: Path, sentences: dict[str, str], variables: Sequence[dict[str, str]]) -> str:
+    """An export of FRET: sentences by their ids, and its records of variables."""
+    requirements = [{"reqid": id, "fulltext": text} for id, text in sentences.items()]
+    path = folder / "export.json"
+    path.write_text(json.dumps({"requirements": requirements, "variables": list(variables)}))
+    return str(path)
+
+
+def variable(component: str, name: str, kind: str, type_: str, value: str = "") -> dict[str, str]:
+    names = {"component_name": component, "variable_name": name}
+    return {**names, "idType": kind, "dataType": type_, "assignment": value}
+
+
+def test_an_export_of_fret_is_analyzed_straight(fretc: Fretc, tmp_path: Path) -> None:
+    """Roles are FRET's, and a constant stands for its value: `state` cannot be two at once."""
+    sentences = {
+        "R1": "the sw shall always satisfy button -> state = idle",
+        "R2": "the sw shall always satisfy button -> state = busy",
+    }
+    variables = [
+        variable("sw", "button", "Input", "boolean"),
+        variable("sw", "state", "Output", "double"),
+        variable("sw", "idle", "Internal", "double", "0.0"),
+        variable("sw", "busy", "Internal", "double", "1.0"),
+    ]
+    folder = str(tmp_path / "in")
+    assert fretc("import", exported(tmp_path, sentences, variables), "-o", folder).status == 0
+    run = fretc("analyze", folder, "--format", "json")
+    found = json.loads(run.out)
+    assert found["roles"] == {"button": "input", "state": "output"}
+    assert [each["requirements"] for each in found["conflicts"]] == [["R1", "R2"]]
+
+
+def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) -> None:
+    """What is an output of one component is an input of the other one, which has to bear it."""
+    sentences = {
+        "S1": "the sender shall always satisfy link",
+        "R1": "the receiver shall always satisfy link",
+    }
+    variables = [
+        variable("sender", "link", "Output", "boolean"),
+        variable("receiver", "link", "Input", "boolean"),
+    ]
+    folder = str(tmp_path / "in")
+    assert fretc("import", exported(tmp_path, sentences, variables), "-o", folder).status == 0
+    assert fretc("analyze", folder, "--component", "sender").status == 0
+    assert fretc("analyze", folder, "--component", "receiver").status == 1
+    both = fretc("analyze", folder)
+    assert both.status == 2
+    assert both.err.startswith(
+        "F907 `link` is an output of `sender`, and an input of `receiver`: these are two systems\n"
+    )
+    assert both.err.endswith("help: ask about one of them: `--component receiver`\n")
+
+
+# `fretc check --analyze` -----------------------------------------------------------------------
+
+
+def test_check_names_each_conflict(fretc: Fretc, folder: Path) -> None:
+    run = fretc("check", str(folder), "--analyze")
+    assert "F561 warning: R1 and R2 cannot be kept together: at tick 2 R1 demands `run`" in run.err
+    assert "F561" not in fretc("check", str(folder)).err
+
+
+def test_check_takes_an_answer_only_while_it_is_about_these(fretc: Fretc, tmp_path: Path) -> None:
+    """The answer in the file was changed by hand, so that it shows where it is taken."""
+    good = (FIGHT[0], "upon stop the line shall within 3 ticks satisfy !run")
+    written(tmp_path, good)
+    assert fretc("analyze", str(tmp_path)).status == 0
+    assert "F56" not in fretc("check", str(tmp_path), "--analyze").err
+    text = Path("build/analysis.json").read_text().replace('"realizable"', '"not checked"')
+    Path("build/analysis.json").write_text(text)
+    assert "F562 warning" in fretc("check", str(tmp_path), "--analyze").err
+    written(tmp_path, FIGHT)
+    assert "F561 warning" in fretc("check", str(tmp_path), "--analyze").err
+
+
+def test_check_says_what_has_no_role(fretc: Fretc, folder: Path) -> None:
+    written(folder, FIGHT, {"start": "input", "run": "output"})
+    assert "F354" in fretc("check", str(folder), "--analyze").err
