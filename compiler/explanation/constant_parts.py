@@ -5,7 +5,7 @@ Only what comparisons make constant counts: `battery < 20 & battery > 30`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
 from compiler.formalization.formalized import Formalized
@@ -19,15 +19,19 @@ from fretish.checking import conditions
 from fretish.reading.recursion import deep
 from fretish.syntax import ScopeKind
 
+_ByFirst = Mapping[str, Sequence[Exclusion]]
+"""What cannot be, by the first comparison: each part looks only at what speaks of it."""
 
-@deep
+
 @deep
 def constant_parts(rule: Formalized) -> tuple[tuple[e.Expression, bool], ...]:
     """Each part that has one truth value whatever is measured, and which; none within another.
 
     The condition of a scope is looked at together with its mode.
     """
-    impossible = excluded(rule)
+    impossible: dict[str, list[Exclusion]] = {}
+    for each in excluded(rule):
+        impossible.setdefault(each[0][0], []).append(each)
     if not impossible or temporal_predicate(rule.sentence):
         return ()
     parts = tuple(_constant(tuple(conditions(rule.sentence)), impossible))
@@ -38,7 +42,7 @@ def constant_parts(rule: Formalized) -> tuple[tuple[e.Expression, bool], ...]:
 
 
 def _constant(
-    parts: Sequence[e.Expression], impossible: Sequence[Exclusion]
+    parts: Sequence[e.Expression], impossible: _ByFirst
 ) -> Iterator[tuple[e.Expression, bool]]:
     waiting = [*reversed(parts)]
     while waiting:
@@ -50,14 +54,15 @@ def _constant(
             waiting.extend(reversed(e.children(part)))
 
 
-def _value(part: e.Expression, impossible: Sequence[Exclusion]) -> bool | None:
+def _value(part: e.Expression, impossible: _ByFirst) -> bool | None:
     """Its value, where that is the same in all valuations that can occur, and only in these."""
     formula = boolean(part, Uninterpreted().alone())
     atoms = tuple(dict.fromkeys(f.atoms(formula)))
     if not atoms or len(atoms) > MOST_ATOMS:
         return None
     every = tuple(product((False, True), repeat=len(atoms)))
-    possible = only_possible(every, atoms, impossible)
+    spoken = [each for name in atoms for each in impossible.get(name, ())]
+    possible = only_possible(every, atoms, spoken)
     found, all_ = ({*_values(formula, atoms, some)} for some in (possible, every))
     return found.pop() if len(found) == 1 and len(all_) == 2 else None
 

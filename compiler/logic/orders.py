@@ -12,17 +12,26 @@ set of order constraints has a solution where no circle of them is strict.
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import combinations
 from typing import TypeVar
 
+from compiler.logic import ranges
+from compiler.logic.relations import (
+    MIRRORED,
+    ZERO,
+    Constant,
+    Point,
+    Relation,
+    Term,
+    is_word,
+    negative,
+    of_magnitude,
+    relation_of,
+)
 from fretish import expressions as e
-from fretish.bindings import constants
 from fretish.reading.recursion import deep
-from fretish.units import number
 
 Literal = tuple[str, bool]
 """A comparison by its name, and whether it is true."""
@@ -30,11 +39,12 @@ Exclusion = tuple[Literal, ...]
 """Literals that are never all right at one tick; without one of them, they are at some."""
 MOST = 5_000
 """Valuations of comparisons that speak of one another; the further ones are left possible."""
+MOST_STEPS = 15_000_000
+"""Of a search through them, about two seconds."""
+MOST_POINTS = 500
+"""In a search; the comparisons of further ones are left possible."""
 _DENIED: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {
     "<": ">=", "<=": ">", ">": "<=", ">=": "<", "=": "!=", "!=": "=",
-}  # fmt: skip
-_MIRRORED: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {
-    "<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "!=": "!=",
 }  # fmt: skip
 
 
@@ -51,10 +61,11 @@ def exclusions(
         scales: of the signals, from their units to base units; a name without one is a number.
         words: what each enumerated signal may be.
     """
-    read = {name: _relation(each, scales) for name, each in comparisons.items()}
+    read = {name: relation_of(each, scales) for name, each in comparisons.items()}
     found: list[Exclusion] = []
-    for group in _groups(read):
-        _Search({name: read[name] for name in read if name in group}, words or {}, found).run()
+    for names in _groups(read):
+        share = Fraction(len(names), len(read))
+        found += _of_group({name: read[name] for name in names}, words or {}, share)
     return tuple(found)
 
 
@@ -79,137 +90,57 @@ def only_possible(
     return left or tuple(valuations)
 
 
-# Comparisons as relations of two points -------------------------------------------------------
+# Groups ---------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
-class _Term:
-    """What is measured, or computed of it."""
-
-    text: e.Expression
-    is_base: bool
-    """Signals of several units meet in base units, and conversion rounds."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Constant:
-    """A number; where it is no 32-bit float, it is another one beside each term."""
-
-    value: Fraction
-    beside: _Term | None = None
-
-    @property
-    def ends(self) -> tuple[Fraction, Fraction]:
-        """Between which the number lies that is compared in its place."""
-        if self.beside is None:
-            return self.value, self.value
-        error = abs(self.value) / 2**23 + Fraction(1, 2**149)
-        return self.value - error, self.value + error
-
-
-_Point = _Term | _Constant
-
-
-@dataclass(frozen=True, slots=True)
-class _Relation:
-    """`left op right`."""
-
-    left: _Point
-    op: e.ComparisonOperator
-    right: _Point
-
-    @property
-    def terms(self) -> Iterator[_Term]:
-        """Those of its points that are no constants, and what they are the magnitudes of."""
-        for point in (self.left, self.right):
-            if isinstance(point, _Term) and not _is_word(point):
-                yield point
-                yield from (each for each in (_of_magnitude(point),) if each is not None)
-
-
-def _relation(comparison: e.Comparison, scales: Mapping[str, Fraction]) -> _Relation:
-    factors = {scales.get(name.id) for name in e.names(comparison)}
-    is_base = len(factors) > 1 or e.has_unit(comparison)
-    left, right = _constant(comparison.left), _constant(comparison.right)
-    if left is not None and right is not None:
-        return _Relation(_Constant(left), comparison.op, _Constant(right))
-    if left is not None:
-        mirrored = _MIRRORED[comparison.op]
-        return _measured(comparison.right, mirrored, left, is_base)
-    if right is not None:
-        return _measured(comparison.left, comparison.op, right, is_base)
-    sides = [
-        _Term(side, is_base and not isinstance(side, e.Word))
-        for side in (comparison.left, comparison.right)
-    ]
-    return _Relation(sides[0], comparison.op, sides[1])
-
-
-def _measured(
-    side: e.Expression, op: e.ComparisonOperator, limit: Fraction, is_base: bool
-) -> _Relation:
-    """`side op limit`; `-x < 2` is `x > -2`."""
-    while isinstance(side, e.Negation):
-        side, op, limit = side.arg, _MIRRORED[op], -limit
-    term = _Term(side, is_base)
-    return _Relation(term, op, _beside(limit, term))
-
-
-def _beside(value: Fraction, term: _Term) -> _Constant:
-    """The constant that stands for a number beside a term; its magnitude is of the same kind."""
-    return _Constant(value) if _is_single(value) else _Constant(value, _of_magnitude(term) or term)
-
-
-def _of_magnitude(term: _Term) -> _Term | None:
-    """The x of `abs(x)`."""
-    match term.text:
-        case e.Call("abs" | "absReal" | "absInt", (arg,)):
-            return _Term(arg, term.is_base)
-        case _:
-            return None
-
-
-def _is_single(value: Fraction) -> bool:
-    """Whether a 32-bit float has the value: then no other number is compared in its place."""
-    try:
-        (nearest,) = struct.unpack("<f", struct.pack("<f", float(value)))
-    except OverflowError:
-        return False
-    return value == Fraction(nearest)
-
-
-def _constant(expression: e.Expression) -> Fraction | None:
-    """A number without names, in base units where it has one; None for anything else."""
-    if any(e.names(expression)):
-        return None
-    try:
-        for part in e.parts(expression):
-            if isinstance(part, e.Number | e.Quantity):
-                number(part.digits)  # it has no more digits than can be computed with
-        exact = constants.number(expression)
-    except ValueError:
-        return None
-    return exact if exact is not None and abs(exact) < _LARGE else None
-
-
-_LARGE = 2**127
-"""From about here on 32-bit floats are infinite."""
-
-
-def _groups(relations: Mapping[str, _Relation]) -> Iterator[tuple[str, ...]]:
+def _groups(relations: Mapping[str, Relation]) -> Sequence[Sequence[str]]:
     """Comparisons that speak of one another: of the same terms, or in a row of them."""
-    groups: list[tuple[set[_Term], list[str]]] = []
+    heads: dict[Term, Term] = {}
+
+    def head(term: Term) -> Term:
+        while heads.setdefault(term, term) != term:
+            heads[term] = heads[heads[term]]
+            term = heads[term]
+        return term
+
+    for relation in relations.values():
+        terms = tuple(relation.terms)
+        for term in terms:
+            heads[head(term)] = head(terms[0])
+    groups: dict[Term | str, list[str]] = {}
     for name, relation in relations.items():
-        terms, names = {*relation.terms}, [name]
-        apart = []
-        for group in groups:
-            if group[0].isdisjoint(terms):
-                apart.append(group)
-            else:
-                terms, names = terms | group[0], group[1] + names
-        groups = [*apart, (terms, names)]
-    for _, names in groups:
-        yield tuple(names)
+        first = next(relation.terms, None)
+        groups.setdefault(name if first is None else head(first), []).append(name)
+    places = {name: place for place, name in enumerate(relations)}
+    return sorted(groups.values(), key=lambda names: places[names[-1]])
+
+
+def _of_group(
+    relations: Mapping[str, Relation], words: Mapping[str, Sequence[str]], share: Fraction
+) -> Sequence[Exclusion]:
+    """The exclusions of comparisons that speak of one another, with a share of the steps."""
+    if ranges.is_of_one_term(relations):
+        return ranges.exclusions(relations, words, share)
+    search = _Search(relations, words, int(MOST_STEPS * share))
+    found = search.run()
+    if not search.is_cut:
+        return found
+    known = {frozenset(each) for each in found}
+    more = (
+        each
+        for some in _by_term(relations)
+        for each in ranges.exclusions(some, words, share * Fraction(len(some), len(relations)))
+    )
+    return [*found, *(each for each in more if frozenset(each) not in known)]
+
+
+def _by_term(relations: Mapping[str, Relation]) -> Iterator[Mapping[str, Relation]]:
+    """The comparisons of each term with constants or words, which can be looked at alone."""
+    found: dict[Point, dict[str, Relation]] = {}
+    for name, relation in relations.items():
+        if isinstance(relation.right, Constant) or is_word(relation.right):
+            found.setdefault(relation.left, {})[name] = relation
+    return (some for some in found.values() if ranges.is_of_one_term(some))
 
 
 # Order ----------------------------------------------------------------------------------------
@@ -225,90 +156,127 @@ class _Order:
     at_most: list[int]
     """Point i is at most point j."""
     less: list[int]
-    apart: list[tuple[int, int]] = field(default_factory=list)
-    choices: Sequence[tuple[int, Sequence[int]]] = ()
+    apart: list[int]
+    """Said of j and i, too."""
+    choices: Sequence[tuple[int, int]] = ()
     """Points that are equal to one of several others."""
+    has_circle: bool = False
+    """A point is less than itself."""
 
     def copy(self) -> _Order:
         """One of its own."""
-        return _Order([*self.at_most], [*self.less], [*self.apart], self.choices)
+        return replace(self, at_most=[*self.at_most], less=[*self.less], apart=[*self.apart])
 
     def add(self, i: int, j: int, *, strict: bool) -> None:
         """Point i is at most point j, or less."""
+        if (self.less if strict else self.at_most)[i] >> j & 1:
+            return
         beyond, far = self.at_most[j], self.less[j]
         for k, reached in enumerate(self.at_most):
             if reached >> i & 1:
                 self.at_most[k] |= beyond
                 self.less[k] |= beyond if strict or self.less[k] >> i & 1 else far
+                self.has_circle |= bool(self.less[k] >> k & 1)
+
+    def separate(self, i: int, j: int) -> None:
+        """The points are not equal."""
+        self.apart[i] |= 1 << j
+        self.apart[j] |= 1 << i
 
     @property
     def is_impossible(self) -> bool:
         """Whether a point is less than itself, two are equal and apart, or no choice is left."""
         return (
-            any(less >> i & 1 for i, less in enumerate(self.less))
-            or any(self.at_most[i] >> j & 1 and self.at_most[j] >> i & 1 for i, j in self.apart)
+            self.has_circle
             or any(
-                all((i, j) in self.apart or (j, i) in self.apart for j in each)
-                for i, each in self.choices
+                self.at_most[j] >> i & 1
+                for i, apart in enumerate(self.apart)
+                if apart
+                for j in _places(apart & self.at_most[i])
             )
+            or any(not each & ~self.apart[i] for i, each in self.choices)
         )
+
+
+def _places(bits: int) -> Iterator[int]:
+    while bits:
+        yield (bits & -bits).bit_length() - 1
+        bits &= bits - 1
 
 
 class _Search:
     """The valuations of a group, one comparison after the other, as long as they are possible."""
 
     def __init__(
-        self,
-        relations: Mapping[str, _Relation],
-        words: Mapping[str, Sequence[str]],
-        found: list[Exclusion],
+        self, relations: Mapping[str, Relation], words: Mapping[str, Sequence[str]], steps: int
     ) -> None:
-        self._relations, self._found = relations, found
-        self._words = words
-        self._names = tuple(relations)
-        points = dict.fromkeys(_points(relations.values()))
+        names = tuple(relations)
+        while (
+            len(points := dict.fromkeys(_points(map(relations.__getitem__, names)))) > MOST_POINTS
+        ):
+            names = names[: len(names) // 2]
+        self._relations, self._names, self._words = relations, names, words
+        self._found: list[Exclusion] = []
+        self._by_last: dict[Literal, list[int]] = {}
         self._places = {point: place for place, point in enumerate(points)}
         self._known = self._order()
-        self._left = MOST
+        self._left, self._steps = MOST, steps
 
-    def run(self) -> None:
-        """Add the exclusions of the group to those that were found."""
-        self._go((), self._known)
+    @property
+    def is_cut(self) -> bool:
+        """Whether something was left possible that was not tried."""
+        return self._left <= 0 or self._steps <= 0 or len(self._names) < len(self._relations)
 
-    def _go(self, chosen: tuple[Literal, ...], order: _Order) -> None:
+    def run(self) -> Sequence[Exclusion]:
+        """The exclusions of the group."""
+        self._go((), 0, self._known)
+        return self._found
+
+    def _go(self, chosen: tuple[Literal, ...], bits: int, order: _Order) -> None:
+        """Try the next comparison; bit 2i + 1 says that the i-th one is true, bit 2i false."""
         if len(chosen) == len(self._names):
             self._left -= 1
             return
         name = self._names[len(chosen)]
         for value in (False, True):
-            if self._left <= 0:
+            if self._left <= 0 or self._steps <= 0:
                 return
-            literals = (*chosen, (name, value))
-            if any({*each} <= {*literals} for each in self._found):
+            literal = (name, value)
+            if any(not each & ~bits for each in self._by_last.get(literal, ())):
                 continue
             after = order.copy()
-            self._add(after, (name, value))
+            self._add(after, literal)
+            self._steps -= len(self._places)
             if after.is_impossible:
-                self._found.append(self._least(literals))
+                self._exclude(chosen, literal)
             else:
-                self._go(literals, after)
+                self._go((*chosen, literal), bits | 1 << 2 * len(chosen) + value, after)
 
-    def _least(self, literals: Exclusion) -> Exclusion:
-        """Without the literals that are not needed."""
-        for literal in literals:
-            fewer = tuple(each for each in literals if each != literal)
-            order = self._known.copy()
-            for each in fewer:
-                self._add(order, each)
-            if order.is_impossible:
-                literals = fewer
-        return literals
+    def _exclude(self, chosen: tuple[Literal, ...], last: Literal) -> None:
+        """Add what the literal needs of those before it, which are possible without it."""
+        needed: list[int] = []
+        fixed = self._known.copy()
+        self._add(fixed, last)
+        while not fixed.is_impossible:
+            order, place = fixed.copy(), len(chosen)
+            while not order.is_impossible:
+                if self._steps <= 0:
+                    return
+                place -= 1
+                self._steps -= len(self._places)
+                self._add(order, chosen[place])
+            needed.append(place)
+            self._add(fixed, chosen[place])
+        self._found.append((*(chosen[place] for place in sorted(needed)), last))
+        bits = sum(1 << 2 * place + chosen[place][1] for place in needed)
+        self._by_last.setdefault(last, []).append(bits)
 
     def _add(self, order: _Order, literal: Literal) -> None:
         name, value = literal
         relation = self._relations[name]
         op = relation.op if value else _DENIED[relation.op]
         for left, sign, right in _consequences(relation.left, op, relation.right):
+            self._steps -= len(self._places)
             i, j = self._places[left], self._places[right]
             match sign:
                 case "<" | "<=":
@@ -319,65 +287,65 @@ class _Search:
                     order.add(i, j, strict=False)
                     order.add(j, i, strict=False)
                 case "!=":
-                    order.apart.append((i, j))
+                    order.separate(i, j)
 
     def _order(self) -> _Order:
         """What holds of the points whatever is measured."""
         single = [1 << place for place in range(len(self._places))]
-        order = _Order([*single], [0] * len(single))
-        fixed = [point for point in self._places if isinstance(point, _Constant)]
-        for pair in combinations(fixed, 2):
-            less, more = sorted(pair, key=lambda each: each.value)
-            if less.ends[1] < more.ends[0]:
-                order.add(self._places[less], self._places[more], strict=True)
-            elif less.beside == more.beside or None in (less.beside, more.beside):
-                order.add(self._places[less], self._places[more], strict=False)  # as rounded
+        order = _Order([*single], [0] * len(single), [0] * len(single))
+        self._add_constants(order)
         for point, place in self._places.items():
-            arg = _of_magnitude(point) if isinstance(point, _Term) else None
-            parts: tuple[_Point, ...] = () if arg is None else (_ZERO, arg, _negative(arg))
+            arg = of_magnitude(point) if isinstance(point, Term) else None
+            parts: tuple[Point, ...] = () if arg is None else (ZERO, arg, negative(arg))
             for part in parts:
                 order.add(self._places[part], place, strict=False)
-        spoken = [p for point, p in self._places.items() if _is_word(point)]
-        order.apart.extend(combinations(spoken, 2))
+        spoken = sum(1 << place for point, place in self._places.items() if is_word(point))
+        for place in _places(spoken):
+            order.apart[place] = spoken & ~(1 << place)
         order.choices = tuple(self._choices())
         return order
 
-    def _choices(self) -> Iterator[tuple[int, Sequence[int]]]:
+    def _add_constants(self, order: _Order) -> None:
+        """The order of the constants, from the last one down, with what follows."""
+        row = [point for point in self._places if isinstance(point, Constant)]
+        row.sort(key=lambda each: each.value, reverse=True)
+        above: list[tuple[Constant, Fraction, int]] = []
+        for less in row:
+            i, (_, end) = self._places[less], less.ends
+            for more, start, j in above:
+                if end < start:
+                    order.at_most[i] |= order.at_most[j]
+                    order.less[i] |= order.at_most[j]
+                elif less.beside == more.beside or None in (less.beside, more.beside):
+                    order.at_most[i] |= order.at_most[j]  # as rounded
+                    order.less[i] |= order.less[j]
+            above.append((less, less.ends[0], i))
+
+    def _choices(self) -> Iterator[tuple[int, int]]:
         """Enumerated signals with all their words, where all are spoken of."""
         for point, place in self._places.items():
             match point:
-                case _Term(e.Name(id)) if id in self._words:
-                    words = [_Term(e.Word(word), is_base=False) for word in self._words[id]]
+                case Term(e.Name(id)) if id in self._words:
+                    words = [Term(e.Word(word), is_base=False) for word in self._words[id]]
                     if all(word in self._places for word in words):
-                        yield place, [self._places[word] for word in words]
+                        yield place, sum(1 << self._places[word] for word in words)
 
 
-def _is_word(point: _Point) -> bool:
-    return isinstance(point, _Term) and isinstance(point.text, e.Word)
-
-
-_ZERO = _Constant(Fraction(0))
-
-
-def _negative(term: _Term) -> _Term:
-    return _Term(e.Negation(term.text), term.is_base)
-
-
-def _points(relations: Iterable[_Relation]) -> Iterator[_Point]:
+def _points(relations: Iterable[Relation]) -> Iterator[Point]:
     for relation in relations:
         for op in ("<", ">"):
             for left, _, right in _consequences(relation.left, op, relation.right):
                 yield from (left, right)
         for term in relation.terms:
-            arg = _of_magnitude(term)
+            arg = of_magnitude(term)
             if arg is not None:
-                yield from (_ZERO, arg, _negative(arg))
+                yield from (ZERO, arg, negative(arg))
 
 
 def _consequences(
-    left: _Point, op: e.ComparisonOperator, right: _Point
-) -> Iterator[tuple[_Point, e.ComparisonOperator, _Point]]:
+    left: Point, op: e.ComparisonOperator, right: Point
+) -> Iterator[tuple[Point, e.ComparisonOperator, Point]]:
     """The relation; and `-x > -2` beside `x < 2`."""
     yield left, op, right
-    if isinstance(left, _Term) and isinstance(right, _Constant):
-        yield _negative(left), _MIRRORED[op], _Constant(-right.value, right.beside)
+    if isinstance(left, Term) and isinstance(right, Constant):
+        yield negative(left), MIRRORED[op], Constant(-right.value, right.beside)

@@ -104,10 +104,7 @@ def expanded(sentence: Sentence, needed: Definitions) -> Sentence | Diagnostic:
         return _too_large(sentence.span)
     if max(_depth(each, depths) for each in conditions(sentence)) > MOST:
         return too_deep(sentence)
-    values: dict[str, e.Expression] = {}
-    for name, value in needed.items():
-        values[name] = _put_in(value, values)
-    return s.with_expressions(sentence, partial(_put_in, values=values))
+    return s.with_expressions(sentence, partial(_put_in, values=needed))
 
 
 def _size(tree: e.Expression, sizes: Mapping[str, int]) -> int:
@@ -127,15 +124,17 @@ def _depth(tree: e.Expression, depths: Mapping[str, int]) -> int:
 
 @deep
 def _put_in(tree: e.Expression, values: Definitions) -> e.Expression:
-    """The expression with the values of its names."""
+    """The expression with the values of its names, and of the names in these."""
     if isinstance(tree, e.Name):
-        return _placed(values[tree.id], tree.span) if tree.id in values else tree
+        return _placed(tree, tree.span, values) if tree.id in values else tree
     return e.with_children(tree, [_put_in(part, values) for part in e.children(tree)])
 
 
-def _placed(tree: e.Expression, span: Span | None) -> e.Expression:
-    """The expression as if it stood there."""
-    placed = e.with_children(tree, [_placed(part, span) for part in e.children(tree)])
+def _placed(tree: e.Expression, span: Span | None, values: Definitions) -> e.Expression:
+    """The expression as if it stood there, from the outside in: each part is made once."""
+    while isinstance(tree, e.Name) and tree.id in values:
+        tree = values[tree.id]
+    placed = e.with_children(tree, [_placed(part, span, values) for part in e.children(tree)])
     match placed:
         case e.Name() | e.Number() | e.Quantity() | e.Negation() | e.Call():
             return replace(placed, span=span)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
 from itertools import product
 from operator import eq, ge, gt, le, lt, ne
 
 import numpy as np
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from compiler.logic import cells, orders, ranges
 from compiler.logic.orders import Exclusion, exclusions, only_possible
 from fretc.logs.signals.measures import Scope
 from fretc.logs.signals.propositions import TRUE, UNKNOWN, truth
@@ -18,6 +20,7 @@ from fretish import expressions as e
 from fretish.diagnostics.source import Source
 from fretish.parser import parse
 from fretish.syntax import Sentence
+from tests.calls import calls
 
 _COMPARE = {"<": lt, "<=": le, ">": gt, ">=": ge, "=": eq, "!=": ne}
 _NAMES = ("x", "y", "z")
@@ -199,3 +202,84 @@ def test_many_thresholds_take_as_many_exclusions() -> None:
 
 def _pairs(found: Iterable[Exclusion]) -> set[tuple[str, ...]]:
     return {tuple(text for text, _ in sorted(each, key=lambda one: not one[1])) for each in found}
+
+
+# What it costs -------------------------------------------------------------------------------
+
+
+def comparisons(shape: str, size: int) -> dict[str, e.Comparison]:
+    return {text: read(text) for i in range(size) for text in SHAPES[shape](i)}
+
+
+SHAPES: Mapping[str, Callable[[int], Sequence[str]]] = {
+    "between": lambda i: (f"x < {i}", f"x > {i + 1}"),
+    "inexact": lambda i: (f"x >= {i}.1", f"x != {i}.1"),
+    "magnitude": lambda i: (f"absReal(x) < {i}",),
+    "of signals of their own": lambda i: (f"x{i} < 3", f"x{i} > 5"),
+}
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_more_thresholds_cost_in_proportion(shape: str) -> None:
+    def cost(size: int) -> int:
+        some = comparisons(shape, size)
+        return calls(lambda: exclusions(some, {}))
+
+    least, small, large = cost(20), cost(40), cost(80)
+    assert large - small < 2.5 * (small - least)
+
+
+@pytest.mark.parametrize(
+    "some",
+    [
+        {**comparisons("between", 30), "x < y": read("x < y")},
+        {f"{i}, {j}": read(f"x{i} < x{j}") for i in range(12) for j in range(i)},
+    ],
+    ids=["thresholds of two signals", "every pair"],
+)
+def test_a_search_that_ends_by_its_limit_excludes_nothing_else(
+    some: Mapping[str, e.Comparison], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def found(steps: int) -> set[Exclusion]:
+        monkeypatch.setattr(orders, "MOST_STEPS", steps)
+        return {*exclusions(some, {})}
+
+    fewer, more = found(30_000), found(orders.MOST_STEPS)
+    assert fewer <= more
+
+
+@given(several, st.integers(0, 200))
+def test_what_is_excluded_before_a_limit_is_impossible(some: list[str], steps: int) -> None:
+    read_ = {text: read(text) for text in some}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(orders, "MOST_STEPS", steps)
+        patch.setattr(ranges, "MOST_STEPS", steps // 10)
+        patch.setattr(ranges, "MOST", steps)
+        patch.setattr(orders, "MOST_POINTS", 6)
+        cut = exclusions(read_, {})
+    possible = valuations(some)
+    assert {*only_possible(tuple(possible), some, cut)} == possible
+
+
+@given(st.lists(st.text("01", min_size=4, max_size=4), min_size=1, max_size=16, unique=True))
+def test_what_no_cell_has_is_excluded_and_nothing_else(columns: list[str]) -> None:
+    made = cells.exclusions(columns, 1_000)
+    every = tuple(
+        tuple(map(bool, map(int, text))) for text in map("".join, product("01", repeat=4))
+    )
+    left = {
+        values for values in every if not any(all(values[i] == v for i, v in ex) for ex in made)
+    }
+    assert left == {tuple(char == "1" for char in text) for text in columns}
+    for each in made:
+        for one in each:
+            rest = {*each} - {one}
+            assert any(all((text[i] == "1") == v for i, v in rest) for text in columns)
+
+
+def test_modes_exclude_one_another_in_pairs() -> None:
+    words = tuple(f"m{i}" for i in range(60))
+    compared = {word: e.Comparison("=", e.Name("mode"), e.Word(word)) for word in words}
+    found = exclusions(compared, {}, {"mode": words})
+    assert len(found) == 60 * 59 // 2 + 1
+    assert {tuple(value for _, value in each) for each in found} == {(True, True), (False,) * 60}

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import Formalized
+from fretish import expressions as e
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.definitions import expanded, used
 from fretish.bindings.reader import read_bindings
@@ -17,6 +18,7 @@ from fretish.documents import requirements
 from fretish.parser import parse, parse_value
 from fretish.printer import sentence as printed
 from fretish.syntax import Sentence
+from tests.calls import calls
 
 HEAD = """\
 [clock]
@@ -208,3 +210,28 @@ def test_it_is_the_text_with_the_values_in_parentheses(values: dict[str, str], t
         whole = re.sub(rf"\b{name}\b", f"({values[name]})", whole)
     expected = parse(Source("r", whole).span())
     assert expanded(written, used(written, definitions)) == expected
+
+
+def test_a_chain_costs_in_proportion_to_its_length() -> None:
+    def cost(length: int) -> int:
+        values = {f"d{i}": f"d{i - 1} xor p{i}" for i in range(1, length)}
+        needed = {
+            name: value
+            for name, text in values.items()
+            if not isinstance(value := parse_value(Source(name, text).span()), Diagnostic)
+        }
+        sentence = parse(Source("r.fret", f"the c shall satisfy d{length - 1}").span())
+        assert isinstance(sentence, Sentence)
+        return calls(lambda: expanded(sentence, used(sentence, needed)))
+
+    least, small, large = cost(25), cost(50), cost(100)
+    assert large - small < 2.5 * (small - least)
+
+
+def test_a_long_chain_of_other_names_is_one_name() -> None:
+    needed = {f"d{i}": e.Name(f"d{i - 1}") for i in range(1, 40_000)}
+    sentence = parse(Source("r.fret", "the c shall satisfy d39999").span())
+    assert isinstance(sentence, Sentence)
+    found = expanded(sentence, used(sentence, needed))
+    assert isinstance(found, Sentence)
+    assert found.response == e.Name("d0")

@@ -1,0 +1,115 @@
+"""What comparisons of one term cannot be together, where it is compared with constants or words.
+
+The constants cut the line into cells, and the term lies in one. Two constants that are no 32-bit
+floats may be one number: then a cell is equal to both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import islice
+from operator import itemgetter
+
+from compiler.logic import cells
+from compiler.logic.relations import ZERO, Constant, Point, Relation, Term, is_word, of_magnitude
+from fretish import expressions as e
+
+MOST = 10_000_000
+"""Cells times comparisons; with more, the further comparisons are left possible."""
+MOST_STEPS = 5_000_000
+"""Of the search among cells, about a second."""
+_TRUE: Mapping[e.ComparisonOperator, str] = {
+    "<": "<", "<=": "<=", ">": ">", ">=": ">=", "=": "=", "!=": "<>",
+}  # fmt: skip
+"""How the left side lies to the right one where the comparison is true."""
+_TABLES = [
+    str.maketrans({sign: str(int(sign in true)) for sign in "<=>"}) for true in _TRUE.values()
+]
+
+
+def is_of_one_term(relations: Mapping[str, Relation]) -> bool:
+    """Whether all compare the same term with constants, or with words."""
+    (left, *others) = dict.fromkeys(relation.left for relation in relations.values())
+    if others or not isinstance(left, Term) or is_word(left):
+        return False
+    return all(isinstance(each.right, Constant) for each in relations.values()) or (
+        isinstance(left.text, e.Name)
+        and all(is_word(each.right) and each.op in ("=", "!=") for each in relations.values())
+    )
+
+
+def exclusions(
+    relations: Mapping[str, Relation], words: Mapping[str, Sequence[str]], share: Fraction
+) -> Sequence[tuple[tuple[str, bool], ...]]:
+    """The least sets of literals that are true in no cell.
+
+    Args:
+        relations: of one term, by their names.
+        words: what each enumerated signal may be.
+        share: of the steps that it may take.
+    """
+    names = tuple(relations)
+    while True:
+        some = [relations[name] for name in names]
+        most = int(MOST * share) // len(some)
+        columns = tuple(islice(_columns(some, words), most + 1))
+        if len(columns) <= most or len(names) == 1:
+            break
+        names = names[: len(names) // 2]
+    found = cells.exclusions(columns, int(MOST_STEPS * share))
+    return [tuple((names[place], value) for place, value in each) for each in found]
+
+
+def _columns(relations: Sequence[Relation], words: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    """For each cell `1` or `0` for each comparison."""
+    points, signs = _signs(relations, words)
+    places = {point: place for place, point in enumerate(points)}
+    rows = {op: row * len(points) for row, op in enumerate(_TRUE)}
+    chosen = itemgetter(*(rows[each.op] + places[each.right] for each in relations))
+    for each in signs:
+        yield "".join(chosen("".join(each.translate(table) for table in _TABLES)))
+
+
+def _signs(
+    relations: Sequence[Relation], words: Mapping[str, Sequence[str]]
+) -> tuple[Sequence[Point], Iterator[str]]:
+    """What the term is compared with; and for each cell, how it lies to each of them there."""
+    limits = {each.right for each in relations if isinstance(each.right, Constant)}
+    term = relations[0].left
+    assert isinstance(term, Term)
+    if not limits:
+        spoken = tuple(dict.fromkeys(each.right for each in relations))
+        return spoken, _among(
+            spoken, words.get(term.text.id, ()) if isinstance(term.text, e.Name) else ()
+        )
+    is_magnitude = of_magnitude(term) is not None
+    row = sorted(limits | {ZERO} if is_magnitude else limits, key=lambda each: each.value)
+    least = row.index(ZERO) if is_magnitude else None
+    return row, (signs for signs in _on_line(row) if least is None or signs[least] != "<")
+
+
+def _on_line(row: Sequence[Constant]) -> Iterator[str]:
+    """Between the constants, and at each, together with those after it that may be the same."""
+    ends = [each.ends for each in row]
+    for i in range(len(row) + 1):
+        yield ">" * i + "<" * (len(row) - i)
+        least = None
+        for j in range(i, len(row)):
+            if least is not None and least < ends[j][0]:
+                break
+            least = ends[j][1] if least is None else min(least, ends[j][1])
+            yield ">" * i + "=" * (j + 1 - i) + "<" * (len(row) - j - 1)
+
+
+def _among(spoken: Sequence[Point], words: Sequence[str]) -> Iterator[str]:
+    """One of the words, or another one where there is one."""
+    for i in range(len(spoken)):
+        yield "<" * i + "=" + "<" * (len(spoken) - i - 1)
+    texts = {
+        each.text.text
+        for each in spoken
+        if isinstance(each, Term) and isinstance(each.text, e.Word)
+    }
+    if not words or not texts.issuperset(words):
+        yield "<" * len(spoken)
