@@ -50,7 +50,7 @@ from monitors.interceptor import Options
 
 _MORE = "as many more, at least one, as `latency` and `braking` fill together"
 ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
-INSTALL = "z3 is not installed: pip install 'fretc[bounds]'"
+INSTALL = "z3 is not installed: pip install z3-solver"
 _SMALL = ((1, 0, 0, 0), (1, 1, 1, 1), (2, 1, 1, 2), (1, 2, 2, 0), (3, 4, 1, 2))
 """Cells to a tick, latency, losses in a row, braking: for comparing the twin with the texts."""
 _QUERY = 20_000
