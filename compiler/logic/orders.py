@@ -17,8 +17,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeVar
 
-from compiler.logic import ranges
-from compiler.logic.relations import (
+from compiler.logic.ordering import ranges
+from compiler.logic.ordering.relations import (
     MIRRORED,
     ZERO,
     Constant,

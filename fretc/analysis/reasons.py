@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import assert_never
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import TRAITS, Demand, Kind, Trait, obligation
@@ -17,7 +18,7 @@ from fretc.analysis.games.game import Game
 from fretc.analysis.games.plays import Play
 from fretc.analysis.games.replay import broken, columns
 from fretish.printer import expression
-from fretish.syntax import Before, Timing, Until, ends_with_run
+from fretish.syntax import Timing, ends_with_run, stop
 
 _MOST_TERMS = 3
 """Alternatives that a demand is shown with."""
@@ -111,25 +112,33 @@ def _limit(rule: Formalized, alphabet: Alphabet, begun: int | None, last: int) -
     scope = rule.sentence.scope
     demand = _demand(rule)
     match demand.kind:
-        case Kind.WITHIN if begun is not None and begun < last == begun + demand.ticks:
-            yield f"by tick {last}"
-        case Kind.FOR if (
-            begun is not None and demand.ticks and ends_with_run(scope.kind if scope else None)
-        ):
-            yield f"up to tick {begun + demand.ticks}"
-        case Kind.UNTIL | Kind.BEFORE:
-            yield f"{demand.kind.name.lower()} `{_stop(rule.written.timing)}`"
+        case Kind.WITHIN:
+            if begun is not None and begun < last == begun + demand.ticks:
+                yield f"by tick {last}"
+        case Kind.FOR:
+            kind = scope.kind if scope else None
+            if begun is not None and demand.ticks and ends_with_run(kind):
+                yield f"up to tick {begun + demand.ticks}"
+        case Kind.UNTIL:
+            yield f"until `{_stop(rule.written.timing)}`"
             names = f.atoms(demand.stop)
             inputs = {alphabet.labels.get(number) for number in alphabet.inputs}
-            if demand.kind is Kind.UNTIL and names and inputs.issuperset(names):
+            if names and inputs.issuperset(names):
                 yield "which the environment withholds"
-        case _:
+        case Kind.BEFORE:
+            yield f"before `{_stop(rule.written.timing)}`"
+        case Kind.IMMEDIATELY | Kind.NEXT | Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
             return
+        case Kind.AFTER | Kind.NOT_AFTER:
+            return
+        case _:
+            assert_never(demand.kind)
 
 
 def _stop(timing: Timing) -> str:
-    assert isinstance(timing, Until | Before)
-    return expression(timing.stop)
+    condition = stop(timing)
+    assert condition is not None
+    return expression(condition)
 
 
 def _demand(rule: Formalized) -> Demand:

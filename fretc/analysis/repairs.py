@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations, islice, permutations
+from typing import Any, assert_never
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import Formalized
@@ -25,7 +26,21 @@ from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import expression
 from fretish.printer import sentence as printed
-from fretish.syntax import Duration, For, TimeUnit, Within
+from fretish.syntax import (
+    After,
+    Always,
+    Before,
+    Duration,
+    Eventually,
+    Finally,
+    For,
+    Immediately,
+    Never,
+    Next,
+    TimeUnit,
+    Until,
+    Within,
+)
 
 MOST_ASSUMPTIONS = 4
 """Of a conflict: more are no help."""
@@ -150,8 +165,12 @@ def _least_change(setting: _Setting, rule: Formalized) -> Formalized | None:
         case For():
             least = _first(lambda less: is_enough(-less), 1 - rule.ticks, 0)
             least = None if least is None else -least
-        case _:
+        case Immediately() | Next() | Finally() | Eventually() | Always() | Never():
             return None
+        case After() | Until() | Before():  # a longer `after` is not weaker
+            return None
+        case _:
+            assert_never(timing)
     return None if least is None else _bounded(rule, least)
 
 
@@ -169,8 +188,7 @@ def _first(is_enough: Callable[[int], bool], low: int, high: int) -> int | None:
 
 
 def _bounded(rule: Formalized, ticks: int) -> Formalized | None:
-    timing = rule.written.timing
-    assert isinstance(timing, Within | For)
+    timing: Any = rule.written.timing  # one with a duration
     duration = _duration(ticks, timing.duration.unit, rule.clock)
     changed = replace(rule.written, timing=replace(timing, duration=duration))
     found = _formalized(rule.id, printed(changed), rule)

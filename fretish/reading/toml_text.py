@@ -33,6 +33,8 @@ _PART = re.compile(
     re.VERBOSE,
 )
 """A part of a header's name, and whether another one follows."""
+_MOST_PARTS = 16
+"""Of a header's name that are looked at: no table of ours has as many."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +97,7 @@ def _headers(text: str) -> Mapping[tuple[str, ...], _Header]:
     for (_, begin), end in zip(begins, ends, strict=False):
         path: tuple[str, ...] = ()
         part = first = _PART.match(text, begin)
-        while part is not None and first is not None:
+        while part is not None and first is not None and len(path) < _MOST_PARTS:
             path = (*path, part["text"] or part["literal"] or part["bare"] or "")
             name = first.start("name"), part.end("name")
             found.setdefault(path, _Header(name, (part.end(), end)))

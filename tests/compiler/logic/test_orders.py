@@ -12,7 +12,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from compiler.logic import cells, orders, ranges
+from compiler.logic import orders
+from compiler.logic.ordering import cells, ranges
 from compiler.logic.orders import Exclusion, exclusions, only_possible
 from fretc.logs.signals.measures import Scope
 from fretc.logs.signals.propositions import TRUE, UNKNOWN, truth

@@ -11,8 +11,16 @@ from fractions import Fraction
 from itertools import islice
 from operator import itemgetter
 
-from compiler.logic import cells
-from compiler.logic.relations import ZERO, Constant, Point, Relation, Term, is_word, of_magnitude
+from compiler.logic.ordering import cells
+from compiler.logic.ordering.relations import (
+    ZERO,
+    Constant,
+    Point,
+    Relation,
+    Term,
+    is_word,
+    of_magnitude,
+)
 from fretish import expressions as e
 
 MOST = 10_000_000

@@ -1,0 +1,1 @@
+"""What order alone says of comparisons: of one term by cells of its range."""
