@@ -215,6 +215,8 @@ def _result(future: Future) -> LogAudit | None:
         if isinstance(result, LogAudit):
             return result
         raise _FleetError(_other_edition(f"the worker {result} has another fretc than this one"))
+    if future.status in ("lost", "pending"):  # its worker died before the result was fetched
+        return None
     if future.status != "error":
         raise _FleetError(_unreachable(future.client.scheduler_info()["address"], "it has gone"))
     error = future.exception()

@@ -12,6 +12,7 @@ import urllib.request
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -99,6 +100,11 @@ def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
     there = unpacked(packed(plan()))
     assert there == plan()
     assert there.declarations == plan().declarations
+
+
+@pytest.mark.parametrize("status", ["lost", "pending"])
+def test_a_result_that_dies_with_its_worker_is_made_again(status: str) -> None:
+    assert fleet._result(SimpleNamespace(status=status)) is None
 
 
 @pytest.mark.slow
