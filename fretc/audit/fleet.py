@@ -250,10 +250,19 @@ def _plan(data: bytes) -> Plan:
 @contextlib.contextmanager
 def _in(folder: str) -> Iterator[None]:
     """In the folder of the one who asks, where there is one of that name: logs keep their names."""
-    with contextlib.ExitStack() as stack:
-        with contextlib.suppress(OSError):
-            stack.enter_context(contextlib.chdir(folder))
+    try:
+        before = os.getcwd()
+    except OSError:  # the worker began in a folder that is no more
+        before = "/"
+    with contextlib.suppress(OSError):
+        os.chdir(folder)
+    try:
         yield
+    finally:
+        try:
+            os.chdir(before)
+        except OSError:
+            os.chdir("/")
 
 
 # Diagnostics ----------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
 """The same audit on Dask: a real cluster of two processes, one of which is killed."""
 
+import contextlib
 import os
 import re
 import shutil
@@ -105,6 +106,17 @@ def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
 @pytest.mark.parametrize("status", ["lost", "pending"])
 def test_a_result_that_dies_with_its_worker_is_made_again(status: str) -> None:
     assert fleet._result(SimpleNamespace(status=status)) is None
+
+
+def test_a_worker_whose_own_folder_is_gone_finds_the_logs(tmp_path: Path) -> None:
+    gone, folder = tmp_path / "gone", tmp_path / "folder"
+    gone.mkdir()
+    folder.mkdir()
+    with contextlib.chdir(tmp_path):
+        os.chdir(gone)
+        gone.rmdir()
+        with fleet._in(str(folder)):
+            assert Path.cwd() == folder
 
 
 @pytest.mark.slow
