@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations, islice, permutations
-from typing import Any, assert_never
+from typing import assert_never, cast
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import Formalized
@@ -188,7 +188,7 @@ def _first(is_enough: Callable[[int], bool], low: int, high: int) -> int | None:
 
 
 def _bounded(rule: Formalized, ticks: int) -> Formalized | None:
-    timing: Any = rule.written.timing  # one with a duration
+    timing = cast("Within | For", rule.written.timing)
     duration = _duration(ticks, timing.duration.unit, rule.clock)
     changed = replace(rule.written, timing=replace(timing, duration=duration))
     found = _formalized(rule.id, printed(changed), rule)
