@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from importlib.util import find_spec
 from itertools import chain
 
 from compiler.formalization.formalized import Formalized
@@ -164,8 +163,8 @@ def _built(
 
 
 def _alphabet(rules: Sequence[Formalized], roles: Roles, fresh: Numbers, past: Role) -> Alphabet:
-    """With the numbers that comparisons are about, where z3 is installed."""
-    if not any(comparisons(rule) or rule.declarations for rule in rules) or not find_spec("z3"):
+    """With the numbers that comparisons are about; z3 is imported where there are some."""
+    if not any(comparisons(rule) or rule.declarations for rule in rules):
         return Propositions(rules, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 
