@@ -6,9 +6,10 @@ Spans do not compare: two expressions are equal when they say the same, wherever
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Literal, assert_never
+from typing import Any, Literal, assert_never
 
 from fretish.diagnostics.source import Span
 
@@ -16,6 +17,15 @@ ComparisonOperator = Literal["<", "<=", ">", ">=", "=", "!="]
 Order = Literal["<", "<=", ">", ">="]
 MIRRORED: Mapping[str, Order] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 """What says the same when both sides are exchanged."""
+COMPARE: Mapping[ComparisonOperator, Callable[[Any, Any], Any]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "=": operator.eq,
+    "!=": operator.ne,
+}
+"""Of numbers, or of what stands for them."""
 ArithmeticOperator = Literal["+", "-", "*", "/", "mod", "^"]
 MOST_EXPONENT = 16
 """Of a power that is computed: it is a product."""

@@ -222,7 +222,7 @@ class Writer:
             return "None"
         left, right, _ = _in_one_unit(left, right)
         if left.exact is not None and right.exact is not None:
-            return str(_holds(op, left.exact, right.exact))
+            return str(e.COMPARE[op](left.exact, right.exact))
         text = f'compared({left.text}, "{op}", {right.text})'
         if max(map(_nesting, (text, *itertools.chain(*self.earlier)))) > _MOST_NESTING:
             raise NotCompiledError
@@ -390,19 +390,3 @@ _MOST_NESTING = 150
 def _nesting(text: str) -> int:
     """How many parentheses are within each other."""
     return max(itertools.accumulate((c == "(") - (c == ")") for c in text))
-
-
-def _holds(op: e.ComparisonOperator, left: Fraction, right: Fraction) -> bool:
-    match op:
-        case "<":
-            return left < right
-        case "<=":
-            return left <= right
-        case ">":
-            return left > right
-        case ">=":
-            return left >= right
-        case "=":
-            return left == right
-        case "!=":
-            return left != right

@@ -139,7 +139,7 @@ class Atoms:
                 return read(left) == read(right)
             case e.Comparison(op, left, right):
                 a, b = (self._number(side, is_base=is_base) for side in (left, right))
-                return _compared(op, a, b)
+                return e.COMPARE[op](a, b)
             case _:
                 raise BeyondError("is no comparison of numbers")
 
@@ -244,22 +244,6 @@ def _constant(part: e.Expression) -> Term:
     if value is None:
         raise BeyondError("computes with a number that there is not, or that is too long")
     return _exact(value)
-
-
-def _compared(op: e.ComparisonOperator, left: Term, right: Term) -> Term:
-    match op:
-        case "<":
-            return left < right
-        case "<=":
-            return left <= right
-        case ">":
-            return left > right
-        case ">=":
-            return left >= right
-        case "=":
-            return left == right
-        case "!=":
-            return left != right
 
 
 def _computed(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
