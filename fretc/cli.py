@@ -44,6 +44,7 @@ _COMMANDS = Registry(
         "check": "fretc.commands.check:check",
         "analyze": "fretc.commands.analyze:analyze",
         "audit": "fretc.commands.audit:audit",
+        "coverage": "fretc.commands.coverage:coverage",
         "report": "fretc.commands.report:report",
         "trends": "fretc.commands.trends:trends",
         "lock": "fretc.commands.review:lock",

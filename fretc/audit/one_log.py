@@ -9,10 +9,12 @@ from statistics import median
 
 import numpy as np
 
-from fretc.audit.evidence.schema import Health
+from compiler.situations.situations import Situation
+from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import Evidence, health
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
 from fretc.audit.measurements.margins import Margin, margins, worst
+from fretc.audit.measurements.situations import encounters
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
@@ -49,6 +51,8 @@ class MonitoredRequirement:
     """Of a requirement with a probability: what its triggers came to."""
     counted: tuple[str, ...] = ()
     """The propositions that `count` needs; the monitor may do without some of them."""
+    situations: tuple[Situation, ...] = ()
+    """In which runs are looked at; none: that is not measured."""
 
     @property
     def propositions(self) -> tuple[str, ...]:
@@ -202,12 +206,28 @@ def _evidence(
         hashes={**hash_of(recording), **requirement.hashes},
         health=found,
         assumptions=_assumed(declarations, requirement),
+        situations=_situations(requirement, columns, ticks, at),
     )
     evidence = replace(evidence, reason=_reason(evidence, recording, declarations))
     if requirement.count is None:
         return evidence
     evidence = replace(evidence, hashes={**evidence.hashes, **hash_of_messages(recording)})
     return _counted(evidence, _trials(requirement.count, columns, truths))
+
+
+def _situations(
+    requirement: MonitoredRequirement,
+    columns: Mapping[str, Column],
+    ticks: int,
+    at: Callable[[int], Moment],
+) -> Situations | None:
+    if not requirement.situations:
+        return None
+    found = [*encounters(requirement.situations, columns, ticks)]
+    return Situations(
+        {each.key: at(each.seen) for each in found if each.seen is not None},
+        {each.key: at(each.perhaps) for each in found if each.perhaps is not None},
+    )
 
 
 def _counted(evidence: Evidence, trials: Trials) -> Evidence:

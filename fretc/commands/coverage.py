@@ -1,0 +1,132 @@
+"""`fretc coverage`: what recorded runs have exercised of each requirement.
+
+`fretc.audit` reads the logs, `fretc.coverage` counts; this module reads the options and prints.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    evidence_option,
+    format_option,
+    is_given,
+    jobs_option,
+    requirements_option,
+)
+from fretc.terminal.output import (
+    BAD,
+    NOT_SHOWN,
+    SHOWN,
+    coloured,
+    say_also,
+    say_briefly,
+    stop,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from compiler.project.folder import Project
+    from fretc.audit.evidence.briefs import EvidenceSource
+    from fretc.audit.plan import Plan
+
+
+@click.command(short_help="Say which situations of requirements recorded runs have shown.")
+@click.argument("paths", nargs=-1, type=PATH, metavar="[LOG]...")
+@requirements_option
+@bindings_option
+@evidence_option
+@format_option()
+@click.option("-v", "--verbose", is_flag=True, help="List what was seen, and all runs, too.")
+@jobs_option
+def coverage(
+    paths: tuple[str, ...],
+    requirements: str,
+    bindings: str | None,
+    evidence: str,
+    form: str,
+    verbose: bool,
+    jobs: int,
+) -> None:
+    """Say which situations of requirements recorded runs have shown, and which they never have.
+
+    LOG is what `fretc audit` takes. Without one, the evidence of an audit says what its runs have
+    shown. A situation is a way in which a run can meet a requirement: triggered again while a
+    demand is open, answered at the last tick allowed, and others (docs/coverage.md).
+
+    Exit status: 0 every situation was seen, 2 bad use or bad input, 3 some were not.
+    """
+    from fretc.coverage import record, text_output
+    from fretc.coverage.coverage import coverage as found_in
+    from fretish.diagnostics.rendering import visible
+
+    if paths and is_given("evidence"):
+        stop(
+            Diagnostic(
+                Code.BAD_USAGE,
+                "logs and `--evidence` are both named: runs are in one of them",
+                help="leave out one of the two",
+            )
+        )
+    source, titles = (
+        _audited(paths, requirements, bindings, jobs) if paths else (_recorded(evidence), {})
+    )
+    covered = found_in(source)
+    if form == "json":
+        click.echo(record.text(covered), nl=False)
+    else:
+        found = text_output.lines(covered, titles, every=verbose)
+        click.echo(coloured((visible(text), colour) for text, colour in found), nl=False)
+    raise SystemExit(SHOWN if covered.is_complete else NOT_SHOWN)
+
+
+def _recorded(evidence: str) -> EvidenceSource:
+    from fretc.audit.store.anywhere import required_source
+
+    source = required_source(evidence)
+    if isinstance(source, Diagnostic):
+        stop(source)
+    return source
+
+
+def _audited(
+    paths: Sequence[str], requirements: str, bindings: str | None, jobs: int
+) -> tuple[EvidenceSource, dict[str, str]]:
+    """The audit of some logs, of which nothing is written, and what requirements are called."""
+    from fretc.audit.many_logs import locally
+    from fretc.commands.audit_logs import selected
+    from fretc.commands.audit_progress import audit_in_memory
+
+    project, plan = planned_project(requirements, bindings)
+    logs, _ = selected(paths, None, None, 0)
+    audit = audit_in_memory(plan, logs, locally(jobs))
+    say_also(project.answered(audit.diagnostics), project.diagnostics)
+    if not audit.read:
+        raise SystemExit(BAD)
+    return audit.source, {each.id: each.name for each in project.requirements}
+
+
+def planned_project(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
+    """The project, and the plan to audit what of it can be judged; a mistake stops the command."""
+    from compiler.project.folder import load
+    from compiler.project.paths import beside, requirement_files
+    from fretc.audit.plan import Plan, planned
+
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+    project = load(files, bindings or beside(requirements, "bindings.toml"))
+    say_briefly(project.diagnostics, requirements)
+    if has_errors(project.general):
+        raise SystemExit(BAD)
+    plan = planned(project)
+    if not isinstance(plan, Plan):
+        stop(*(reason for reason in plan if reason not in project.diagnostics))
+    say_also(plan.refusals, project.diagnostics)
+    return project, plan
