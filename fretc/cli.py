@@ -45,6 +45,7 @@ _COMMANDS = Registry(
         "analyze": "fretc.commands.analyze:analyze",
         "audit": "fretc.commands.audit:audit",
         "coverage": "fretc.commands.coverage:coverage",
+        "mutate": "fretc.commands.mutate:mutate",
         "report": "fretc.commands.report:report",
         "trends": "fretc.commands.trends:trends",
         "lock": "fretc.commands.review:lock",

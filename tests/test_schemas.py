@@ -11,10 +11,12 @@ from compiler.logic import claims
 from fretc.analysis import evidence, findings
 from fretc.audit.evidence import schema
 from fretc.audit.store import manifest
+from fretc.coverage import mutation_record, record
 
 SCHEMAS = {"evidence": schema.schema(), "verification": claims.schema()}
 SCHEMAS |= {"store": manifest.schema(), "analysis": findings.schema()}
 SCHEMAS |= {"analyzed-set": evidence.schema()}
+SCHEMAS |= {"coverage": record.schema(), "mutation": mutation_record.schema()}
 
 
 @pytest.mark.parametrize(("name", "made"), SCHEMAS.items())

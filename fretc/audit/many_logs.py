@@ -15,11 +15,11 @@ from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of, totals
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
 from fretc.audit.evidence.briefs import Brief, EvidenceSource, brief
+from fretc.audit.evidence.claim import Claim
 from fretc.audit.evidence.courses import course, no_way
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import Evidence
-from fretc.audit.evidence.claim import Claim
 from fretc.audit.evidence.schema import (
     SCHEMA,
     Bindings,

@@ -104,9 +104,7 @@ def coverage(source: EvidenceSource) -> Coverage:
         of_requirement(source, each.id, tuple(each.situations or ()), run_of)
         for each in source.requirements
     )
-    aims = [
-        frozenset(each.seen) for one in found for each in one.of(Standing.SEEN)
-    ]
+    aims = [frozenset(each.seen) for one in found for each in one.of(Standing.SEEN)]
     return Coverage(names, found, least_runs(aims))
 
 

@@ -72,7 +72,9 @@ def document(covered: c.Coverage) -> Document:
         fretc=__version__,
         runs=covered.runs,
         requirements=tuple(
-            Requirement(each.id, tuple(map(_situation, each.situations)), each.measured, each.unmeasured)
+            Requirement(
+                each.id, tuple(map(_situation, each.situations)), each.measured, each.unmeasured
+            )
             for each in covered.requirements
         ),
         least_runs=covered.least.runs,

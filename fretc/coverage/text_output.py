@@ -127,7 +127,9 @@ def totals(covered: Coverage) -> Line:
     every = [each for one in covered.requirements for each in one.situations]
     counts = Counter(each.standing for each in every)
     rest = [
-        f"{counts[standing]:,} {standing.value}" for standing in list(Standing)[1:] if counts[standing]
+        f"{counts[standing]:,} {standing.value}"
+        for standing in list(Standing)[1:]
+        if counts[standing]
     ]
     blank = sum(not each.situations for each in covered.requirements)
     rest += [f"{_times(blank, 'requirement')} not measured"] if blank else []

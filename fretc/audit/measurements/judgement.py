@@ -63,9 +63,7 @@ def judged(
         end: what a demand is that is open at the end.
         engine: how the monitor is run.
     """
-    (judgement,) = each_judged(
-        monitor, columns, cut, ticks, intact=intact, end=end, engine=engine
-    )
+    (judgement,) = each_judged(monitor, columns, cut, ticks, intact=intact, end=end, engine=engine)
     return judgement
 
 
