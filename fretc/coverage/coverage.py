@@ -6,17 +6,19 @@ look, or could not, is counted apart: it has neither seen anything nor shown tha
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from enum import Enum
+from enum import StrEnum
 
+from compiler.files.records import UnsetType
 from fretc.audit.evidence.briefs import EvidenceSource
-from fretc.audit.evidence.schema import Moment
+from fretc.audit.evidence.schema import Moment, Requirement, Situations
 from fretc.audit.evidence.schema import Situation as Named
 from fretc.coverage.least_runs import LeastRuns, least_runs
 
 
-class Standing(Enum):
+class Standing(StrEnum):
     """What all runs together show of a situation."""
 
     SEEN = "seen"
@@ -58,17 +60,19 @@ class RequirementCoverage:
         return tuple(each for each in self.situations if each.standing is standing)
 
     @property
+    def short(self) -> str:
+        """`7 of 11 situations seen`."""
+        if not self.situations or not self.measured:
+            return "situations not measured"
+        return f"{len(self.of(Standing.SEEN))} of {len(self.situations)} situations seen"
+
+    @property
     def text(self) -> str:
         """`7 of 11 situations seen; perhaps: ...; never: ...`."""
-        if not self.situations:
-            return "situations not measured"
-        seen, every = len(self.of(Standing.SEEN)), len(self.situations)
-        if not self.measured:
-            return f"0 of {every} situations seen: not measured"
-        parts = [f"{seen} of {every} situations seen"]
+        parts = [self.short]
         for standing in (Standing.PERHAPS, Standing.NEVER):
             words = ", ".join(each.words for each in self.of(standing))
-            parts += [f"{standing.value}: {words}"] if words else []
+            parts += [f"{standing}: {words}"] if words else []
         return "; ".join(parts)
 
 
@@ -91,7 +95,7 @@ class Coverage:
 
 
 def coverage(source: EvidenceSource) -> Coverage:
-    """What the runs of some evidence have exercised.
+    """What the runs of some evidence have exercised, and which of them would be enough for that.
 
     Args:
         source: in which the results of a run stand together.
@@ -99,86 +103,82 @@ def coverage(source: EvidenceSource) -> Coverage:
     Raises:
         StoreError: it turns out not to be what it must be.
     """
-    names, run_of = _runs(source)
-    found = tuple(
-        of_requirement(source, each.id, tuple(each.situations or ()), run_of)
-        for each in source.requirements
-    )
+    names, found = of_all_runs(source)
     aims = [frozenset(each.seen) for one in found for each in one.of(Standing.SEEN)]
     return Coverage(names, found, least_runs(aims))
 
 
-def _runs(source: EvidenceSource) -> tuple[tuple[str, ...], Mapping[int, int]]:
-    """The names of the runs, and the run of each result by the place of the result."""
+def of_all_runs(
+    source: EvidenceSource,
+) -> tuple[tuple[str, ...], tuple[RequirementCoverage, ...]]:
+    """The names of the runs, and what they show of each requirement."""
     names: list[str] = []
     known: dict[tuple[str, str], int] = {}
-    run_of: dict[int, int] = {}
+    places: dict[str, dict[int, int]] = {}
     for place, brief in source.briefs():
         key = brief.run, brief.content
         if key not in known:
             known[key] = len(names)
             names.append(brief.run)
-        run_of[place] = known[key]
-    return tuple(names), run_of
+        places.setdefault(brief.requirement, {})[place] = known[key]
+    return tuple(names), of_requirements(source, places)
 
 
-def of_requirement(
-    source: EvidenceSource,
-    id: str,
-    situations: Sequence[Named],
-    run_of: Mapping[int, int],
-) -> RequirementCoverage:
-    """What some results show of one requirement.
+def of_requirements(
+    source: EvidenceSource, places: Mapping[str, Mapping[int, int]]
+) -> tuple[RequirementCoverage, ...]:
+    """What some results show of each requirement of the evidence, in their order.
 
     Args:
         source: has them.
-        id: of the requirement.
-        situations: all that it has, in their order.
-        run_of: place of a result → its run; results that are not in it do not count.
+        places: requirement → the place of each result that counts → its run.
     """
-    measured: list[int] = []
-    unmeasured: list[int] = []
-    seen: dict[str, dict[int, Moment]] = {each.key: {} for each in situations}
-    perhaps: dict[str, dict[int, Moment]] = {each.key: {} for each in situations}
-    for place, shown in source.situations([id]):
-        run = run_of.get(place)
-        if run is None:
-            continue
-        (measured if shown else unmeasured).append(run)
-        for table, moments in ((seen, shown.seen), (perhaps, shown.perhaps)) if shown else ():
+    ledgers = {each.id: _Ledger(each) for each in source.requirements}
+    of_place = {place: id for id, some in places.items() for place in some}
+    for place, shown in source.situations(ledgers.keys()):
+        id = of_place.get(place)
+        if id in ledgers:
+            ledgers[id].add(places[id][place], shown)
+    return tuple(each.coverage() for each in ledgers.values())
+
+
+class _Ledger:
+    """What is known of one requirement, while results are read."""
+
+    def __init__(self, requirement: Requirement) -> None:
+        self._id, self._situations = requirement.id, requirement.situations or ()
+        self._seen: dict[str, dict[int, Moment]] = {each.key: {} for each in self._situations}
+        self._perhaps: dict[str, dict[int, Moment]] = {each.key: {} for each in self._situations}
+        self._measured: dict[int, None] = {}
+        self._unmeasured: dict[int, None] = {}
+
+    def add(self, run: int, shown: Situations | UnsetType) -> None:
+        """One more result."""
+        if not shown:
+            self._unmeasured[run] = None
+            return
+        self._measured[run] = None
+        for table, moments in ((self._seen, shown.seen), (self._perhaps, shown.perhaps)):
             for key, moment in moments.items():
                 if key in table:
                     table[key].setdefault(run, moment)
-    return RequirementCoverage(
-        id,
-        tuple(
-            RecordedSituation(
-                each.key,
-                each.words,
-                seen[each.key],
-                perhaps[each.key],
-                _standing(seen[each.key], perhaps[each.key], measured),
-            )
-            for each in situations
-        ),
-        tuple(dict.fromkeys(measured)),
-        tuple(dict.fromkeys(unmeasured)),
-    )
+
+    def coverage(self) -> RequirementCoverage:
+        """All of it."""
+        situations = tuple(map(self._situation, self._situations))
+        return RequirementCoverage(
+            self._id, situations, tuple(self._measured), tuple(self._unmeasured)
+        )
+
+    def _situation(self, one: Named) -> RecordedSituation:
+        seen, perhaps = self._seen[one.key], self._perhaps[one.key]
+        perhaps = {run: moment for run, moment in perhaps.items() if run not in seen}
+        standing = Standing.NEVER if self._measured else Standing.NOT_MEASURED
+        if seen or perhaps:
+            standing = Standing.SEEN if seen else Standing.PERHAPS
+        return RecordedSituation(one.key, one.words, seen, perhaps, standing)
 
 
-def _standing(
-    seen: Mapping[int, Moment], perhaps: Mapping[int, Moment], measured: Collection[int]
-) -> Standing:
-    if seen:
-        return Standing.SEEN
-    if perhaps:
-        return Standing.PERHAPS
-    return Standing.NEVER if measured else Standing.NOT_MEASURED
-
-
-def unseen(covered: Coverage) -> Iterator[tuple[RequirementCoverage, RecordedSituation]]:
-    """Every situation that no run has shown for certain, in order."""
-    for requirement in covered.requirements:
-        for situation in requirement.situations:
-            if situation.standing is not Standing.SEEN:
-                yield requirement, situation
+def counts(requirements: Iterable[RequirementCoverage]) -> Counter[Standing]:
+    """How many situations of all requirements there are of each standing."""
+    return Counter(each.standing for one in requirements for each in one.situations)

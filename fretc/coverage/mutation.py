@@ -89,11 +89,11 @@ def inquiry(project: Project, plan: Plan) -> Inquiry:
     suspects = tuple(map(_suspects, rules.values()))
     declarations = project.declarations
     assert declarations is not None, "there is a plan"
-    for own in (mutant.rule.declarations for each in suspects for mutant in each.mutants):
+    for own in (mutant.rule.declarations for one in suspects for mutant in one.mutants):
         if own is not None:
             declarations = extended(declarations, own.propositions, own.mistakes)
     declarations = replace(declarations, signals=plan.declarations.signals)
-    names = dict.fromkeys(name for each in suspects for name in each.monitor.PROPOSITIONS)
+    names = dict.fromkeys(name for one in suspects for name in one.monitor.PROPOSITIONS)
     known = tuple(name for name in names if _is_told(declarations, name))
     return Inquiry(suspects, declarations, known, plan.integrity)
 

@@ -53,7 +53,7 @@ def _how(found: tuple[int, Difference], runs: tuple[str, ...]) -> str:
 
 
 def _totals(survey: Survey) -> Line:
-    """`1 run × 15 requirements: 120 of 259 wrong sentences noticed`."""
+    """`1 run x 15 requirements: 120 of 259 wrong sentences noticed`."""
     count = sum(len(each.mutants) + len(each.refused) for each in survey.suspects)
     refused = sum(len(each.refused) for each in survey.suspects)
     runs, requirements = len(survey.runs), len(survey.suspects)

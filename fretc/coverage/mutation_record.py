@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, Final, Literal, cast
 
 from compiler.files.edition import __version__
 from compiler.files.records import Count, Name, Record, about, json_schema, plain
@@ -94,7 +94,7 @@ def written(mutant: Mutant) -> str:
 
 
 def _notice(run: int, found: Difference) -> Notice:
-    return Notice(run, found.own, found.other, found.tick)
+    return Notice(run, cast("Verdict", found.own), cast("Verdict", found.other), found.tick)
 
 
 def schema() -> dict[str, Any]:

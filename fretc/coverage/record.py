@@ -97,5 +97,5 @@ def schema() -> dict[str, Any]:
         Document,
         SCHEMA,
         "What recorded runs have exercised, as `fretc coverage --format json` prints it",
-        "Seconds count from the first tick of a run, ticks from 0; `ns` are nanoseconds of the log.",
+        "Seconds count from the first tick of a run, ticks from 0; `ns` is the time of the log.",
     )

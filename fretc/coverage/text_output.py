@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import assert_never
 
 from fretc.audit.evidence.schema import Moment
-from fretc.coverage.coverage import Coverage, RecordedSituation, RequirementCoverage, Standing
+from fretc.coverage.coverage import (
+    Coverage,
+    RecordedSituation,
+    RequirementCoverage,
+    Standing,
+    counts,
+)
 from fretish.bindings.amounts import seconds
 from fretish.diagnostics import signs
 from fretish.diagnostics.signs import Sign
@@ -15,7 +21,7 @@ from fretish.diagnostics.signs import Sign
 Line = tuple[str, str | None]
 """A line and its colour."""
 _MOST_NAMED = 10
-"""Runs of the least set that are named, and runs that are listed: of more the others are counted."""
+"""Runs of the least set that are named, and runs that are listed: others are counted."""
 
 
 def lines(covered: Coverage, titles: Mapping[str, str], *, every: bool) -> Iterator[Line]:
@@ -76,7 +82,7 @@ def _standing(one: RecordedSituation, runs: tuple[str, ...]) -> str:
         case Standing.PERHAPS:
             return f"perhaps {_first(one.perhaps, runs)}, where something is unknown"
         case Standing.NEVER | Standing.NOT_MEASURED:
-            return one.standing.value
+            return one.standing
         case _:
             assert_never(one.standing)
 
@@ -123,23 +129,23 @@ def _least(covered: Coverage) -> Iterator[Line]:
 
 
 def totals(covered: Coverage) -> Line:
-    """`2 runs × 15 requirements: 84 of 190 situations seen, 12 perhaps, 94 never`."""
-    every = [each for one in covered.requirements for each in one.situations]
-    counts = Counter(each.standing for each in every)
-    rest = [
-        f"{counts[standing]:,} {standing.value}"
-        for standing in list(Standing)[1:]
-        if counts[standing]
-    ]
-    blank = sum(not each.situations for each in covered.requirements)
-    rest += [f"{_times(blank, 'requirement')} not measured"] if blank else []
+    """`2 runs x 15 requirements: 84 of 190 situations seen, 12 perhaps, 94 never`."""
     head = (
         f"{_times(len(covered.runs), 'run')} \N{MULTIPLICATION SIGN} "
         f"{_times(len(covered.requirements), 'requirement')}"
     )
-    seen = f"{counts[Standing.SEEN]:,} of {len(every):,} situations seen"
     sign = signs.GOOD if covered.is_complete else signs.UNUSED
-    return f"{head}: {', '.join([seen, *rest])}", sign.colour
+    return f"{head}: {in_counts(covered.requirements)}", sign.colour
+
+
+def in_counts(requirements: Sequence[RequirementCoverage]) -> str:
+    """`84 of 190 situations seen, 12 perhaps, 94 never`."""
+    found = counts(requirements)
+    rest = [f"{found[each]:,} {each}" for each in [*Standing][1:] if found[each]]
+    blank = sum(not each.situations for each in requirements)
+    rest += [f"{_times(blank, 'requirement')} not measured"] if blank else []
+    seen = f"{found[Standing.SEEN]:,} of {found.total():,} situations seen"
+    return ", ".join([seen, *rest])
 
 
 def _times(count: int, noun: str) -> str:

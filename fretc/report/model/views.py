@@ -126,6 +126,16 @@ class Planned:
 
 
 @dataclass(frozen=True, slots=True)
+class SituationsView:
+    """How much of a requirement the runs have exercised."""
+
+    short: str
+    """`7 of 11 situations seen`."""
+    text: str
+    """The same, with those that were perhaps seen, and those that never were."""
+
+
+@dataclass(frozen=True, slots=True)
 class Row:
     """A requirement and a hazard that it traces to; `hazard` is empty where it traces to none."""
 
@@ -144,6 +154,8 @@ class Row:
     proof: Mark | None
     """What is proved of it: the closed loop, or its monitor; None: neither."""
     review: Mark
+    situations: SituationsView | None
+    """None where no run has been audited."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -470,6 +482,8 @@ class RequirementView:
     """Why no run can violate it, in one sentence; empty where one can."""
     coverage: str
     """How far along the chain it is; one of `fretc.report.model.assessments.COVERAGE`."""
+    situations: SituationsView | None
+    """None where no run has been audited."""
     review: ReviewView
     waiver: WaiverView | None
 
