@@ -86,16 +86,16 @@ def inquiry(project: Project, plan: Plan) -> Inquiry:
     """
     audited = {claim.id for claim in plan.claims}
     rules = {rule.id: rule for rule in project.rules if rule.id in audited}
-    suspects = tuple(map(_suspects, rules.values()))
+    found = tuple(map(suspects, rules.values()))
     declarations = project.declarations
     assert declarations is not None, "there is a plan"
-    for own in (mutant.rule.declarations for one in suspects for mutant in one.mutants):
+    for own in (mutant.rule.declarations for one in found for mutant in one.mutants):
         if own is not None:
             declarations = extended(declarations, own.propositions, own.mistakes)
     declarations = replace(declarations, signals=plan.declarations.signals)
-    names = dict.fromkeys(name for one in suspects for name in one.monitor.PROPOSITIONS)
+    names = dict.fromkeys(name for one in found for name in one.monitor.PROPOSITIONS)
     known = tuple(name for name in names if _is_told(declarations, name))
-    return Inquiry(suspects, declarations, known, plan.integrity)
+    return Inquiry(found, declarations, known, plan.integrity)
 
 
 def _is_told(declarations: Declarations, name: str) -> bool:
@@ -104,7 +104,8 @@ def _is_told(declarations: Declarations, name: str) -> bool:
     return proposition is not None and declarations.signals.keys() >= {*proposition.signals}
 
 
-def _suspects(rule: Formalized) -> Suspects:
+def suspects(rule: Formalized) -> Suspects:
+    """The mutants of a rule in one monitor, with the rule itself."""
     judged: list[Mutant] = []
     refused: list[tuple[Mutant, str]] = []
     for mutant in mutants(rule):
@@ -142,14 +143,14 @@ def of_run(asked: Inquiry, log: str) -> RunSurvey | Diagnostic:
     end = Verdict(declarations.clock.end)
     known: set[str] = set()
     noticed: dict[tuple[str, str], Difference] = {}
-    for suspects in asked.suspects:
-        own, *others = judgements(suspects.monitor, truths, end, intact=recording.intact)
+    for one in asked.suspects:
+        own, *others = judgements(one.monitor, truths, end, intact=recording.intact)
         if own.verdict != kernel.NO_DATA:
-            known.add(suspects.id)
-        for mutant, other in zip(suspects.mutants, others, strict=True):
+            known.add(one.id)
+        for mutant, other in zip(one.mutants, others, strict=True):
             found = difference(own, other)
             if found is not None:
-                noticed[suspects.id, mutant.key] = found
+                noticed[one.id, mutant.key] = found
     return RunSurvey(frozenset(known), noticed)
 
 
