@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from decimal import Decimal
 from itertools import islice
 
+from compiler.situations.thresholds import written
 from fretish import expressions as e
 from fretish.printer import expression
 
 MOST_PARTS = 100
 """Of an expression with more, as a tree, no part is changed alone."""
-_MOST_DIGITS = 30
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +28,13 @@ class Change:
 
 def changes(whole: e.Expression) -> Iterator[Change]:
     """Each change of one part of an expression, outer parts first; none of a large one."""
-    if sum(1 for _ in islice(e.parts(whole), MOST_PARTS + 1)) <= MOST_PARTS:
+    if not is_large(whole):
         yield from _changes(whole)
+
+
+def is_large(whole: e.Expression) -> bool:
+    """Whether its parts are not looked at one by one."""
+    return sum(1 for _ in islice(e.parts(whole), MOST_PARTS + 1)) > MOST_PARTS
 
 
 def _changes(whole: e.Expression) -> Iterator[Change]:
@@ -111,30 +115,10 @@ def _comparison(whole: e.Comparison) -> Iterator[Change]:
 
 
 def _moved(side: e.Expression) -> Iterator[e.Expression]:
-    """A number by one unit of its last digit more, and less."""
-    match side:
-        case e.Negation(e.Number() | e.Quantity() as arg):
-            yield from (_negative(other) for other in _moved(arg))
-        case e.Number(digits) | e.Quantity(digits, _):
-            step = last_digit(digits)
-            for exact in () if step is None else (Decimal(digits) + step, Decimal(digits) - step):
-                other = replace(side, digits=f"{abs(exact):f}")
-                yield e.Negation(other) if exact < 0 else other
-        case _:
-            return
-
-
-def _negative(side: e.Expression) -> e.Expression:
-    return side.arg if isinstance(side, e.Negation) else e.Negation(side)
-
-
-def last_digit(digits: str) -> Decimal | None:
-    """What one unit of the last digit is: 0.01 of `1.20`; None for very long numbers."""
-    exact = Decimal(digits)
-    exponent = exact.as_tuple().exponent
-    if not isinstance(exponent, int) or max(abs(exponent), len(digits)) > _MOST_DIGITS:
-        return None
-    return Decimal(1).scaleb(exponent)
+    """A number by a step more, and less."""
+    number = written(side)
+    if number is not None:
+        yield from (number.moved(number.step), number.moved(-number.step))
 
 
 def _replaced(operator: str, old: e.Expression, new: e.Expression) -> Change:

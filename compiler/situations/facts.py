@@ -17,7 +17,7 @@ from functools import cached_property
 from typing import assert_never
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.obligation import Demand, Kind, Obligation, obligation
+from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait, obligation
 from compiler.formalization.past import Stage, staged
 from compiler.formalization.predicates import Past
 from compiler.logic import formula as f
@@ -196,6 +196,11 @@ class Facts:
                 return f.and_(self.waiting, f.not_(self.demand.stop))
             case _:
                 assert_never(self.demand.kind)
+
+    @cached_property
+    def asks_for_stop(self) -> f.Formula:
+        """The stop condition at this tick decides something."""
+        return self.waiting if Trait.STOPS in TRAITS[self.demand.kind] else f.FALSE
 
 
 def facts(rule: Formalized) -> Facts:

@@ -8,14 +8,16 @@ search can tell.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import assert_never
+from dataclasses import dataclass, replace
+from typing import Any, assert_never
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import TRAITS, Kind, Trait
 from compiler.logic import formula as f
+from compiler.situations.decisions import Operand, operands
 from compiler.situations.demands import of_demand
 from compiler.situations.facts import Facts, facts
+from compiler.situations.thresholds import Place, places
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
@@ -53,6 +55,12 @@ MEANINGS: Mapping[str, str] = {
     "run-ends-open": "the run ends while a demand is open",
     "run-ends-answered": "{answer} at the last tick of the run, in the scope",
     "run-ends-missed": "{none} at the last tick of the run, in the scope",
+    "alone-true": "`{operand}` alone makes the {part} true",
+    "alone-false": "`{operand}` alone makes the {part} false",
+    "threshold-below": "`{measured}` is {number}, just below what `{operand}` compares it with",
+    "threshold-at": "`{measured}` is {number}, just what `{operand}` compares it with",
+    "threshold-above": "`{measured}` is {number}, just above what `{operand}` compares it with",
+    "unknown": "`{operand}` is unknown where it decides the {part}",
 }
 """What a run shows, by the key of the situation."""
 
@@ -74,9 +82,9 @@ class Situation:
     """Whether the last tick of a run alone counts."""
     unknown: str | None = None
     """An atom that must be unknown at that tick; the formula says that its value decides."""
-    numbers: e.Expression | None = None
-    """What the numbers of that tick must make true, too: over signals, or variables, as a sentence
-    compares them, in the units of the rule's sentence."""
+    place: Place | None = None
+    """Where a number must be at that tick, too: over signals as bindings have them, or over the
+    variables of the sentence, where none are bound."""
 
 
 @deep
@@ -93,11 +101,12 @@ def situations(rule: Formalized) -> tuple[Situation, ...]:
     found = {key: (formula, False) for key, formula in passing.items()}
     found |= {key: (formula, True) for key, formula in _of_the_end(known)}
     words = _words(rule, known)
-    return tuple(
+    timed = (
         Situation(key, meaning.format_map(words), *found[key])
         for key, meaning in MEANINGS.items()
         if key in found and found[key][0] != f.FALSE
     )
+    return (*timed, *_of_operands(rule, known))
 
 
 _Rows = Iterator[tuple[str, f.Formula]]
@@ -147,9 +156,10 @@ def _begins_with_run(scope: s.ScopeKind) -> bool:
 def _of_triggers(known: Facts) -> _Rows:
     """When a demand begins, and again."""
     triggered = known.triggered
-    if triggered != f.FIRST:  # else it does in each run
+    scope, each = known.whole.scope, known.whole.condition is None
+    if not (each and (scope is None or _begins_with_run(scope))):  # else each first one does
         yield "triggered-at-start", f.and_(f.FIRST, triggered)
-    if known.whole.condition is None:
+    if each:
         return
     p = known.whole.trigger
     yield "triggered-later", f.and_(triggered, f.not_(known.stage.left))
@@ -192,6 +202,52 @@ def _of_the_end(known: Facts) -> _Rows:
         yield "run-ends-missed", f.and_(known.waiting, f.not_(known.answer))
     elif not _lasts(known.demand.kind):
         yield "run-ends-open", known.open
+
+
+# What decides -----------------------------------------------------------------------------------
+
+
+def _of_operands(rule: Formalized, known: Facts) -> Iterator[Situation]:
+    """Those of single operands, by their keys in the order of `MEANINGS`."""
+    found = [each for operand in operands(rule, known) for each in _of_operand(rule, operand)]
+    order = [*MEANINGS]
+    yield from sorted(found, key=lambda each: order.index(each.key.partition(":")[0]))
+
+
+def _of_operand(rule: Formalized, operand: Operand) -> Iterator[Situation]:
+    declared = rule.declarations.propositions if rule.declarations else {}
+    bound = declared.get(operand.atom or "")
+    stated = operand.expression if bound is None else bound.expression
+    shown = stated if isinstance(operand.expression, e.Comparison) else operand.expression
+    about = f"{operand.part.partition(' ')[0]}:{_short(shown)}"
+    texts = {"operand": expression(shown), "part": operand.part}
+
+    def situation(key: str, formula: f.Formula, **more: Any) -> Situation:
+        return Situation(f"{key}:{about}", MEANINGS[key].format(**texts), formula, **more)
+
+    if operand.decides == f.FALSE:
+        return
+    if not operand.alone:
+        yield situation("alone-true", f.and_(operand.decides, operand.whole))
+        yield situation("alone-false", f.and_(operand.decides, f.not_(operand.whole)))
+    for comparison, key, place in _places(stated):
+        texts["measured"], texts["number"] = expression(place.measured), expression(place.number)
+        found = situation(key, operand.decides, place=place)
+        several = "" if comparison == shown else f":{_short(comparison)}"
+        yield replace(found, key=f"{found.key}{several}")
+    if operand.atom is not None:
+        yield situation("unknown", operand.decides, unknown=operand.atom)
+
+
+def _places(stated: e.Expression) -> Iterator[tuple[e.Comparison, str, Place]]:
+    """Those of each comparison in an operand, or in the proposition that it is."""
+    for part in dict.fromkeys(e.parts(stated)):
+        if isinstance(part, e.Comparison):
+            yield from ((part, f"threshold-{key}", place) for key, place in places(part))
+
+
+def _short(part: e.Expression) -> str:
+    return expression(part).replace(" ", "")
 
 
 # Words ------------------------------------------------------------------------------------------

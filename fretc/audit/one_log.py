@@ -14,7 +14,7 @@ from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import Evidence, health
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
 from fretc.audit.measurements.margins import Margin, margins, worst
-from fretc.audit.measurements.situations import encounters
+from fretc.audit.measurements.situations import encounters, proposition_of
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
@@ -138,10 +138,11 @@ def audit(
         )
         for name in names
     }
+    near = _near(recording, declarations, requirements)
     phases_of = phases(declarations, recording, [each.monitor for each in requirements])
     found, at = health(recording), _moments(truths.timeline)
     evidence = [
-        _evidence(recording, declarations, truths, at, margins_of, each, engine, found)
+        _evidence(recording, declarations, truths, at, margins_of, near, each, engine, found)
         for each in requirements
     ]
     return tuple(_phased(each, phases_of.get(each.requirement)) for each in evidence)
@@ -163,6 +164,7 @@ def _evidence(
     truths: Trace,
     at: Callable[[int], Moment],
     margins_of: Mapping[str, tuple[Margin, ...]],
+    near: Mapping[str, Column],
     requirement: MonitoredRequirement,
     engine: Engine,
     found: Health,
@@ -206,7 +208,7 @@ def _evidence(
         hashes={**hash_of(recording), **requirement.hashes},
         health=found,
         assumptions=_assumed(declarations, requirement),
-        situations=_situations(requirement, columns, ticks, at),
+        situations=_situations(requirement, columns, ticks, near, at),
     )
     evidence = replace(evidence, reason=_reason(evidence, recording, declarations))
     if requirement.count is None:
@@ -215,15 +217,32 @@ def _evidence(
     return _counted(evidence, _trials(requirement.count, columns, truths))
 
 
+def _near(
+    recording: Recording, declarations: Declarations, requirements: Sequence[MonitoredRequirement]
+) -> Mapping[str, Column]:
+    """Where numbers are at the places of situations, of the places whose signals are read."""
+    places = (
+        proposition_of(situation.place)
+        for each in requirements
+        for situation in each.situations
+        if situation.place is not None
+    )
+    known = {one.name: one for one in places if declarations.signals.keys() >= {*one.signals}}
+    if not known:
+        return {}
+    return trace(replace(declarations, propositions=known), recording, tuple(known)).columns
+
+
 def _situations(
     requirement: MonitoredRequirement,
     columns: Mapping[str, Column],
     ticks: int,
+    near: Mapping[str, Column],
     at: Callable[[int], Moment],
 ) -> Situations | None:
     if not requirement.situations:
         return None
-    found = [*encounters(requirement.situations, columns, ticks)]
+    found = [*encounters(requirement.situations, columns, ticks, near)]
     return Situations(
         {each.key: at(each.seen) for each in found if each.seen is not None},
         {each.key: at(each.perhaps) for each in found if each.perhaps is not None},

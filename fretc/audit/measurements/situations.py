@@ -2,17 +2,22 @@
 
 A situation is a formula of the past (`compiler.situations`): a run has come by it at a tick where
 the formula is true whatever the unknown values were. Where it may only have been true, nothing is
-shown: that is another word than seen.
+shown: that is another word than seen. Some ask for more at that tick: that a proposition is
+unknown, or that a number is at a threshold.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate_unknown_all
 from compiler.situations.situations import Situation
+from compiler.situations.thresholds import Place
+from fretish.bindings.declarations import Proposition
+from fretish.printer import expression
 from monitors.kernel import Column
 
 
@@ -27,8 +32,16 @@ class Encounter:
     """None, too, where it has been seen: nothing is left open then."""
 
 
+def proposition_of(place: Place) -> Proposition:
+    """What says whether a number is at a place: of the samples of a tick the last one counts."""
+    return Proposition(expression(place.near), place.near)
+
+
 def encounters(
-    situations: Sequence[Situation], columns: Mapping[str, Column], ticks: int
+    situations: Sequence[Situation],
+    columns: Mapping[str, Column],
+    ticks: int,
+    near: Mapping[str, Column] = MappingProxyType({}),
 ) -> Iterator[Encounter]:
     """What one run shows of each situation, in their order.
 
@@ -36,6 +49,7 @@ def encounters(
         situations: of one requirement.
         columns: of its propositions; one without a column is unknown throughout.
         ticks: the length of the run.
+        near: by the names of `proposition_of`, where numbers are at their places; in the same way.
     """
     unknown = Column(0, (1 << ticks) - 1)
     formulas = [each.formula for each in situations]
@@ -45,8 +59,15 @@ def encounters(
     last = 1 << ticks - 1 if ticks else 0
     for situation, column in zip(situations, found, strict=True):
         counted = last if situation.at_end else -1
-        seen, perhaps = _first(column.true & counted), _first(column.unknown & counted)
-        yield Encounter(situation.key, seen, perhaps if seen is None else None)
+        true, may = column.true & counted, (column.true | column.unknown) & counted
+        if situation.unknown is not None:
+            hole = columns.get(situation.unknown, unknown).unknown
+            true, may = true & hole, may & hole
+        if situation.place is not None:
+            there = near.get(proposition_of(situation.place).name, unknown)
+            true, may = true & there.true, may & (there.true | there.unknown)
+        seen = _first(true)
+        yield Encounter(situation.key, seen, _first(may) if seen is None else None)
 
 
 def _first(column: int) -> int | None:
