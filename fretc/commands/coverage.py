@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING
 
 import click
@@ -17,6 +18,7 @@ from fretc.terminal.options import (
     is_given,
     jobs_option,
     requirements_option,
+    tests_option,
 )
 from fretc.terminal.output import (
     BAD,
@@ -25,16 +27,21 @@ from fretc.terminal.output import (
     coloured,
     say_also,
     say_briefly,
+    say_line,
     stop,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from compiler.project.folder import Project
     from fretc.audit.evidence.briefs import EvidenceSource
     from fretc.audit.plan import Plan
+    from fretc.coverage.coverage import Coverage
+    from fretc.coverage.directions import Directions
+    from fretc.testing.suite import Suite
 
 
 @click.command(short_help="Say which situations of requirements recorded runs have shown.")
@@ -44,6 +51,7 @@ if TYPE_CHECKING:
 @evidence_option
 @format_option()
 @click.option("-v", "--verbose", is_flag=True, help="List what was seen, and all runs, too.")
+@tests_option
 @jobs_option
 def coverage(
     paths: tuple[str, ...],
@@ -52,6 +60,7 @@ def coverage(
     evidence: str,
     form: str,
     verbose: bool,
+    tests: str | None,
     jobs: int,
 ) -> None:
     """Say which situations of requirements recorded runs have shown, and which they never have.
@@ -60,11 +69,12 @@ def coverage(
     shown. A situation is a way in which a run can meet a requirement: triggered again while a
     demand is open, answered at the last tick allowed, and others (docs/coverage.md).
 
-    Exit status: 0 every situation was seen, 2 bad use or bad input, 3 some were not.
+    Exit status: 0 every situation was seen that a run can show, 2 bad use or bad input, 3 some
+    were not.
     """
     from fretc.coverage import record, text_output
     from fretc.coverage.coverage import coverage as found_in
-    from fretish.diagnostics.rendering import visible
+    from fretc.coverage.directions import is_complete
 
     if paths and is_given("evidence"):
         stop(
@@ -78,12 +88,44 @@ def coverage(
         _audited(paths, requirements, bindings, jobs) if paths else (_recorded(evidence), {})
     )
     covered = found_in(source)
+    known = _directions(covered, tests)
     if form == "json":
-        click.echo(record.text(covered), nl=False)
+        click.echo(record.text(covered, known), nl=False)
     else:
-        found = text_output.lines(covered, titles, every=verbose)
+        found = text_output.lines(covered, titles, known, every=verbose)
         click.echo(coloured((visible(text), colour) for text, colour in found), nl=False)
-    raise SystemExit(SHOWN if covered.is_complete else NOT_SHOWN)
+    raise SystemExit(SHOWN if is_complete(covered, known) else NOT_SHOWN)
+
+
+def _directions(covered: Coverage, named: str | None) -> Directions:
+    """How runs come by situations, as far as tests say; those of other sentences say nothing."""
+    from fretc.coverage.directions import directions
+
+    fingerprints = {each.id: each.fingerprint for each in covered.requirements}
+    suite = suite_of(named, fingerprints)
+    return {} if suite is None else directions(suite, fingerprints)
+
+
+def suite_of(named: str | None, fingerprints: Mapping[str, str]) -> Suite | None:
+    """The tests that the user names, or that are there; None: there are none.
+
+    Args:
+        named: their file; None: the one that `fretc test` writes.
+        fingerprints: of each requirement: a line says of which of them the tests say nothing.
+    """
+    from fretc.testing.reader import DEFAULT, read
+
+    if named is None and not os.path.lexists(DEFAULT):
+        return None
+    suite = read(named or DEFAULT)
+    if isinstance(suite, Diagnostic):
+        stop(suite)
+    known = {each.id: each.fingerprint for each in suite.requirements}
+    other = [id for id, own in fingerprints.items() if known.get(id, own) != own]
+    if other:
+        which = ", ".join(other)
+        say_line(visible(f"the tests are of other sentences of {which}: `fretc test` makes them"))
+    return suite
 
 
 def _recorded(evidence: str) -> EvidenceSource:

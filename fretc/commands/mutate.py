@@ -14,6 +14,7 @@ from fretc.terminal.options import (
     jobs_option,
     places,
     requirements_option,
+    tests_option,
 )
 from fretc.terminal.output import BAD, INTERRUPTED, NOT_SHOWN, SHOWN, coloured, say_also, say_line
 
@@ -33,6 +34,7 @@ from fretc.terminal.output import BAD, INTERRUPTED, NOT_SHOWN, SHOWN, coloured, 
 @bindings_option
 @format_option()
 @click.option("-v", "--verbose", is_flag=True, help="List what was noticed, too, and how.")
+@tests_option
 @jobs_option
 def mutate(
     folder: tuple[str, ...],
@@ -41,6 +43,7 @@ def mutate(
     bindings: str | None,
     form: str,
     verbose: bool,
+    tests: str | None,
     jobs: int,
 ) -> None:
     """Say which wrong requirements recorded runs would not have noticed.
@@ -49,11 +52,13 @@ def mutate(
     changed in small ways, as somebody might have written or meant it (docs/coverage.md). A run
     notices a change where the verdict, or the ticks of a violation, are not what they were.
 
+    What the tests prove to say the same is left out: no run could notice it.
+
     Exit status: 0 every change is noticed, 2 bad use or bad input, 3 some are not.
     """
     from fretc.commands.audit_logs import selected
     from fretc.commands.audit_progress import shown
-    from fretc.commands.coverage import planned_project
+    from fretc.commands.coverage import planned_project, suite_of
     from fretc.coverage import mutation_output, mutation_record
     from fretc.coverage.mutation import inquiry, survey
     from fretish.diagnostics.rendering import visible
@@ -71,6 +76,9 @@ def mutate(
     say_also(found.diagnostics, project.diagnostics)
     if not found.runs:
         raise SystemExit(BAD)
+    suite = suite_of(tests, {each.id: each.fingerprint for each in found.suspects})
+    if suite is not None:
+        found = found.with_proofs(suite)
     if form == "json":
         click.echo(mutation_record.text(found), nl=False)
     else:

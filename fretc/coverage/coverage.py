@@ -49,6 +49,8 @@ class RequirementCoverage:
     """The situations of a requirement over all runs."""
 
     id: str
+    fingerprint: str
+    """SHA-256 of its sentence."""
     situations: tuple[RecordedSituation, ...]
     measured: tuple[int, ...]
     """The places of the runs that were looked at."""
@@ -84,14 +86,6 @@ class Coverage:
     requirements: tuple[RequirementCoverage, ...]
     least: LeastRuns
     """Runs that came by all that the runs together came by."""
-
-    @property
-    def is_complete(self) -> bool:
-        """Whether every situation of every requirement has been seen."""
-        return all(
-            each.situations and len(each.of(Standing.SEEN)) == len(each.situations)
-            for each in self.requirements
-        )
 
 
 def coverage(source: EvidenceSource) -> Coverage:
@@ -146,7 +140,8 @@ class _Ledger:
     """What is known of one requirement, while results are read."""
 
     def __init__(self, requirement: Requirement) -> None:
-        self._id, self._situations = requirement.id, requirement.situations or ()
+        self._id, self._fingerprint = requirement.id, requirement.sha256
+        self._situations = requirement.situations or ()
         self._seen: dict[str, dict[int, Moment]] = {each.key: {} for each in self._situations}
         self._perhaps: dict[str, dict[int, Moment]] = {each.key: {} for each in self._situations}
         self._measured: dict[int, None] = {}
@@ -167,7 +162,7 @@ class _Ledger:
         """All of it."""
         situations = tuple(map(self._situation, self._situations))
         return RequirementCoverage(
-            self._id, situations, tuple(self._measured), tuple(self._unmeasured)
+            self._id, self._fingerprint, situations, tuple(self._measured), tuple(self._unmeasured)
         )
 
     def _situation(self, one: Named) -> RecordedSituation:

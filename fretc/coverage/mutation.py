@@ -23,6 +23,7 @@ from fretc.audit.pool import Killed, each, was_killed
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.traces import Trace, trace
+from fretc.testing.suite import Fate, Suite
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors import kernel
@@ -36,6 +37,8 @@ class Suspects:
     """A requirement and its mutants, as one monitor: the requirement is the first in it."""
 
     id: str
+    fingerprint: str
+    """SHA-256 of its sentence."""
     mutants: tuple[Mutant, ...]
     """Those that a monitor can judge, in its order."""
     refused: tuple[tuple[Mutant, str], ...]
@@ -116,7 +119,8 @@ def suspects(rule: Formalized) -> Suspects:
             refused.append((mutant, why.message))
     numbered = [_called(each.rule, f"M{n}") for n, each in enumerate(judged)]
     text = monitors.text(_called(rule, "R"), *numbered)
-    return Suspects(rule.id, tuple(judged), tuple(refused), load(f"{rule.id}_mutants", text))
+    watching = load(f"{rule.id}_mutants", text)
+    return Suspects(rule.id, rule.fingerprint, tuple(judged), tuple(refused), watching)
 
 
 def _called(rule: Formalized, id: str) -> Formalized:
@@ -214,12 +218,36 @@ class Survey:
     """Requirement and mutant → the first run that tells them apart, and how."""
     diagnostics: tuple[Diagnostic, ...]
     """Why others could not."""
+    equivalent: frozenset[tuple[str, str]] = frozenset()
+    """Requirement and mutant that are proved to say the same: no run could notice that one."""
+
+    @property
+    def count(self) -> int:
+        """Of the mutants that say something else, as far as is known."""
+        return sum(len(each.mutants) + len(each.refused) for each in self.suspects) - len(
+            self.equivalent
+        )
 
     @property
     def is_complete(self) -> bool:
-        """Whether every mutant is noticed."""
-        every = sum(len(each.mutants) + len(each.refused) for each in self.suspects)
-        return bool(self.runs) and len(self.noticed) == every
+        """Whether every mutant is noticed that says something else."""
+        return bool(self.runs) and len(self.noticed) == self.count
+
+    def with_proofs(self, suite: Suite) -> Survey:
+        """The same with what tests have proved, of requirements whose sentence they are of."""
+        known = {each.id: each.fingerprint for each in suite.requirements}
+        current = {each.id for each in self.suspects if known.get(each.id) == each.fingerprint}
+        keys = {(each.id, one.key) for each in self.suspects for one in _all(each)}
+        proved = {
+            (each.requirement, each.key)
+            for each in suite.mutants
+            if each.outcome is Fate.EQUIVALENT and each.requirement in current
+        }
+        return replace(self, equivalent=frozenset(proved & keys - self.noticed.keys()))
+
+
+def _all(suspects: Suspects) -> tuple[Mutant, ...]:
+    return (*suspects.mutants, *(mutant for mutant, _ in suspects.refused))
 
 
 def survey(asked: Inquiry, logs: Sequence[str], jobs: int, tell: Callable[[str], None]) -> Survey:

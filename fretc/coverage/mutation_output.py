@@ -27,23 +27,29 @@ def lines(survey: Survey, titles: Mapping[str, str], *, every: bool) -> Iterator
 
 
 def _requirement(suspects: Suspects, title: str, survey: Survey, *, every: bool) -> Iterator[Line]:
-    count = len(suspects.mutants) + len(suspects.refused)
-    found = [survey.noticed.get((suspects.id, mutant.key)) for mutant in suspects.mutants]
-    noticed = sum(each is not None for each in found)
+    same = sum(id == suspects.id for id, _ in survey.equivalent)
+    count = len(suspects.mutants) + len(suspects.refused) - same
+    found = [(each, survey.noticed.get((suspects.id, each.key))) for each in suspects.mutants]
+    noticed = sum(difference is not None for _, difference in found)
     sign = signs.GOOD if noticed == count else signs.UNUSED
     wrong = f"{count} wrong sentence{'' if count == 1 else 's'}"
     unknown = "" if suspects.id in survey.known else "; no run has a verdict on it"
     yield f"{sign.glyph} {title}: {noticed} of {wrong} noticed{unknown}", sign.colour
-    for mutant, difference in zip(suspects.mutants, found, strict=True):
-        if difference is None:
+    for mutant, difference in found:
+        if (suspects.id, mutant.key) in survey.equivalent:
+            if every:
+                text = f"    {signs.EMPTY.glyph} {mutant.words}: it says the same"
+                yield text, signs.EMPTY.colour
+        elif difference is None:
             yield f"    {signs.UNUSED.glyph} {mutant.words}", signs.UNUSED.colour
             yield f"      {written(mutant)}", None
         elif every:
             text = f"    {signs.GOOD.glyph} {mutant.words}: {_how(difference, survey.runs)}"
             yield text, signs.GOOD.colour
     for mutant, why in suspects.refused:
-        text = f"    {signs.UNKNOWN.glyph} {mutant.words}: not judged: {why}"
-        yield text, signs.UNKNOWN.colour
+        if (suspects.id, mutant.key) not in survey.equivalent:
+            text = f"    {signs.UNKNOWN.glyph} {mutant.words}: not judged: {why}"
+            yield text, signs.UNKNOWN.colour
 
 
 def _how(found: tuple[int, Difference], runs: tuple[str, ...]) -> str:
@@ -54,14 +60,15 @@ def _how(found: tuple[int, Difference], runs: tuple[str, ...]) -> str:
 
 def _totals(survey: Survey) -> Line:
     """`1 run x 15 requirements: 120 of 259 wrong sentences noticed`."""
-    count = sum(len(each.mutants) + len(each.refused) for each in survey.suspects)
+    same = len(survey.equivalent)
     refused = sum(len(each.refused) for each in survey.suspects)
     runs, requirements = len(survey.runs), len(survey.suspects)
     sign = signs.GOOD if survey.is_complete else signs.UNUSED
     text = (
         f"{runs:,} run{'' if runs == 1 else 's'} \N{MULTIPLICATION SIGN} "
         f"{requirements:,} requirement{'' if requirements == 1 else 's'}: "
-        f"{len(survey.noticed):,} of {count:,} wrong sentences noticed"
+        f"{len(survey.noticed):,} of {survey.count:,} wrong sentences noticed"
         f"{f', {refused:,} not judged' if refused else ''}"
+        f"{f', {same:,} that say the same left out' if same else ''}"
     )
     return text, sign.colour

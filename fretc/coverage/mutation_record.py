@@ -14,6 +14,7 @@ from fretc.coverage.mutation import Difference, Survey, Suspects
 from fretish.printer import sentence
 
 SCHEMA: Final = "fretc-mutation-1"
+Outcome = Literal["noticed", "not noticed", "equivalent", "not judged"]
 
 
 class Notice(Record, frozen=True):
@@ -36,7 +37,10 @@ class Judged(Record, frozen=True):
     key: Name
     words: Annotated[str, about("what stands in place of what")]
     sentence: str
-    outcome: Literal["noticed", "not noticed", "not judged"]
+    outcome: Annotated[
+        Outcome,
+        about("equivalent: it is proved to say the same, so no run can notice it"),
+    ]
     notice: Notice | None
     why: Annotated[str, about("why it was not judged; empty: it was")] = ""
 
@@ -78,14 +82,16 @@ def document(survey: Survey) -> Document:
 
 def _mutants(suspects: Suspects, survey: Survey) -> Iterator[Judged]:
     for mutant in suspects.mutants:
-        found = survey.noticed.get((suspects.id, mutant.key))
-        if found is None:
-            yield Judged(mutant.key, mutant.words, written(mutant), "not noticed", None)
-        else:
-            notice = _notice(*found)
-            yield Judged(mutant.key, mutant.words, written(mutant), "noticed", notice)
+        key = suspects.id, mutant.key
+        found = survey.noticed.get(key)
+        outcome: Outcome = "equivalent" if key in survey.equivalent else "not noticed"
+        outcome = outcome if found is None else "noticed"
+        notice = None if found is None else _notice(*found)
+        yield Judged(mutant.key, mutant.words, written(mutant), outcome, notice)
     for mutant, why in suspects.refused:
-        yield Judged(mutant.key, mutant.words, written(mutant), "not judged", None, why)
+        same = (suspects.id, mutant.key) in survey.equivalent
+        outcome = "equivalent" if same else "not judged"
+        yield Judged(mutant.key, mutant.words, written(mutant), outcome, None, why)
 
 
 def written(mutant: Mutant) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Annotated, Any, Final, Literal
 
 from compiler.files.edition import __version__
@@ -10,6 +11,7 @@ from compiler.files.records import Count, Name, Record, Seconds, Whole, about, j
 from compiler.files.templating import to_json
 from fretc.audit.evidence.schema import Moment
 from fretc.coverage import coverage as c
+from fretc.coverage.directions import Directions
 
 SCHEMA: Final = "fretc-coverage-1"
 
@@ -34,6 +36,10 @@ class Situation(Record, frozen=True):
     ]
     seen: Annotated[tuple[Sighting, ...], about("in each run where it was certainly there")]
     perhaps: Annotated[tuple[Sighting, ...], about("in each other run where it may have been")]
+    direction: Annotated[
+        str | None,
+        about("how a run comes by it, or why none does; null: seen, or nobody has searched"),
+    ]
 
 
 class Requirement(Record, frozen=True):
@@ -60,20 +66,23 @@ class Document(Record, frozen=True):
     least_is_exact: Annotated[bool, about("whether it is proved that no fewer runs do")]
 
 
-def text(covered: c.Coverage) -> str:
+def text(covered: c.Coverage, known: Directions = MappingProxyType({})) -> str:
     """The whole file: the same values give the same bytes."""
-    return f"{to_json(plain(document(covered)))}\n"
+    return f"{to_json(plain(document(covered, known)))}\n"
 
 
-def document(covered: c.Coverage) -> Document:
-    """The record of what runs have exercised."""
+def document(covered: c.Coverage, known: Directions) -> Document:
+    """The record of what runs have exercised, and of how they come by the rest."""
     return Document(
         schema=SCHEMA,
         fretc=__version__,
         runs=covered.runs,
         requirements=tuple(
             Requirement(
-                each.id, tuple(map(_situation, each.situations)), each.measured, each.unmeasured
+                each.id,
+                tuple(_situation(each.id, one, known) for one in each.situations),
+                each.measured,
+                each.unmeasured,
             )
             for each in covered.requirements
         ),
@@ -82,9 +91,11 @@ def document(covered: c.Coverage) -> Document:
     )
 
 
-def _situation(one: c.RecordedSituation) -> Situation:
+def _situation(id: str, one: c.RecordedSituation, known: Directions) -> Situation:
     seen, perhaps = _sightings(one.seen), _sightings(one.perhaps)
-    return Situation(one.key, one.words, one.standing.value, seen, perhaps)
+    found = None if one.standing is c.Standing.SEEN else known.get((id, one.key))
+    direction = None if found is None else found.text
+    return Situation(one.key, one.words, one.standing.value, seen, perhaps, direction)
 
 
 def _sightings(moments: Mapping[int, Moment]) -> tuple[Sighting, ...]:

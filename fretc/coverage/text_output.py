@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 from typing import assert_never
 
 from fretc.audit.evidence.schema import Moment
@@ -14,6 +15,7 @@ from fretc.coverage.coverage import (
     Standing,
     counts,
 )
+from fretc.coverage.directions import Directions, is_complete, unseen
 from fretish.bindings.amounts import seconds
 from fretish.diagnostics import signs
 from fretish.diagnostics.signs import Sign
@@ -24,24 +26,37 @@ _MOST_NAMED = 10
 """Runs of the least set that are named, and runs that are listed: others are counted."""
 
 
-def lines(covered: Coverage, titles: Mapping[str, str], *, every: bool) -> Iterator[Line]:
+def lines(
+    covered: Coverage,
+    titles: Mapping[str, str],
+    directions: Directions = MappingProxyType({}),
+    *,
+    every: bool,
+) -> Iterator[Line]:
     """All of it.
 
     Args:
         covered: what is known.
         titles: what a requirement is called, by its id; one without is called by its id.
+        directions: how a run comes by what was not seen, as far as is known.
         every: list the situations that were seen, too.
     """
     for each in covered.requirements:
-        yield from _requirement(each, titles.get(each.id, each.id), covered.runs, every=every)
+        title = titles.get(each.id, each.id)
+        yield from _requirement(each, title, covered.runs, directions, every=every)
     yield "", None
     yield from _runs(covered, every=every)
     yield from _least(covered)
-    yield totals(covered)
+    yield totals(covered, directions)
 
 
 def _requirement(
-    one: RequirementCoverage, title: str, runs: tuple[str, ...], *, every: bool
+    one: RequirementCoverage,
+    title: str,
+    runs: tuple[str, ...],
+    directions: Directions,
+    *,
+    every: bool,
 ) -> Iterator[Line]:
     seen, of = len(one.of(Standing.SEEN)), len(one.situations)
     sign = signs.GOOD if of and seen == of else signs.UNUSED
@@ -53,6 +68,9 @@ def _requirement(
     for situation in one.situations:
         if every or situation.standing is not Standing.SEEN:
             yield _situation(situation, runs)
+        direction = directions.get((one.id, situation.key))
+        if direction is not None and situation.standing is not Standing.SEEN:
+            yield f"        {direction.text}", None
 
 
 def _situation(one: RecordedSituation, runs: tuple[str, ...]) -> Line:
@@ -128,14 +146,16 @@ def _least(covered: Coverage) -> Iterator[Line]:
     )
 
 
-def totals(covered: Coverage) -> Line:
+def totals(covered: Coverage, directions: Directions) -> Line:
     """`2 runs x 15 requirements: 84 of 190 situations seen, 12 perhaps, 94 never`."""
     head = (
         f"{_times(len(covered.runs), 'run')} \N{MULTIPLICATION SIGN} "
         f"{_times(len(covered.requirements), 'requirement')}"
     )
-    sign = signs.GOOD if covered.is_complete else signs.UNUSED
-    return f"{head}: {in_counts(covered.requirements)}", sign.colour
+    left = sum(1 for _ in unseen(covered, directions))
+    known = f"; {left:,} are left that a run can show" if directions else ""
+    sign = signs.GOOD if is_complete(covered, directions) else signs.UNUSED
+    return f"{head}: {in_counts(covered.requirements)}{known}", sign.colour
 
 
 def in_counts(requirements: Sequence[RequirementCoverage]) -> str:
