@@ -10,11 +10,12 @@ from statistics import median
 import numpy as np
 
 from compiler.situations.situations import Situation
+from compiler.situations.thresholds import Place
 from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import Evidence, health
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
 from fretc.audit.measurements.margins import Margin, margins, worst
-from fretc.audit.measurements.situations import encounters, proposition_of
+from fretc.audit.measurements.situations import Near, encounters, nowhere_known
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
@@ -30,7 +31,7 @@ from fretc.logs.signals.words import Foreign, shown
 from fretish import expressions as e
 from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
 from fretish.bindings.amounts import margin as margin_text
-from fretish.bindings.declarations import Declarations, Signal
+from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
 from fretish.reading.memory import remembered
@@ -138,7 +139,7 @@ def audit(
         )
         for name in names
     }
-    near = _near(recording, declarations, requirements)
+    near = _near(recording, declarations, len(truths.timeline.times))
     phases_of = phases(declarations, recording, [each.monitor for each in requirements])
     found, at = health(recording), _moments(truths.timeline)
     evidence = [
@@ -164,7 +165,7 @@ def _evidence(
     truths: Trace,
     at: Callable[[int], Moment],
     margins_of: Mapping[str, tuple[Margin, ...]],
-    near: Mapping[str, Column],
+    near: Near,
     requirement: MonitoredRequirement,
     engine: Engine,
     found: Health,
@@ -217,27 +218,26 @@ def _evidence(
     return _counted(evidence, _trials(requirement.count, columns, truths))
 
 
-def _near(
-    recording: Recording, declarations: Declarations, requirements: Sequence[MonitoredRequirement]
-) -> Mapping[str, Column]:
-    """Where numbers are at the places of situations, of the places whose signals are read."""
-    places = (
-        proposition_of(situation.place)
-        for each in requirements
-        for situation in each.situations
-        if situation.place is not None
-    )
-    known = {one.name: one for one in places if declarations.signals.keys() >= {*one.signals}}
-    if not known:
-        return {}
-    return trace(replace(declarations, propositions=known), recording, tuple(known)).columns
+def _near(recording: Recording, declarations: Declarations, ticks: int) -> Near:
+    """Where numbers of the recording are: of the samples of a tick the last one counts."""
+    nowhere = nowhere_known(ticks)
+
+    @cache
+    def named(name: str, place: Place) -> Column:
+        proposition = Proposition(name, place.near)
+        if not declarations.signals.keys() >= {*proposition.signals}:
+            return nowhere(place)
+        alone = replace(declarations, propositions={name: proposition})
+        return trace(alone, recording, (name,)).columns[name]
+
+    return lambda place: named(expression(place.near), place)
 
 
 def _situations(
     requirement: MonitoredRequirement,
     columns: Mapping[str, Column],
     ticks: int,
-    near: Mapping[str, Column],
+    near: Near,
     at: Callable[[int], Moment],
 ) -> Situations | None:
     if not requirement.situations:

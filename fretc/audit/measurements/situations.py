@@ -8,16 +8,13 @@ unknown, or that a number is at a threshold.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate_unknown_all
 from compiler.situations.situations import Situation
 from compiler.situations.thresholds import Place
-from fretish.bindings.declarations import Proposition
-from fretish.printer import expression
 from monitors.kernel import Column
 
 
@@ -32,16 +29,17 @@ class Encounter:
     """None, too, where it has been seen: nothing is left open then."""
 
 
-def proposition_of(place: Place) -> Proposition:
-    """What says whether a number is at a place: of the samples of a tick the last one counts."""
-    return Proposition(expression(place.near), place.near)
+Near = Callable[[Place], Column]
+"""A place of a number → at which ticks the number is there."""
+
+
+def nowhere_known(ticks: int) -> Near:
+    """Where no numbers are at hand: everywhere unknown."""
+    return lambda _: Column(0, (1 << ticks) - 1)
 
 
 def encounters(
-    situations: Sequence[Situation],
-    columns: Mapping[str, Column],
-    ticks: int,
-    near: Mapping[str, Column] = MappingProxyType({}),
+    situations: Sequence[Situation], columns: Mapping[str, Column], ticks: int, near: Near
 ) -> Iterator[Encounter]:
     """What one run shows of each situation, in their order.
 
@@ -49,7 +47,7 @@ def encounters(
         situations: of one requirement.
         columns: of its propositions; one without a column is unknown throughout.
         ticks: the length of the run.
-        near: by the names of `proposition_of`, where numbers are at their places; in the same way.
+        near: is asked only where the rest of a situation may have been there.
     """
     unknown = Column(0, (1 << ticks) - 1)
     formulas = [each.formula for each in situations]
@@ -63,8 +61,8 @@ def encounters(
         if situation.unknown is not None:
             hole = columns.get(situation.unknown, unknown).unknown
             true, may = true & hole, may & hole
-        if situation.place is not None:
-            there = near.get(proposition_of(situation.place).name, unknown)
+        if situation.place is not None and may:
+            there = near(situation.place)
             true, may = true & there.true, may & (there.true | there.unknown)
         seen = _first(true)
         yield Encounter(situation.key, seen, _first(may) if seen is None else None)

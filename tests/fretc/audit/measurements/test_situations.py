@@ -7,7 +7,7 @@ from itertools import product
 from compiler.logic import formula as f
 from compiler.logic.definition import holds
 from compiler.situations.situations import Situation, situations
-from fretc.audit.measurements.situations import Encounter, encounters
+from fretc.audit.measurements.situations import Encounter, encounters, nowhere_known
 from monitors.kernel import Column
 from monitors.kernel.verdicts import Truth
 from tests.each import each
@@ -18,10 +18,18 @@ from tests.strategies import Template, templates
 Row = Mapping[str, Truth]
 
 
-def met(situation: Situation, run: Sequence[Mapping[str, bool]]) -> int | None:
-    """The first tick of a run whose values are known, from the definition alone."""
-    last = len(run) - 1
-    ticks = [last] if situation.at_end else range(len(run))
+def asked(situation: Situation, recorded: Sequence[Row]) -> list[int]:
+    """The ticks that can count, from what was recorded."""
+    ticks = [len(recorded) - 1] if situation.at_end else range(len(recorded))
+    hole = situation.unknown
+    return [tick for tick in ticks if hole is None or recorded[tick][hole] is None]
+
+
+def met(
+    situation: Situation, recorded: Sequence[Row], run: Sequence[Mapping[str, bool]]
+) -> int | None:
+    """The first tick of a run that may have been so, from the definition alone."""
+    ticks = asked(situation, recorded)
     return next((tick for tick in ticks if holds(situation.formula, run, tick)), None)
 
 
@@ -39,7 +47,7 @@ def completions(run: Sequence[Row]) -> Iterator[list[dict[str, bool]]]:
 def shown(of: Sequence[Situation], run: Sequence[Row]) -> dict[str, Encounter]:
     names = [*run[0]]
     ticks, columns = packed({name: [row[name] for row in run] for name in names})
-    return {one.key: one for one in encounters(of, columns, ticks)}
+    return {one.key: one for one in encounters(of, columns, ticks, nowhere_known(ticks))}
 
 
 def runs(drawn: Template, unknowns: int) -> Iterator[list[Row]]:
@@ -58,7 +66,7 @@ def test_what_is_known_is_seen_at_its_first_tick(template: Template) -> None:
     of = situations(rule(template.sentence))
     for run in runs(template, unknowns=0):
         (known,) = completions(run)
-        expected = {one.key: Encounter(one.key, met(one, known), None) for one in of}
+        expected = {one.key: Encounter(one.key, met(one, run, known), None) for one in of}
         assert shown(of, run) == expected
 
 
@@ -72,8 +80,9 @@ def test_whatever_the_unknown_values_were_seen_is_certain_and_never_is_never(
         found = shown(of, run)
         for one in of:
             seen, perhaps = found[one.key].seen, found[one.key].perhaps
-            firsts = [met(one, each) for each in possible]
+            firsts = [met(one, run, each) for each in possible]
             if seen is not None:
+                assert seen in asked(one, run)
                 assert all(holds(one.formula, each, seen) for each in possible)
                 assert perhaps is None
             elif perhaps is None:
@@ -85,12 +94,12 @@ def test_whatever_the_unknown_values_were_seen_is_certain_and_never_is_never(
 def test_a_proposition_without_a_column_is_unknown_throughout() -> None:
     here = Situation("here", "p", f.Atom("p"))
     gone = Situation("gone", "q", f.Atom("q"), at_end=True)
-    found = encounters([here, gone], {"p": Column(0b100, 0)}, 4)
+    found = encounters([here, gone], {"p": Column(0b100, 0)}, 4, nowhere_known(4))
     assert [*found] == [Encounter("here", 2, None), Encounter("gone", None, 3)]
 
 
 def test_a_run_without_a_tick_shows_nothing() -> None:
     always = Situation("always", "", f.TRUE)
     last = Situation("last", "", f.TRUE, at_end=True)
-    found = encounters([always, last], {}, 0)
+    found = encounters([always, last], {}, 0, nowhere_known(0))
     assert [*found] == [Encounter("always", None, None), Encounter("last", None, None)]
