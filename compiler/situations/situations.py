@@ -57,9 +57,9 @@ MEANINGS: Mapping[str, str] = {
     "run-ends-missed": "{none} at the last tick of the run, in the scope",
     "alone-true": "`{operand}` alone makes the {part} true",
     "alone-false": "`{operand}` alone makes the {part} false",
-    "threshold-below": "`{measured}` is {number}, just below what `{operand}` compares it with",
-    "threshold-at": "`{measured}` is {number}, just what `{operand}` compares it with",
-    "threshold-above": "`{measured}` is {number}, just above what `{operand}` compares it with",
+    "threshold-below": "`{measured}` one step below the threshold of `{operand}` ({number})",
+    "threshold-at": "`{measured}` at the threshold of `{operand}` ({number})",
+    "threshold-above": "`{measured}` one step above the threshold of `{operand}` ({number})",
     "unknown": "`{operand}` is unknown where it decides the {part}",
 }
 """What a run shows, by the key of the situation."""

@@ -187,27 +187,27 @@ def test_a_threshold_is_met_a_step_below_at_and_above_it_in_the_unit_it_is_writt
     assert [(each.key, each.words) for each in thresholds(made)] == [
         (
             "threshold-below:condition:person<120cm",
-            "`person` is 119 cm, just below what `person < 120 cm` compares it with",
+            "`person` one step below the threshold of `person < 120 cm` (119 cm)",
         ),
         (
             "threshold-below:response:stands:abs(speed)<0.010m/s",
-            "`abs(speed)` is 0.009 m/s, just below what `stands` compares it with",
+            "`abs(speed)` one step below the threshold of `stands` (0.009 m/s)",
         ),
         (
             "threshold-at:condition:person<120cm",
-            "`person` is 120 cm, just what `person < 120 cm` compares it with",
+            "`person` at the threshold of `person < 120 cm` (120 cm)",
         ),
         (
             "threshold-at:response:stands:abs(speed)<0.010m/s",
-            "`abs(speed)` is 0.010 m/s, just what `stands` compares it with",
+            "`abs(speed)` at the threshold of `stands` (0.010 m/s)",
         ),
         (
             "threshold-above:condition:person<120cm",
-            "`person` is 121 cm, just above what `person < 120 cm` compares it with",
+            "`person` one step above the threshold of `person < 120 cm` (121 cm)",
         ),
         (
             "threshold-above:response:stands:abs(speed)<0.010m/s",
-            "`abs(speed)` is 0.011 m/s, just above what `stands` compares it with",
+            "`abs(speed)` one step above the threshold of `stands` (0.011 m/s)",
         ),
     ]
     at = thresholds(made)[2].place
