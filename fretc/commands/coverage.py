@@ -69,8 +69,8 @@ def coverage(
     shown. A situation is a way in which a run can meet a requirement: triggered again while a
     demand is open, answered at the last tick allowed, and others (docs/coverage.md).
 
-    Exit status: 0 every situation was seen that a run can show, 2 bad use or bad input, 3 some
-    were not.
+    Exit status: 0 every situation was seen that a run can show, 2 bad use or bad input (as of an
+    audit: what could be looked at is printed all the same), 3 some were not.
     """
     from fretc.coverage import record, text_output
     from fretc.coverage.coverage import coverage as found_in
@@ -84,9 +84,10 @@ def coverage(
                 help="leave out one of the two",
             )
         )
-    source, titles = (
-        _audited(paths, requirements, bindings, jobs) if paths else (_recorded(evidence), {})
-    )
+    if paths:
+        source, titles, is_bad = _audited(paths, requirements, bindings, jobs)
+    else:
+        source, titles, is_bad = _recorded(evidence), {}, False
     covered = found_in(source)
     known = _directions(covered, tests)
     if form == "json":
@@ -94,6 +95,8 @@ def coverage(
     else:
         found = text_output.lines(covered, titles, known, every=verbose)
         click.echo(coloured((visible(text), colour) for text, colour in found), nl=False)
+    if is_bad:
+        raise SystemExit(BAD)
     raise SystemExit(SHOWN if is_complete(covered, known) else NOT_SHOWN)
 
 
@@ -139,8 +142,11 @@ def _recorded(evidence: str) -> EvidenceSource:
 
 def _audited(
     paths: Sequence[str], requirements: str, bindings: str | None, jobs: int
-) -> tuple[EvidenceSource, dict[str, str]]:
-    """The audit of some logs, of which nothing is written, and what requirements are called."""
+) -> tuple[EvidenceSource, dict[str, str], bool]:
+    """The audit of some logs, what requirements are called, and whether some input was bad.
+
+    Nothing is written.
+    """
     from fretc.audit.many_logs import locally
     from fretc.commands.audit_logs import selected
     from fretc.commands.audit_progress import audit_in_memory
@@ -148,10 +154,12 @@ def _audited(
     project, plan = planned_project(requirements, bindings)
     logs, _ = selected(paths, None, None, 0)
     audit = audit_in_memory(plan, logs, locally(jobs))
-    say_also(project.answered(audit.diagnostics), project.diagnostics)
+    diagnostics = project.answered(audit.diagnostics)
+    say_also(diagnostics, project.diagnostics)
     if not audit.read:
         raise SystemExit(BAD)
-    return audit.source, {each.id: each.name for each in project.requirements}
+    is_bad = bool(plan.refused) or has_errors((*project.diagnostics, *diagnostics))
+    return audit.source, {each.id: each.name for each in project.requirements}, is_bad
 
 
 def planned_project(requirements: str, bindings: str | None) -> tuple[Project, Plan]:

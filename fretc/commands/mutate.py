@@ -20,7 +20,7 @@ from fretc.terminal.output import BAD, INTERRUPTED, NOT_SHOWN, SHOWN, coloured, 
 
 
 @click.command(short_help="Say which wrong requirements recorded runs would not have noticed.")
-@click.argument("folder", nargs=-1, type=PATH, metavar="[FILE]")
+@click.argument("folder", required=False, type=PATH, metavar="[FOLDER]")
 @click.option(
     "--against",
     "paths",
@@ -37,7 +37,7 @@ from fretc.terminal.output import BAD, INTERRUPTED, NOT_SHOWN, SHOWN, coloured, 
 @tests_option
 @jobs_option
 def mutate(
-    folder: tuple[str, ...],
+    folder: str | None,
     paths: tuple[str, ...],
     requirements: str,
     bindings: str | None,
@@ -48,13 +48,14 @@ def mutate(
 ) -> None:
     """Say which wrong requirements recorded runs would not have noticed.
 
-    FILE holds requirements, or is a folder of such files: in place of `--requirements`. Each is
+    FOLDER has requirements, or is one file of them: in place of `--requirements`. Each is
     changed in small ways, as somebody might have written or meant it (docs/coverage.md). A run
     notices a change where the verdict, or the ticks of a violation, are not what they were.
 
     What the tests prove to say the same is left out: no run could notice it.
 
-    Exit status: 0 every change is noticed, 2 bad use or bad input, 3 some are not.
+    Exit status: 0 every change is noticed, 2 bad use or bad input (what could be judged is printed
+    all the same), 3 some are not.
     """
     from fretc.commands.audit_logs import selected
     from fretc.commands.audit_progress import shown
@@ -63,7 +64,7 @@ def mutate(
     from fretc.coverage.mutation import inquiry, survey
     from fretish.diagnostics.rendering import visible
 
-    (place, *_) = places(folder, requirements)
+    (place,) = places([folder] if folder else [], requirements)
     project, plan = planned_project(place, bindings)
     logs, _ = selected(paths, None, None, 0)
     asked = inquiry(project, plan)
@@ -85,4 +86,6 @@ def mutate(
         titles = {each.id: each.name for each in project.requirements}
         all_lines = mutation_output.lines(found, titles, every=verbose)
         click.echo(coloured((visible(text), colour) for text, colour in all_lines), nl=False)
+    if plan.refused or found.diagnostics:
+        raise SystemExit(BAD)
     raise SystemExit(SHOWN if found.is_complete else NOT_SHOWN)

@@ -94,7 +94,9 @@ def test_tests_say_how_a_run_comes_by_what_was_not_seen(robot: Fretc) -> None:
 
 def test_what_is_not_measured_is_not_seen(robot: Fretc) -> None:
     write("cut.mcap", "no log")
+    assert robot("mutate", "--against", "late.mcap", "--against", "cut.mcap").status == 2
     run = robot("coverage", "late.mcap", "cut.mcap", "--format", "json")
+    assert run.status == 2  # as an audit of them
     (one,) = json.loads(run.out)["requirements"]
     assert (one["measured"], one["unmeasured"]) == ([0], [1])
     assert robot("coverage", "cut.mcap").status == 2
