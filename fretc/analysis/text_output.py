@@ -202,7 +202,7 @@ def _rest(analysis: Analysis) -> Iterator[Line]:
         text = f"{signs.UNKNOWN.glyph} open: {each.question}: {each.why}"
         yield text, signs.UNKNOWN.colour
     for assumption in analysis.assumptions:
-        yield f"assumed {assumption.id}: {assumption.text or assumption.sentence}", None
+        yield f"assumed {assumption.in_words}", None
     for role in (Role.INPUT, Role.OUTPUT):
         names = [name for name, own in analysis.roles.items() if own is role]
         yield f"{role}s: {', '.join(names) or 'none'}", None

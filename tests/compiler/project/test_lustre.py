@@ -2,6 +2,7 @@
 
 import pytest
 from hypothesis import given
+from hypothesis import strategies as st
 
 from compiler.project.lustre import fretish, lustre
 from fretish import expressions as e
@@ -9,6 +10,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.parser import parse_value
 from fretish.printer import expression
+from tests.monitoring import monitor, steps
 from tests.strategies import expressions
 
 
@@ -98,3 +100,46 @@ def test_what_is_written_is_read_as_the_same_or_not_at_all(tree: e.Expression) -
     assert again is None or again == tree
     if not any(isinstance(part, e.Name | e.Call) for part in e.parts(tree)):
         assert again == tree
+
+
+# Delays: a naive evaluator of Lustre's streams ---------------------------------------------------
+
+Stream = tuple[str, list[bool]]
+"""An expression of Lustre, and its value at each tick of one run."""
+RUN = {"p": [True, False, False, True, True, False], "q": [False, False, True, True, False, True]}
+
+
+def streams(inner: st.SearchStrategy[Stream]) -> st.SearchStrategy[Stream]:
+    literals = st.booleans()
+    delays = st.builds(
+        lambda first, one: (
+            f"({str(first).lower()} -> pre ({one[0]}))",
+            [first, *one[1][:-1]],
+        ),
+        literals,
+        inner,
+    )
+    joins = st.builds(
+        lambda one, two: (
+            f"(({one[0]}) and ({two[0]}))",
+            [a and b for a, b in zip(one[1], two[1], strict=True)],
+        ),
+        inner,
+        inner,
+    )
+    negations = st.builds(lambda one: (f"(not ({one[0]}))", [not a for a in one[1]]), inner)
+    return delays | joins | negations
+
+
+@given(st.recursive(st.sampled_from([*RUN.items()]), streams, max_leaves=4))
+def test_a_delay_means_what_it_means_in_lustre(stream: Stream) -> None:
+    text, values = stream
+    tree = fretish(text)
+    assert tree is not None
+    machine = monitor(f"the sw shall always satisfy r <-> ({expression(tree)})")
+    columns = {**RUN, "r": values}
+    assert steps(machine, columns)[-1].first_violation is None
+    for place, value in enumerate(values):
+        other = [*values[:place], not value, *values[place + 1 :]]
+        machine = monitor(f"the sw shall always satisfy r <-> ({expression(tree)})")
+        assert steps(machine, {**RUN, "r": other})[-1].first_violation == place

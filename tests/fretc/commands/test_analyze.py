@@ -102,7 +102,7 @@ def test_an_assumption_makes_it_realizable(fretc: Fretc, tmp_path: Path) -> None
     run = fretc("analyze", str(written(tmp_path, FIGHT, more=assumed)))
     assert run.status == 0, run.out
     assert run.out.startswith("✔ realizable: a system can keep all requirements, while the assump")
-    assert "assumed A1: one button\nassumed A2: whenever start the man shall" in run.out
+    assert " satisfy !start (one button)\nassumed A2: whenever start the man shall" in run.out
 
 
 @pytest.mark.parametrize(
