@@ -20,10 +20,9 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized, plain
 from compiler.formalization.obligation import TRAITS, Trait, obligation
 from compiler.logic import printing
+from compiler.program.program import MARKS, SIGNALS
 from compiler.targets.python.comparisons import ANNOTATIONS, NAMES, Front, Writer, front
 from compiler.targets.python.program import (
-    MARKS,
-    SIGNALS,
     Program,
     locals_of,
     marks_of,

@@ -1,0 +1,154 @@
+"""Facts against the reference automaton, on random words of every template."""
+
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import pytest
+
+from compiler.formalization import reference
+from compiler.formalization.obligation import Kind
+from compiler.formalization.reference import State, happening, step
+from compiler.logic import formula as f
+from compiler.logic.evaluation import evaluate
+from compiler.situations.facts import Facts, facts
+from fretish.syntax import ConditionKind
+from tests import meaning
+from tests.emitting import rule
+from tests.strategies import Template, templates
+
+Row = Mapping[str, bool]
+LETTERS = "mpqs"
+
+
+@dataclass(frozen=True)
+class Tick:
+    """One tick of a run of the reference automaton, unbroken before."""
+
+    number: int
+    row: Row
+    before: State
+    after: State | None
+
+
+def ticks(counted: reference.Template, rows: Sequence[Row]) -> Iterator[Tick]:
+    """Up to and including the first that breaks the sentence."""
+    state: State | None = reference.initial(counted)
+    for number, row in enumerate(rows):
+        assert state is not None
+        after = step(counted, state, *(row[name] for name in LETTERS))
+        yield Tick(number, row, state, after)
+        if after is None:
+            return
+        state = after
+
+
+def words(drawn: Template) -> Iterator[list[Row]]:
+    choose = random.Random(repr(drawn))
+    for length in (4, 8, 16, 16, 32):
+        for likely in (0.2, 0.5, 0.8):
+            odds = {"m": 0.6, "p": 0.4, "q": likely, "s": 0.2}
+            yield [{name: choose.random() < odds[name] for name in LETTERS} for _ in range(length)]
+
+
+class Run:
+    """A word beside what the facts say of it."""
+
+    def __init__(self, known: Facts, rows: Sequence[Row]) -> None:
+        self.length = len(rows)
+        self.columns = {
+            name: sum(row[name] << tick for tick, row in enumerate(rows)) for name in LETTERS
+        }
+        self.known = known
+
+    def has(self, fact: f.Formula, tick: int) -> bool:
+        return bool(evaluate(fact, self.columns, self.length) >> tick & 1)
+
+
+def changed(counted: reference.Template, tick: Tick, letter: str) -> bool:
+    """Whether the value of a letter decides what is demanded after the tick, or where it lies."""
+
+    def result(value: bool) -> object:
+        row = {**tick.row, letter: value}
+        after = step(counted, tick.before, *(row[name] for name in LETTERS))
+        if after is None:
+            return None
+        return after.phase if letter == "m" else after.counted
+
+    return result(True) != result(False)
+
+
+@pytest.mark.parametrize("scope", meaning.SCOPES)
+def test_facts_are_those_of_the_definition(scope: str) -> None:
+    for drawn in (each for each in templates() if each.scope == scope):
+        made = rule(drawn.sentence)
+        counted = reference.template(made.sentence, made.ticks or 0)
+        known = facts(made)
+        for rows in words(drawn):
+            run = Run(known, rows)
+            for tick in ticks(counted, rows):
+                assert_same(counted, run, tick)
+
+
+def assert_same(counted: reference.Template, run: Run, tick: Tick) -> None:
+    known, at = run.known, tick.number
+    found = happening(counted, tick.before, tick.row["m"], tick.row["p"])
+    assert run.has(known.inside, at) is found.enforced
+    assert run.has(known.triggered, at) is found.triggered
+    assert run.has(known.ended, at) is (ended(tick, counted) and at > 0)
+    was_open = found.enforced and tick.before.counted != 0
+    assert run.has(known.was_open, at) is was_open
+    assert run.has(known.waiting, at) is (was_open or found.triggered)
+    if tick.after is not None:
+        assert run.has(known.open, at) is (tick.after.counted != 0)
+    assert_asked(counted, run, tick)
+    for distance in range(counted.ticks + 2):
+        assert_distance(counted, run, tick, distance)
+
+
+def ended(tick: Tick, counted: reference.Template) -> bool:
+    enforced = (reference.Phase.INSIDE, reference.Phase.LAST_RUN)
+    here = happening(counted, tick.before, tick.row["m"], tick.row["p"]).enforced
+    return tick.before.phase in enforced and not here
+
+
+def assert_asked(counted: reference.Template, run: Run, tick: Tick) -> None:
+    """What decides is what changes something; nothing is said of runs that are lost already."""
+    known, at = run.known, tick.number
+    enforced = happening(counted, tick.before, tick.row["m"], tick.row["p"]).enforced
+    if known.demand.kind is Kind.AFTER and tick.before.counted < 0:
+        return  # two demands clash
+    if enforced:
+        assert run.has(known.asks_for_condition, at) is (
+            counted.condition is not None and changed(counted, tick, "p")
+        ), (counted, tick)
+        assert run.has(known.asks_for_answer, at) is changed(counted, tick, "q"), (counted, tick)
+    else:
+        assert not run.has(known.asks_for_condition, at)
+        assert not run.has(known.asks_for_answer, at)
+
+
+def assert_distance(counted: reference.Template, run: Run, tick: Tick, distance: int) -> None:
+    known, at, count = run.known, tick.number, tick.before.counted
+    found = happening(counted, tick.before, tick.row["m"], tick.row["p"])
+    if known.demand.kind in (Kind.WITHIN, Kind.AFTER):
+        assert run.has(known.oldest(distance), at) is (
+            (found.enforced and abs(count) == distance)
+            if distance
+            else found.triggered and not count
+        )
+    elif known.demand.kind is Kind.FOR and distance <= counted.ticks:
+        assert run.has(known.newest(distance), at) is (
+            found.triggered
+            if distance == 0
+            else found.enforced and not found.triggered and count == counted.ticks + 1 - distance
+        )
+
+
+def test_a_condition_that_cannot_trigger_again_is_not_asked_for() -> None:
+    known = facts(rule("upon p the sw shall within 2 ticks satisfy q"))
+    assert known.whole.condition is ConditionKind.TRIGGER
+    rows = [{"m": False, "p": True, "q": True, "s": False}] * 3
+    run = Run(known, rows)
+    assert [run.has(known.triggered, at) for at in range(3)] == [True, False, False]
+    assert not any(run.has(known.asks_for_condition, at) for at in (1, 2))
