@@ -35,6 +35,7 @@ from fretc.analysis.implications import Consistency, Constant, Removable
 from fretc.analysis.repairs import repairs
 from fretc.analysis.stage import Stage, stage
 from fretc.analysis.verdicts import Completeness, component, conflicts, strategy, verdict
+from fretish.bindings.declarations import Role
 from fretish.checking import NUMBERS_BACK, calls, conditions
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import deep
@@ -209,18 +210,27 @@ class _Setting:
         return Job(f"can {self._name} be kept together?", ask, not_checked)
 
     def consistency(self) -> Job:
-        """Whether any run keeps a group; where a system keeps all of it, one does."""
+        """Whether any run keeps a group; where a system keeps all of it, one does.
+
+        Where a system that chooses everything cannot keep a part of it, none does.
+        """
         title = f"can any run keep {self._name}?"
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
-            kept = {
-                id
-                for each in known
-                if isinstance(each, Component) and each.verdict is Verdict.REALIZABLE
-                for id in each.requirements
-            }
+            kept, lost = (
+                {
+                    id
+                    for each in known
+                    if isinstance(each, Component) and each.verdict is verdict
+                    for id in each.requirements
+                }
+                for verdict in (Verdict.REALIZABLE, Verdict.UNREALIZABLE)
+            )
+            chosen = (self._roles[name] for rule in self._rules for name in rule.variables)
             if not self._assumptions and kept.issuperset(self._ids):
                 yield Consistency(self._ids, True)
+            elif not self._assumptions and lost & {*self._ids} and Role.INPUT not in chosen:
+                yield Consistency(self._ids, False)
             else:
                 yield from self._answers(title, of_runs.consistency)
 
