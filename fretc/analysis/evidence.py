@@ -128,7 +128,7 @@ def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -
             yield f"{what}{id} was part of the set, and is not any more"
         elif id not in then:
             yield f"{what}{id} was no part of the set"
-        elif then[id].sha256 != now[id].sha256:
+        elif then[id] != now[id]:
             yield f"{what}{id} has changed since"
 
 

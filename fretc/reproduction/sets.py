@@ -1,7 +1,7 @@
 """Whether an analysis still stands: its questions are asked again, and the answers compared.
 
 What took too long then or now, or was stopped, is not checked; anything else that is not the same
-is a difference, and so is a conflict that is left out.
+is a difference, and so is a conflict that is left out. Nothing but `seconds` is passed over.
 """
 
 from __future__ import annotations
@@ -14,9 +14,11 @@ from fretc.analysis.findings import Analysis, Component, Conflict, Verdict
 from fretc.reproduction.outcome import TOGETHER, Finding, Recheck, differs, unknown
 
 _REST = (
-    "repairs", "redundant", "removable", "vacuous", "consistent", "inconsistent", "always",
-    "never", "assumptions", "roles", "terms",
+    "verdict", "repairs", "redundant", "removable", "vacuous", "consistent", "inconsistent",
+    "always", "never", "assumptions", "roles", "terms",
 )  # fmt: skip
+_OF_TIME = ("why", "complete", "open")
+"""What may be otherwise where a question took too long."""
 
 
 def compared(document: Document, now: Analysis) -> Iterator[Recheck]:
@@ -29,21 +31,33 @@ def compared(document: Document, now: Analysis) -> Iterator[Recheck]:
     before = document.analysis
     if document.as_fret:
         yield unknown(TOGETHER, "", "it answers FRET's question, not whether they can be kept")
-    if document.fretc != __version__:
+    if {document.fretc, before.fretc} != {__version__}:
         yield differs(TOGETHER, "", f"this is fretc {__version__}")
-    known = {frozenset(each.requirements): each for each in now.components}
+    known = {each.requirements: each for each in now.components}
     for each in before.components:
-        yield _component(each, known.get(frozenset(each.requirements)))
+        yield _component(each, known.get(each.requirements))
+    then = {each.requirements for each in before.components}
+    for ids in (each for each in known if each not in then):
+        yield differs(TOGETHER, "", "it is left out", claim=", ".join(ids))
+    if len(then) != len(before.components):
+        yield differs(TOGETHER, "", "a component is told twice")
     yield from _conflicts(before, now)
     others = [name for name in _REST if getattr(before, name) != getattr(now, name)]
     claim = "what else is said of them"
-    if not others:
-        yield Recheck(TOGETHER, "", Finding.STANDS, (), claim)
-    elif before.open or now.open:
+    if others and not (before.open or now.open):
+        yield differs(TOGETHER, "", f"it differs in {', '.join(others)}", claim=claim)
+    elif others:
         why = f"some questions have no answer, and {', '.join(others)} may differ for that"
         yield unknown(TOGETHER, "", why, claim=claim)
+    elif any(getattr(before, name) != getattr(now, name) for name in _OF_TIME):
+        why = f"other questions are open now: {_questions(now)}, and were: {_questions(before)}"
+        yield unknown(TOGETHER, "", why, claim=claim)
     else:
-        yield differs(TOGETHER, "", f"it differs in {', '.join(others)}", claim=claim)
+        yield Recheck(TOGETHER, "", Finding.STANDS, (), claim)
+
+
+def _questions(analysis: Analysis) -> str:
+    return "; ".join(f"{each.question} ({each.why})" for each in analysis.open) or "none"
 
 
 def _component(before: Component, now: Component | None) -> Recheck:
@@ -52,6 +66,8 @@ def _component(before: Component, now: Component | None) -> Recheck:
         return differs(TOGETHER, "", "they are no component of the set now", claim=claim)
     if now.verdict is Verdict.NOT_CHECKED:
         return unknown(TOGETHER, "", now.why, claim=claim)
+    if before.verdict is now.verdict and before.why != now.why:
+        return unknown(TOGETHER, "", f"`{now.why}` is why now, and was `{before.why}`", claim=claim)
     if before.verdict is now.verdict:
         return Recheck(TOGETHER, "", Finding.STANDS, (), f"{claim}: {now.verdict}")
     why = f"they are {now.verdict} now, and the file says {before.verdict}"
