@@ -57,9 +57,9 @@ MEANINGS: Mapping[str, str] = {
     "run-ends-missed": "{none} at the last tick of the run, in the scope",
     "alone-true": "`{operand}` alone makes the {part} true",
     "alone-false": "`{operand}` alone makes the {part} false",
-    "threshold-below": "`{measured}` is {number}, just below what `{operand}` compares it with",
-    "threshold-at": "`{measured}` is {number}, just what `{operand}` compares it with",
-    "threshold-above": "`{measured}` is {number}, just above what `{operand}` compares it with",
+    "threshold-below": "`{measured}` one step below the threshold of `{operand}` ({number})",
+    "threshold-at": "`{measured}` at the threshold of `{operand}` ({number})",
+    "threshold-above": "`{measured}` one step above the threshold of `{operand}` ({number})",
     "unknown": "`{operand}` is unknown where it decides the {part}",
 }
 """What a run shows, by the key of the situation."""
@@ -95,18 +95,24 @@ def situations(rule: Formalized) -> tuple[Situation, ...]:
     """
     if any(name in LOOK_AHEAD for each in conditions(rule.sentence) for name in calls(each)):
         return ()
-    known = facts(rule)
-    passing = {**dict(_of_scope(known)), **dict(_of_triggers(known)), **dict(of_demand(known))}
-    passing["scope-ends-open"] = _ends_open(known)
-    found = {key: (formula, False) for key, formula in passing.items()}
-    found |= {key: (formula, True) for key, formula in _of_the_end(known)}
-    words = _words(rule, known)
-    timed = (
-        Situation(key, meaning.format_map(words), *found[key])
-        for key, meaning in MEANINGS.items()
-        if key in found and found[key][0] != f.FALSE
+    known, read = facts(rule), {*rule.propositions}
+    return tuple(
+        each
+        for each in (*_of_time(rule, known), *_of_operands(rule, known))
+        if each.formula != f.FALSE and read.issuperset(f.atoms(each.formula))
     )
-    return (*timed, *_of_operands(rule, known))
+
+
+def _of_time(rule: Formalized, known: Facts) -> Iterator[Situation]:
+    """Those that ask when something happens."""
+    passing = dict([*_of_scope(known), *_of_triggers(known), *of_demand(known)])
+    passing["scope-ends-open"] = _ends_open(known)
+    ending = dict(_of_the_end(known))
+    found, words = {**passing, **ending}, _words(rule, known)
+    for key, meaning in MEANINGS.items():
+        if key in found:
+            shown = meaning.format_map(words)
+            yield Situation(key, shown, found[key], at_end=key in ending)
 
 
 _Rows = Iterator[tuple[str, f.Formula]]
@@ -116,11 +122,12 @@ def _of_scope(known: Facts) -> _Rows:
     """How the interval comes, and comes again."""
     inside, triggered = known.inside, known.triggered
     scope, mode = known.whole.scope, known.whole.mode
-    ended_before = f.once(known.ended)
     match scope:
         case None:
             return
         case s.ScopeKind.IN | s.ScopeKind.NOT_IN | s.ScopeKind.ONLY_IN:
+            ended_before = f.once(known.ended)
+            yield "first-interval", f.and_(triggered, f.not_(ended_before))
             yield "second-interval", f.and_(triggered, ended_before)
         case s.ScopeKind.BEFORE:
             yield "mode-again", f.and_(f.previous(f.once(mode)), f.not_(mode))
@@ -132,7 +139,6 @@ def _of_scope(known: Facts) -> _Rows:
             yield "mode-again", f.and_(f.not_(inside), mode)
         case _:
             assert_never(scope)
-    yield "first-interval", f.and_(triggered, f.not_(ended_before))
     if known.whole.condition is not None:
         p = known.whole.trigger
         yield "condition-outside", f.and_(p, f.not_(inside))
@@ -192,7 +198,7 @@ def _ends_open(known: Facts) -> f.Formula:
 
 def _of_the_end(known: Facts) -> _Rows:
     """What the last tick of the whole run tells."""
-    if known.whole.scope is not None:
+    if known.stage.left != f.FIRST:  # else the first tick lies in it
         yield "never-enforced", f.not_(f.once(known.inside))
     if known.whole.condition is not None:
         silent = f.not_(f.once(known.triggered))
