@@ -359,8 +359,10 @@ def _asked_again(
     now, stopped = asked(rules, assumed, chosen, Options(as_fret=document.as_fret))
     if stopped:
         raise SystemExit(INTERRUPTED)
-    old = [differs(TOGETHER, "", why) for why in changes(document, in_force, assumed)]
-    return (*old, *compared(document, now))
+    old = [differs(TOGETHER, "", why) for why in changes(document, rules, assumed)]
+    others = (rule.id for rule in in_force if rule not in rules)  # of another `--component`, or new
+    new = [unknown(TOGETHER, id, "it was no part of the set") for id in others]
+    return (*old, *new, *compared(document, now))
 
 
 def _report(
