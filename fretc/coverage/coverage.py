@@ -61,22 +61,6 @@ class RequirementCoverage:
         """The situations of which the runs show this."""
         return tuple(each for each in self.situations if each.standing is standing)
 
-    @property
-    def short(self) -> str:
-        """`7 of 11 situations seen`."""
-        if not self.situations or not self.measured:
-            return "situations not measured"
-        return f"{len(self.of(Standing.SEEN))} of {len(self.situations)} situations seen"
-
-    @property
-    def text(self) -> str:
-        """`7 of 11 situations seen; perhaps: ...; never: ...`."""
-        parts = [self.short]
-        for standing in (Standing.PERHAPS, Standing.NEVER):
-            words = ", ".join(each.words for each in self.of(standing))
-            parts += [f"{standing}: {words}"] if words else []
-        return "; ".join(parts)
-
 
 @dataclass(frozen=True, slots=True)
 class Coverage:

@@ -129,10 +129,14 @@ class Planned:
 class SituationsView:
     """How much of a requirement the runs have exercised."""
 
-    short: str
-    """`7 of 11 situations seen`."""
+    share: str
+    """`7/11`; empty where they were not measured."""
     text: str
-    """The same, with those that were perhaps seen, and those that never were."""
+    """`7 of 11 situations seen`."""
+    perhaps: tuple[str, ...]
+    """Those that were perhaps seen, in words."""
+    never: tuple[str, ...]
+    """Those that were not."""
 
 
 @dataclass(frozen=True, slots=True)

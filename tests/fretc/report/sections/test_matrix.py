@@ -102,13 +102,13 @@ def test_without_hazards_the_requirements_are_still_in_the_matrix(tmp_path: Path
     assert content["orphans"]["parents"] == ["R1 names HAZ-1, which is not declared"]
 
 
-def shown(known: Project, folder: Path, *results: Mapping[str, Any]) -> str | None:
+def shown(known: Project, folder: Path, *results: Mapping[str, Any]) -> list[Any] | None:
     """What the matrix and the section of R1 say of situations."""
     content = as_json(report_of(known, folder, *results))
     (row,) = content["matrix"]
     (section,) = content["requirements"]
     assert row["situations"] == section["situations"]
-    return row["situations"] and str(row["situations"]["text"])
+    return row["situations"] and [*row["situations"].values()]
 
 
 def situations(*seen: str, perhaps: str = "") -> dict[str, Any]:
@@ -124,11 +124,11 @@ def test_a_row_says_which_situations_current_results_have_shown(tmp_path: Path) 
     old = result(
         known, "satisfied", run="b", situations=situations("at-once"), hashes={"bindings": "0" * 64}
     )
-    assert shown(known, tmp_path, late, old) == (
-        "1 of 3 situations seen; perhaps: at-once <b>it</b>; never: while-open <b>it</b>"
-    )
-    assert shown(known, tmp_path, old) == "situations not measured"
-    assert shown(known, tmp_path, result(known, "satisfied")) == "situations not measured"
+    one = ["1/3", "1 of 3 situations seen", ["at-once <b>it</b>"], ["while-open <b>it</b>"]]
+    none = ["", "situations not measured", [], []]
+    assert shown(known, tmp_path, late, old) == one
+    assert shown(known, tmp_path, old) == none
+    assert shown(known, tmp_path, result(known, "satisfied")) == none
     assert shown(known, tmp_path) is None
 
 
