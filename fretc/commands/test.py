@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     "--time",
     "seconds",
     type=click.FloatRange(min=0, min_open=True),
-    default=20,
+    default=60,
     show_default=True,
     help="Seconds of a processor for each requirement.",
 )
