@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, assert_never
+from typing import assert_never
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import TRAITS, Kind, Trait
@@ -57,9 +57,9 @@ MEANINGS: Mapping[str, str] = {
     "run-ends-missed": "{none} at the last tick of the run, in the scope",
     "alone-true": "`{operand}` alone makes the {part} true",
     "alone-false": "`{operand}` alone makes the {part} false",
-    "threshold-below": "`{measured}` is {number}, just below what `{operand}` compares it with",
-    "threshold-at": "`{measured}` is {number}, just what `{operand}` compares it with",
-    "threshold-above": "`{measured}` is {number}, just above what `{operand}` compares it with",
+    "threshold-below": "`{measured}` one step below the threshold of `{operand}` ({number})",
+    "threshold-at": "`{measured}` at the threshold of `{operand}` ({number})",
+    "threshold-above": "`{measured}` one step above the threshold of `{operand}` ({number})",
     "unknown": "`{operand}` is unknown where it decides the {part}",
 }
 """What a run shows, by the key of the situation."""
@@ -81,7 +81,8 @@ class Situation:
     at_end: bool = False
     """Whether the last tick of a run alone counts."""
     unknown: str | None = None
-    """An atom that must be unknown at that tick; the formula says that its value decides."""
+    """An atom that must be unknown at that tick. The formula says that its value decides; where
+    parts of the sentence share the atom, it has to hold whatever the atom is there."""
     place: Place | None = None
     """Where a number must be at that tick, too: over signals as bindings have them, or over the
     variables of the sentence, where none are bound."""
@@ -95,18 +96,24 @@ def situations(rule: Formalized) -> tuple[Situation, ...]:
     """
     if any(name in LOOK_AHEAD for each in conditions(rule.sentence) for name in calls(each)):
         return ()
-    known = facts(rule)
-    passing = {**dict(_of_scope(known)), **dict(_of_triggers(known)), **dict(of_demand(known))}
-    passing["scope-ends-open"] = _ends_open(known)
-    found = {key: (formula, False) for key, formula in passing.items()}
-    found |= {key: (formula, True) for key, formula in _of_the_end(known)}
-    words = _words(rule, known)
-    timed = (
-        Situation(key, meaning.format_map(words), *found[key])
-        for key, meaning in MEANINGS.items()
-        if key in found and found[key][0] != f.FALSE
+    known, read = facts(rule), {*rule.propositions}
+    return tuple(
+        each
+        for each in (*_of_time(rule, known), *_of_operands(rule, known))
+        if each.formula != f.FALSE and read.issuperset(f.atoms(each.formula))
     )
-    return (*timed, *_of_operands(rule, known))
+
+
+def _of_time(rule: Formalized, known: Facts) -> Iterator[Situation]:
+    """Those that ask when something happens."""
+    passing = dict([*_of_scope(known), *_of_triggers(known), *of_demand(known)])
+    passing["scope-ends-open"] = _ends_open(known)
+    ending = dict(_of_the_end(known))
+    found, words = {**passing, **ending}, _words(rule, known)
+    for key, meaning in MEANINGS.items():
+        if key in found:
+            shown = meaning.format_map(words)
+            yield Situation(key, shown, found[key], at_end=key in ending)
 
 
 _Rows = Iterator[tuple[str, f.Formula]]
@@ -116,11 +123,12 @@ def _of_scope(known: Facts) -> _Rows:
     """How the interval comes, and comes again."""
     inside, triggered = known.inside, known.triggered
     scope, mode = known.whole.scope, known.whole.mode
-    ended_before = f.once(known.ended)
     match scope:
         case None:
             return
         case s.ScopeKind.IN | s.ScopeKind.NOT_IN | s.ScopeKind.ONLY_IN:
+            ended_before = f.once(known.ended)
+            yield "first-interval", f.and_(triggered, f.not_(ended_before))
             yield "second-interval", f.and_(triggered, ended_before)
         case s.ScopeKind.BEFORE:
             yield "mode-again", f.and_(f.previous(f.once(mode)), f.not_(mode))
@@ -132,7 +140,6 @@ def _of_scope(known: Facts) -> _Rows:
             yield "mode-again", f.and_(f.not_(inside), mode)
         case _:
             assert_never(scope)
-    yield "first-interval", f.and_(triggered, f.not_(ended_before))
     if known.whole.condition is not None:
         p = known.whole.trigger
         yield "condition-outside", f.and_(p, f.not_(inside))
@@ -192,7 +199,7 @@ def _ends_open(known: Facts) -> f.Formula:
 
 def _of_the_end(known: Facts) -> _Rows:
     """What the last tick of the whole run tells."""
-    if known.whole.scope is not None:
+    if known.stage.left != f.FIRST:  # else the first tick lies in it
         yield "never-enforced", f.not_(f.once(known.inside))
     if known.whole.condition is not None:
         silent = f.not_(f.once(known.triggered))
@@ -222,8 +229,12 @@ def _of_operand(rule: Formalized, operand: Operand) -> Iterator[Situation]:
     about = f"{operand.part.partition(' ')[0]}:{_short(shown)}"
     texts = {"operand": expression(shown), "part": operand.part}
 
-    def situation(key: str, formula: f.Formula, **more: Any) -> Situation:
-        return Situation(f"{key}:{about}", MEANINGS[key].format(**texts), formula, **more)
+    def situation(
+        key: str, formula: f.Formula, place: Place | None = None, unknown: str | None = None
+    ) -> Situation:
+        numbers = {} if place is None else _numbers(place)
+        words = MEANINGS[key].format(**texts, **numbers)
+        return Situation(f"{key}:{about}", words, formula, unknown=unknown, place=place)
 
     if operand.decides == f.FALSE:
         return
@@ -231,12 +242,15 @@ def _of_operand(rule: Formalized, operand: Operand) -> Iterator[Situation]:
         yield situation("alone-true", f.and_(operand.decides, operand.whole))
         yield situation("alone-false", f.and_(operand.decides, f.not_(operand.whole)))
     for comparison, key, place in _places(stated):
-        texts["measured"], texts["number"] = expression(place.measured), expression(place.number)
-        found = situation(key, operand.decides, place=place)
+        found = situation(key, operand.decides, place)
         several = "" if comparison == shown else f":{_short(comparison)}"
         yield replace(found, key=f"{found.key}{several}")
     if operand.atom is not None:
         yield situation("unknown", operand.decides, unknown=operand.atom)
+
+
+def _numbers(place: Place) -> Mapping[str, str]:
+    return {"measured": expression(place.measured), "number": expression(place.number)}
 
 
 def _places(stated: e.Expression) -> Iterator[tuple[e.Comparison, str, Place]]:
