@@ -16,9 +16,9 @@ ORDER = """
 monitors.kernel  monitors
 fretish.diagnostics  fretish.reading  fretish.mistakes  fretish  fretish.bindings
 compiler.files  compiler.logic.ordering  compiler.logic  compiler.formalization  compiler.project
-compiler.agents
-compiler.program
-compiler.targets  compiler.targets.python  compiler.targets.automata  compiler.targets.ajpf
+compiler.agents  compiler.program
+compiler.targets  compiler.targets.python  compiler.targets.c
+compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit

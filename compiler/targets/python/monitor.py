@@ -39,15 +39,15 @@ from fretish.reading.recursion import deep
 from monitors.source_text import kernel, kernel_of_variables
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: Formalized, language: str = "Python") -> Diagnostic | None:
     """F312: a monitor steps by ticks, so it must be known how long a tick is.
 
-    F601: Python reads no more than 200 parentheses within each other; and one run cannot show
+    F601: no language reads any number of parentheses within each other; and one run cannot show
     a probability.
     """
     if not is_readable(rule):
         return not_expressible(
-            "Python",
+            language,
             rule,
             f"more than {_MOST_LEVELS} operators within each other",
             "give parts of the expression names of their own",
@@ -119,7 +119,7 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
     if options.one_file:
         return (Artifact(PurePosixPath("monitors.py"), text(*rules)),)
     return tuple(
-        Artifact(PurePosixPath(f"{_module(stem(rule))}_monitor.py"), text(rule)) for rule in rules
+        Artifact(PurePosixPath(f"{module(stem(rule))}_monitor.py"), text(rule)) for rule in rules
     )
 
 
@@ -147,7 +147,7 @@ def text(*rules: Formalized) -> str:
         title=", ".join(rule.id for rule in rules),
         class_name=_class_name(rules[0].id) if len(rules) == 1 else "All",
         version=__version__,
-        rules=[_described(rule) for rule in rules],
+        rules=[described(rule) for rule in rules],
         probabilistic=[_probability_note(rule) for rule in probabilistic],
         tick=str(rules[0].clock) if rules[0].clock else "not declared",
         inputs=inputs,
@@ -264,7 +264,8 @@ def _probability_note(rule: Formalized) -> dict[str, str]:
     return {"id": rule.id, "odds": f"{odds.op} {odds.digits}", "fingerprint": rule.fingerprint}
 
 
-def _described(rule: Formalized) -> dict[str, object]:
+def described(rule: Formalized) -> dict[str, object]:
+    """What the head of a monitor says of a rule."""
     return {
         "id": rule.id,
         "sentence": " ".join(rule.requirement.wording.text.split()),
@@ -286,7 +287,8 @@ def _identifier(id: str) -> str:
     return name if name[0].isalpha() else f"R{name}"
 
 
-def _module(name: str) -> str:
+def module(name: str) -> str:
+    """A name of a file that a language can import."""
     return re.sub(r"[^a-z0-9_]", "_", name)
 
 
