@@ -31,6 +31,7 @@ from fretc.analysis.findings import (
     Vacuity,
     Verdict,
 )
+from fretc.analysis.games import job as of_games
 from fretc.analysis.implications import Consistency, Constant, Removable
 from fretc.analysis.repairs import repairs
 from fretc.analysis.stage import Stage, stage
@@ -71,16 +72,7 @@ Finding = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Job:
-    """One question about some requirements."""
-
-    title: str
-    """The question, for people who wait."""
-    ask: Callable[[Sequence[Finding]], Iterator[Finding]]
-    """It is given what is known so far."""
-    lost: Callable[[str], Finding]
-    """What stands in its place where it ends without an answer, for a reason."""
+Job = of_games.Job[Finding]
 
 
 @deep

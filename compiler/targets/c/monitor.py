@@ -21,8 +21,7 @@ from compiler.program.program import Counter
 from compiler.program.rails import Rail, Reading, Ring, rail
 from compiler.targets.c.printer import Printer
 from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.python.monitor import described, module, prefixes_of, remark
-from compiler.targets.python.monitor import refuse as no_monitor
+from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import deep
@@ -51,7 +50,7 @@ _MOST_BITS = 2**23
 
 def refuse(rule: Formalized) -> Diagnostic | None:
     """As a monitor in Python; and F601 for bounds beyond what a controller can keep."""
-    return no_monitor(rule, "C") or _too_large(rule)
+    return refusal(rule, "C") or _too_large(rule)
 
 
 @deep
@@ -162,5 +161,6 @@ TARGET = Target(
     emit,
     refuse,
     remark,
+    joins=True,
     next_step="`cc -std=c99 -c {}` compiles it",
 )

@@ -39,11 +39,16 @@ from fretish.reading.recursion import deep
 from monitors.source_text import kernel, kernel_of_variables
 
 
-def refuse(rule: Formalized, language: str = "Python") -> Diagnostic | None:
+def refuse(rule: Formalized) -> Diagnostic | None:
+    """F312 and F601: what a monitor in Python cannot be made of."""
+    return refusal(rule, "Python")
+
+
+def refusal(rule: Formalized, language: str) -> Diagnostic | None:
     """F312: a monitor steps by ticks, so it must be known how long a tick is.
 
-    F601: no language reads any number of parentheses within each other; and one run cannot show
-    a probability.
+    F601: Python reads no more than 200 parentheses within each other, and what it refuses is in no
+    other language either; and one run cannot show a probability.
     """
     if not is_readable(rule):
         return not_expressible(
@@ -288,7 +293,7 @@ def _identifier(id: str) -> str:
 
 
 def module(name: str) -> str:
-    """A name of a file that a language can import."""
+    """The name of a file that can be imported."""
     return re.sub(r"[^a-z0-9_]", "_", name)
 
 
@@ -352,5 +357,6 @@ TARGET = Target(
     emit,
     refuse,
     remark,
+    joins=True,
     next_step="`python {} TRACE.csv` judges a table with a column for each of its names",
 )
