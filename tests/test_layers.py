@@ -104,6 +104,7 @@ DOORS = {
         "fretc/analysis/arithmetic/past.py",
         "fretc/analysis/arithmetic/projection.py",
         "fretc/analysis/arithmetic/terms.py",
+        "fretc/analysis/games/lassos.py",
         "fretc/verification/loop/bounds.py",
     },
     "reqif": {"compiler/project/parents.py", "fretc/report/forms/reqif.py"},

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, assert_never
+from typing import assert_never
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import TRAITS, Kind, Trait
@@ -81,7 +81,8 @@ class Situation:
     at_end: bool = False
     """Whether the last tick of a run alone counts."""
     unknown: str | None = None
-    """An atom that must be unknown at that tick; the formula says that its value decides."""
+    """An atom that must be unknown at that tick. The formula says that its value decides; where
+    parts of the sentence share the atom, it has to hold whatever the atom is there."""
     place: Place | None = None
     """Where a number must be at that tick, too: over signals as bindings have them, or over the
     variables of the sentence, where none are bound."""
@@ -228,8 +229,12 @@ def _of_operand(rule: Formalized, operand: Operand) -> Iterator[Situation]:
     about = f"{operand.part.partition(' ')[0]}:{_short(shown)}"
     texts = {"operand": expression(shown), "part": operand.part}
 
-    def situation(key: str, formula: f.Formula, **more: Any) -> Situation:
-        return Situation(f"{key}:{about}", MEANINGS[key].format(**texts), formula, **more)
+    def situation(
+        key: str, formula: f.Formula, place: Place | None = None, unknown: str | None = None
+    ) -> Situation:
+        numbers = {} if place is None else _numbers(place)
+        words = MEANINGS[key].format(**texts, **numbers)
+        return Situation(f"{key}:{about}", words, formula, unknown=unknown, place=place)
 
     if operand.decides == f.FALSE:
         return
@@ -237,12 +242,15 @@ def _of_operand(rule: Formalized, operand: Operand) -> Iterator[Situation]:
         yield situation("alone-true", f.and_(operand.decides, operand.whole))
         yield situation("alone-false", f.and_(operand.decides, f.not_(operand.whole)))
     for comparison, key, place in _places(stated):
-        texts["measured"], texts["number"] = expression(place.measured), expression(place.number)
-        found = situation(key, operand.decides, place=place)
+        found = situation(key, operand.decides, place)
         several = "" if comparison == shown else f":{_short(comparison)}"
         yield replace(found, key=f"{found.key}{several}")
     if operand.atom is not None:
         yield situation("unknown", operand.decides, unknown=operand.atom)
+
+
+def _numbers(place: Place) -> Mapping[str, str]:
+    return {"measured": expression(place.measured), "number": expression(place.number)}
 
 
 def _places(stated: e.Expression) -> Iterator[tuple[e.Comparison, str, Place]]:

@@ -7,7 +7,7 @@ so that they can be kept for ever after it; the requirement itself may be broken
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import assert_never
 
@@ -17,7 +17,7 @@ from compiler.formalization.predicates import Past as PastWords
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.formula import Formula, atoms
-from fretc.analysis.arena.alphabet import BeyondError, numbers
+from fretc.analysis.arena.alphabet import Alphabet, BeyondError, numbers
 from fretc.analysis.arena.counters import Counter, counter
 from fretc.analysis.arena.memory import Bit, Memory, Past
 from fretc.analysis.arena.product import Fixed, near_each_other
@@ -53,7 +53,7 @@ class Bench:
         self,
         rule: Formalized,
         others: Sequence[Formalized],
-        mutants: Iterable[Formalized],
+        more: Iterable[Formalized],
         budget: Budget,
     ) -> None:
         """The bench.
@@ -61,13 +61,13 @@ class Bench:
         Args:
             rule: the requirement under test.
             others: requirements and assumptions that its tests keep.
-            mutants: of the requirement: their atoms belong to the letters.
+            more: sentences whose atoms belong to the letters, too.
             budget: for all searches.
 
         Raises:
             BeyondError: the requirement has no counter.
         """
-        every = [rule, *others, *mutants]
+        every = [rule, *others, *more]
         roles = dict.fromkeys((name for each in every for name in each.variables), Role.OUTPUT)
         self.rule, self.budget = rule, budget
         self._fresh = numbers()
@@ -152,11 +152,13 @@ class Bench:
                 ends = (own.accepts - own.owes, own.accepts)
             case Polarity.BROKEN:
                 ends = (own.breaks, own.broken, -own.accepts)
+            case Polarity.UNKNOWN:
+                raise AssertionError("`doubt_of` looks for those")
             case _:
                 assert_never(polarity)
         return tuple(words.endings(end & lasts) for end in ends)
 
-    # Mutants
+    # Two sentences side by side
 
     def difference(self, mutant: Formalized, kept: Ids) -> tuple[Letter, ...] | None:
         """A shortest word that the requirement accepts and the mutant does not, or the reverse.
@@ -167,15 +169,55 @@ class Bench:
             BeyondError: the mutant has no counter.
             OutOfTimeError: it takes too long.
         """
-        shared = dict(self._shared)
-        memory = Memory(self._fresh, shared)
-        theirs = counter(mutant, self.alphabet, self._fresh, shared)
-        past = Past(self.alphabet.atom, memory)
-        judged = self._judged(theirs, mutant, past, memory)
-        words, lasts = self._built(kept, False, theirs, _of_memory(memory))
+        memory = Memory(self._fresh, dict(self._shared))
+        judged, more = self._beside(mutant, self.alphabet, memory)
+        words, lasts = self._built(kept, False, more)
         return words.shortest(
             bdd.true(), words.endings((self._own.accepts ^ judged.accepts) & lasts)
         )
+
+    def doubt_of(
+        self, goal: Function, atom: str, kept: Ids
+    ) -> tuple[tuple[Letter, ...], int] | None:
+        """A shortest word whose verdict depends on an atom at one tick of the goal, and that tick.
+
+        The sentence is judged twice, the second time with the opposite value of the atom there.
+        None: there is none.
+
+        Args:
+            goal: of `goal`.
+            atom: of the sentence.
+            kept: ids of others that the word keeps, with the first value.
+
+        Raises:
+            OutOfTimeError: it takes too long.
+        """
+        here = bdd.variable(number := next(self._fresh))
+        mirror = Fixed(self.alphabet)
+        mirror.atom = lambda name: (
+            self.alphabet.atom(name) ^ (here if name == atom else bdd.false())
+        )
+        memory = Memory(self._fresh, {})
+        bit = memory.bit()
+        was = bdd.variable(bit.now)
+        memory.steps[bit] = was | here
+        judged, more = self._beside(self.rule, mirror, memory)
+        once = -here | (goal - was)
+        words, lasts = self._built(kept, False, more, letters=(number,), safe=once)
+        ends = (self._own.accepts ^ judged.accepts) & (was | here) & lasts
+        found = words.shortest(bdd.true(), words.endings(ends))
+        if found is None:
+            return None
+        return found, next(tick for tick, letter in enumerate(found) if letter[number])
+
+    def _beside(
+        self, rule: Formalized, alphabet: Alphabet, memory: Memory
+    ) -> tuple[Judgement, Counter]:
+        """What another sentence says of a run, and its bits."""
+        theirs = counter(rule, alphabet, self._fresh, memory.shared)
+        judged = self._judged(theirs, rule, Past(alphabet.atom, memory), memory)
+        bits = _of_memory(memory)
+        return judged, replace(bits, bits=bits.bits + theirs.bits, steps=bits.steps + theirs.steps)
 
     # Both
 
@@ -187,13 +229,22 @@ class Bench:
         accepts = -(broken | past.value(rule.watch.fails))
         return Judgement(broken - was, broken, accepts, past.value(rule.watch.owed))
 
-    def _built(self, kept: Ids, with_rule: bool, *more: Counter) -> tuple[Words, Function]:
+    def _built(
+        self,
+        kept: Ids,
+        with_rule: bool,
+        *more: Counter,
+        letters: tuple[int, ...] = (),
+        safe: Function | None = None,
+    ) -> tuple[Words, Function]:
         """The words that keep some counters, and the ticks after which these can last."""
         runs, lasting = self._kept(kept, with_rule)
         counters = [self._counters[id] for id in (self.rule.id, *kept)]
         memory = _of_memory(self._memory)
         transition = Transition([*counters, *self._always, memory, *more])
-        words = Words(transition, self._letters, self._quiet, runs.safe, self.budget)
+        safe = runs.safe if safe is None else runs.safe & safe
+        every, quiet = (*self._letters, *letters), {*self._quiet, *letters}
+        words = Words(transition, every, quiet, safe, self.budget)
         return words, transition.moved(lasting)
 
     def _keeping(self, kept: Ids, with_rule: bool) -> tuple[Runs, Function]:

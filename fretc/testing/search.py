@@ -70,7 +70,7 @@ class Endings:
             self._ways.append(bdd.false())
             return
         else:
-            self._ways.append(self._words.transition.moved(layers.fresh[-1]))
+            self._ways.append(self._words.moved(layers.fresh[-1]))
         layers.add(self._words.preceding(self._ways[-1]))
 
 
@@ -98,11 +98,25 @@ class Words:
         self._letters, self._cube = tuple(letters), bdd.cube(letters)
         self._quiet, self._safe = dict.fromkeys(quiet, False), safe
         self._start = bdd.point(transition.start)
+        self._moves = {bdd.true(): bdd.true(), bdd.false(): bdd.false()}
 
     def preceding(self, ticks: Function) -> Function:
         """The states from which one of these ticks can come."""
         self._budget.check()
         return bdd.some_of_both(self._safe, ticks, self._cube)
+
+    def moved(self, states: Function) -> Function:
+        """Over a state and a letter: whether the state after it is one of these.
+
+        As `Transition.moved`, node by node: layers are small, and share most of their nodes.
+        """
+        found = self._moves.get(states)
+        if found is None:
+            bit, high, low = bdd.branches(states)
+            after = self.transition.step(bit)
+            found = bdd.choice(after, self.moved(high), self.moved(low))
+            self._moves[states] = found
+        return found
 
     def endings(self, end: Function) -> Endings:
         """The ways to an end, for any number of goals."""
@@ -123,7 +137,7 @@ class Words:
             length = len(layers.fresh) - 1
             if layers.is_complete and endings.is_over(length):
                 return None
-            onward = self.transition.moved(layers.fresh[-1])
+            onward = self.moved(layers.fresh[-1])
             layers.add(self.preceding(onward | (goal & endings.way(length))))
         return tuple(self._descent(layers, goal, endings))
 
@@ -132,7 +146,8 @@ class Words:
 
     def _descent(self, layers: Layers, goal: Function, endings: Endings) -> Iterator[Letter]:
         """Letters from the initial state down to the end, each as near as can be to the last."""
-        state: State = self.transition.start
+        transition = self.transition.needed(self._safe, goal, endings.end)
+        state: State = transition.start
         letter: Letter = dict.fromkeys(self._letters, False)
         is_past_goal = False
         for left in range(len(layers.fresh) - 2, -1, -1):
@@ -142,14 +157,14 @@ class Words:
             by_end = safe & self._moved(endings, left, known)
             if not is_past_goal:
                 by_goal = by_end & bdd.at(goal, known)
-                allowed = by_goal | (safe & self.transition.moved_from(layers.fresh[left], known))
+                allowed = by_goal | (safe & transition.moved_from(layers.fresh[left], known))
             else:
                 by_goal, allowed = bdd.false(), by_end
             letter = nearest(allowed, {**letter, **self._quiet})
             chosen = bdd.point(letter)
             is_past_goal = is_past_goal or bdd.at(by_goal, chosen) == bdd.true()
             yield letter
-            state = self.transition.next(bdd.point({**state, **letter}))
+            state = transition.next(bdd.point({**state, **letter}))
 
     def _moved(self, endings: Endings, left: int, known: Function) -> Function:
         return bdd.at(endings.way(left), known)

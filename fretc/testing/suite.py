@@ -31,6 +31,8 @@ class Polarity(StrEnum):
 
     KEPT = "kept"
     BROKEN = "broken"
+    UNKNOWN = "unknown"
+    """What is unknown in the run decides."""
 
 
 class Test(Record, frozen=True):
@@ -42,7 +44,7 @@ class Test(Record, frozen=True):
     requirement: Name
     words: Annotated[str, about("what the run shows, as one sentence")]
     rows: Annotated[tuple[Repeat, ...], about("the ticks, from tick 0 on")]
-    polarity: Annotated[Polarity, about("whether the run keeps the requirement, were it to end")]
+    polarity: Annotated[Polarity, about("whether the run keeps the requirement")]
     verdict: Annotated[Verdict, about("of the monitor, where the run ends")]
     finite: Annotated[bool | None, about("FRET's verdict on the finite run")]
     decided: Annotated[
@@ -74,7 +76,10 @@ class Met(StrEnum):
 
 
 class Obligation(Record, frozen=True):
-    """A situation that tests show, on a run that keeps the requirement or on one that breaks it."""
+    """A situation that tests show, on a run that keeps the requirement or on one that breaks it.
+
+    One in which something is unknown is shown on a run that may do either.
+    """
 
     requirement: Name
     situation: Name

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import groupby
 
@@ -22,7 +22,7 @@ from fretc.testing.suite import Repeat
 from fretish import syntax as s
 from monitors.kernel import Column, Monitor
 from monitors.kernel.columns import truths
-from monitors.kernel.verdicts import PENDING, Verdict
+from monitors.kernel.verdicts import PENDING, Truth, Verdict
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,21 @@ class Word:
     columns: Mapping[str, int]
     """Each atom over time, bit i for tick i."""
     ticks: int
+    unknown: Mapping[str, int] = field(default_factory=dict)
+    """Where atoms are unknown, whatever their columns say; of all others nothing is."""
 
 
-def word(letters: Sequence[Letter], alphabet: Alphabet, atoms: Iterable[str]) -> Word:
-    """The word of some letters: the truth of atoms, and numbers that make comparisons so."""
+def word(
+    letters: Sequence[Letter], alphabet: Alphabet, atoms: Iterable[str], shown: Collection[str]
+) -> Word:
+    """The word of some letters.
+
+    Args:
+        letters: tick by tick.
+        alphabet: of the letters.
+        atoms: whose columns it has.
+        shown: those of them that its rows have, beside numbers that make comparisons so.
+    """
     functions = {name: alphabet.atom(name) for name in atoms}
     columns = dict.fromkeys(functions, 0)
     rows: list[Repeat] = []
@@ -44,14 +55,32 @@ def word(letters: Sequence[Letter], alphabet: Alphabet, atoms: Iterable[str]) ->
     for letter, equal in groupby(letters):
         count = sum(1 for _ in equal)
         known = bdd.point(letter)
-        values: dict[str, Value | None] = dict(alphabet.values(letter))
+        values: dict[str, Value | None] = {
+            name: value for name, value in alphabet.values(letter).items() if name not in functions
+        }
         for name, function in functions.items():
-            values[name] = bdd.at(function, known) == bdd.true()
-            if values[name]:
+            truth = bdd.at(function, known) == bdd.true()
+            if truth:
                 columns[name] |= ((1 << count) - 1) << ticks
+            if name in shown:
+                values[name] = truth
         rows.append(Repeat(count, {name: values[name] for name in sorted(values)}))
         ticks += count
     return Word(tuple(rows), columns, ticks)
+
+
+def blotted(word: Word, tick: int, names: Collection[str]) -> Word:
+    """The word with some values unknown at one tick, which has a row of its own."""
+    rows: list[Repeat] = []
+    start = 0
+    for row in word.rows:
+        if start == tick:
+            values = {name: None if name in names else v for name, v in row.values.items()}
+            row = Repeat(row.count, values)
+        rows.append(row)
+        start += row.count
+    unknown = {name: 1 << tick for name in word.columns if name in names}
+    return replace(word, rows=tuple(rows), unknown=unknown)
 
 
 # By the signals of monitors ---------------------------------------------------------------------
@@ -110,7 +139,7 @@ def letters(rule: Formalized, word: Word) -> tuple[Parts, ...]:
 class Expected:
     """What a word is to get."""
 
-    finite: bool
+    finite: bool | None
     verdict: Verdict
     decided: int | None
     first_violation: int | None
@@ -118,7 +147,7 @@ class Expected:
 
 
 def expected(rule: Formalized, monitor: Monitor, word: Word) -> Expected:
-    """The verdict of a word, on which definition, monitor and reasons agree.
+    """The verdict of a word in which all is known: definition, monitor and reasons agree on it.
 
     Args:
         rule: the sentence.
@@ -127,6 +156,33 @@ def expected(rule: Formalized, monitor: Monitor, word: Word) -> Expected:
     """
     parts = letters(rule, word)
     broken, finite = defined(rule, parts)
+    because = why(rule, parts, ends=True, satisfied=finite)
+    found = _monitored(monitor, word, because)
+    assert found.finite is finite, (rule.id, word)
+    sooner = found.decided is not None and broken is not None and found.decided <= broken
+    assert broken is None or sooner, (rule.id, word)
+    return found
+
+
+def undecided(rule: Formalized, monitor: Monitor, word: Word, atom: str) -> Expected:
+    """The verdict of a word in which an atom is unknown at one tick, where both values differ."""
+    at, own = word.unknown[atom], word.columns[atom]
+    finite: dict[bool, bool] = {}
+    for value, column in {True: own | at, False: own & ~at}.items():
+        known = replace(word, columns={**word.columns, atom: column})
+        finite[value] = defined(rule, letters(rule, known))[1]
+    assert finite[True] is not finite[False], (rule.id, word)
+    says = {True: "kept", False: "broken"}
+    because = (
+        f"`{atom}` is unknown at tick {at.bit_length() - 1}: {rule.id} is {says[finite[True]]} if "
+        f"it is true there, and {says[finite[False]]} if it is false"
+    )
+    found = _monitored(monitor, word, because)
+    assert found.finite is None, (rule.id, word)
+    return found
+
+
+def _monitored(monitor: Monitor, word: Word, because: str) -> Expected:
     decided = None
     monitor.reset()
     for tick in range(word.ticks):
@@ -134,16 +190,17 @@ def expected(rule: Formalized, monitor: Monitor, word: Word) -> Expected:
         if decided is None and monitor.verdicts()[0] != PENDING:
             decided = tick
     (standing,) = monitor.standings()
-    assert standing.finite is finite, (rule.id, word)
-    assert broken is None or (decided is not None and decided <= broken), (rule.id, word)
-    because = why(rule, parts, ends=True, satisfied=finite)
-    return Expected(
-        finite, Verdict(str(standing.verdict)), decided, standing.first_violation, because
+    verdict = Verdict(str(standing.verdict))
+    return Expected(standing.finite, verdict, decided, standing.first_violation, because)
+
+
+def _row(monitor: Monitor, word: Word, tick: int) -> tuple[Truth, ...]:
+    columns = (
+        Column(word.columns[name] & ~doubt, doubt)
+        for name in monitor.PROPOSITIONS
+        for doubt in [word.unknown.get(name, 0)]
     )
-
-
-def _row(monitor: Monitor, word: Word, tick: int) -> tuple[bool, ...]:
-    return tuple(bool(word.columns[name] >> tick & 1) for name in monitor.PROPOSITIONS)
+    return tuple(column.at(tick) for column in columns)
 
 
 def defined(rule: Formalized, parts: Sequence[Parts]) -> tuple[int | None, bool]:

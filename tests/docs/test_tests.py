@@ -145,5 +145,6 @@ MAKERS = {
 }
 
 
+@pytest.mark.slow
 def test_the_tables_are_those_of_the_code(request: pytest.FixtureRequest) -> None:
     is_current("test.md", MAKERS, request)

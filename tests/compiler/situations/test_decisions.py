@@ -84,6 +84,7 @@ class Judged:
         return self.result(before, row, part) != self.result(before, other, part)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", COMPOUND)
 def test_an_operand_decides_alone_where_its_opposite_leads_elsewhere(sentence: str) -> None:
     judged = Judged(sentence)
@@ -108,6 +109,7 @@ def test_an_operand_decides_alone_where_its_opposite_leads_elsewhere(sentence: s
     assert seen == {key for key in listed if key.startswith("alone-")}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", COMPOUND)
 def test_an_unknown_decides_where_both_values_may_lead_elsewhere(sentence: str) -> None:
     """The formula holds for certain, though the atom that it is about is unknown."""
@@ -132,6 +134,7 @@ def test_an_unknown_decides_where_both_values_may_lead_elsewhere(sentence: str) 
     assert seen == {each.key for each in listed}
 
 
+@pytest.mark.slow
 @given(sentences)
 def test_keys_are_unique_and_in_the_order_of_the_list(sentence: Sentence) -> None:
     made, _ = formalize(Requirement("R1", Source("r.fret", printed(sentence)).span()), None)

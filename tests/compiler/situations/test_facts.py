@@ -82,6 +82,7 @@ def changed(counted: reference.Template, tick: Tick, letter: str) -> bool:
     return result(True) != result(False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_facts_are_those_of_the_definition(scope: str) -> None:
     for drawn in (each for each in templates() if each.scope == scope):

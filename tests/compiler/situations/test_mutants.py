@@ -63,6 +63,7 @@ def assert_others(original: Formalized, found: tuple[Mutant, ...]) -> None:
         assert {*each.rule.variables} <= {*original.variables}
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(sentences)
 def test_no_two_mutants_say_the_same_and_each_says_what_its_text_says(sentence: s.Sentence) -> None:
@@ -71,6 +72,7 @@ def test_no_two_mutants_say_the_same_and_each_says_what_its_text_says(sentence: 
         assert_others(original, mutants(original))
 
 
+@pytest.mark.slow
 def test_every_template_has_mutants_of_its_own() -> None:
     for drawn in [*templates((2,))][::11]:  # each scope, condition and timing is among them
         original = rule(drawn.sentence)

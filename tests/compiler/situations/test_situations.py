@@ -12,6 +12,8 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
+from compiler.situations.demands import of_demand
+from compiler.situations.facts import facts
 from compiler.situations.situations import MEANINGS, Situation, situations
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.memory import Memory, Past
@@ -59,6 +61,7 @@ def first_breach(drawn: Template, columns: dict[str, list[bool]]) -> int:
     return length
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_a_formula_says_what_its_words_say(scope: str) -> None:
     for drawn in of(scope):
@@ -125,12 +128,20 @@ def impossible(drawn: Template) -> set[str]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_each_situation_is_come_by_or_cannot_be(scope: str) -> None:
     for drawn in of(scope):
         listed = situations(rule(drawn.sentence))
         missing = {each.key for each in listed if not Search(each.formula).is_reached()}
         assert missing == impossible(drawn), drawn
+
+
+@pytest.mark.slow
+def test_no_key_is_given_twice() -> None:
+    for drawn in templates((0, 2)):
+        keys = [key for key, _ in of_demand(facts(rule(drawn.sentence)))]
+        assert len({*keys}) == len(keys), drawn
 
 
 def test_what_a_sentence_does_not_read_is_in_none_of_its_situations() -> None:
