@@ -242,7 +242,7 @@ def test_the_example_of_the_documentation_compiles(tmp_path: Path) -> None:
 
 
 def test_the_work_of_a_step_does_not_depend_on_the_bound() -> None:
-    """What a step does is its text: it has no loop, and calls nothing but the two functions of it."""
+    """What a step does is its text: it has no loop, and calls nothing but its own functions."""
 
     def work(n: int) -> tuple[str, int]:
         texts = Source.of(rule(f"in m mode the sw shall within {n} ticks satisfy q")).texts
