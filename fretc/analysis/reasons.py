@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import assert_never
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.obligation import TRAITS, Demand, Kind, Trait, obligation
-from compiler.formalization.predicates import Past as PastWords
+from compiler.formalization.obligation import TRAITS, Kind, Trait
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
@@ -110,7 +109,7 @@ def _details(rule: Formalized, alphabet: Alphabet, play: Play) -> str:
 def _limit(rule: Formalized, alphabet: Alphabet, begun: int | None, last: int) -> Iterator[str]:
     """How long the demand is open that began then, if that is known."""
     scope = rule.sentence.scope
-    demand = _demand(rule)
+    demand = rule.demanded.demand
     match demand.kind:
         case Kind.WITHIN:
             if begun is not None and begun < last == begun + demand.ticks:
@@ -141,10 +140,6 @@ def _stop(timing: Timing) -> str:
     return expression(condition)
 
 
-def _demand(rule: Formalized) -> Demand:
-    return obligation(rule.sentence, rule.ticks or 0, PastWords()).demand
-
-
 def _begun(rule: Formalized, alphabet: Alphabet, play: Play) -> int | None:
     """When the demand began that is open at the last tick; None: there is none, or no condition."""
     if rule.sentence.condition is None:
@@ -154,11 +149,10 @@ def _begun(rule: Formalized, alphabet: Alphabet, play: Play) -> int | None:
     known = columns(alphabet, play.letters, atoms)
     ticks = len(play.letters)
     trigger, owed = (evaluate(signal, known, ticks) for signal in signals)
-    if Trait.FORBIDS in TRAITS[_demand(rule).kind]:  # what is open was begun by the newest trigger
+    if Trait.FORBIDS in TRAITS[rule.demanded.demand.kind]:  # what is open is of the newest trigger
         return trigger.bit_length() - 1 if trigger else None
-    tick = ticks - 1
-    while tick > 0 and owed >> (tick - 1) & 1:
-        tick -= 1
+    settled = ~owed & ((1 << ticks - 1) - 1)
+    tick = settled.bit_length()
     stretch = trigger >> tick << tick
     if not stretch:
         return None

@@ -19,6 +19,7 @@ from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import Members, cores, minimal
 from fretc.analysis.games.plays import Counterstrategy
 from fretc.analysis.games.replay import broken
+from fretc.analysis.games.switches import switched
 from fretc.analysis.reasons import because, listed
 from fretc.analysis.stage import Stage, stage
 from fretish.bindings.declarations import Role
@@ -130,7 +131,9 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
     question = f"which others of {', '.join(rule.id for rule in setting.rules)} fight"
     try:
         _check_assumptions(setting, budget)
-        for members in cores(len(counters), is_conflict, near):
+        at_once = switched(setting.game(counters, budget), setting.fresh)
+        sets = at_once.cores(budget) if at_once else cores(len(counters), is_conflict, near)
+        for members in sets:
             yield _conflict(setting, chosen(members), budget)
         if setting.of_inputs is not None:
             yield from _with_the_past(setting, budget)

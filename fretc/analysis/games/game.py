@@ -112,15 +112,29 @@ class Game:
         self.promises = [each.fair for each in assumptions if each.fair is not None]
         self.duties = [each.fair for each in counters if each.fair is not None]
 
-    def forced(self, states: Function) -> Function:
-        """The states from which the system can see to it that one of these comes next."""
+    @property
+    def is_memoryless(self) -> bool:
+        """Whether each tick is like the first one, whatever was done before it."""
+        asked = (self.legal, self.reachable, self.safe, self.kept)
+        read = {number for each in asked for number in bdd.support(each)}
+        return not self.duties and not self.promises and read.isdisjoint(self.transition.start)
+
+    def forced(self, states: Function, safe: Function | None = None) -> Function:
+        """The states from which the system can see to it that one of these comes next.
+
+        Args:
+            states: those.
+            safe: ticks that break nothing; None: those of the game.
+        """
+        return bdd.every_implied(self.legal, self.answered(states, safe), self._inputs)
+
+    def answered(self, states: Function, safe: Function | None = None) -> Function:
+        """States and inputs to which the system has an answer that leads to one of these states."""
         moved = self.transition.moved(states)
+        answer = bdd.some_of_both(self.safe if safe is None else safe, moved, self._outputs)
         if self.kept == bdd.true():
-            answer = bdd.some_of_both(self.safe, moved, self._outputs)
-        else:
-            free = bdd.some_of_both(self.reachable, -self.kept, self._outputs)
-            answer = free | bdd.some_of_both(self.safe, moved, self._outputs)
-        return bdd.every_implied(self.legal, answer, self._inputs)
+            return answer
+        return answer | bdd.some_of_both(self.reachable, -self.kept, self._outputs)
 
     def solution(self, *, traps: bool = False) -> Solution:
         """Who wins.
