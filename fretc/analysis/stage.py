@@ -18,10 +18,14 @@ from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about
 from fretc.analysis.games.budget import Budget
-from fretc.analysis.games.game import Game, upheld
-from fretc.analysis.games.plays import Letter
+from fretc.analysis.games.game import Game, Letter, upheld
 from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
+
+_FEW = 3
+"""So many requirements are looked at by themselves."""
+_LONG = 10
+"""Bits of a count that is worth an order of its own beside another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +41,7 @@ class Stage:
     """Who chooses numbers of the tick before, as far as nothing is remembered of them."""
     fresh: Numbers = field(default_factory=numbers, compare=False, repr=False)
     """Variables that nothing of the stage has."""
+    _close: dict[frozenset[str], Stage] = field(default_factory=dict, compare=False, repr=False)
     _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
     """What each game of the stage needs of the assumptions, once it has been computed."""
 
@@ -44,6 +49,16 @@ class Stage:
         """Those of some requirements, in the order of the files."""
         wanted = set(ids)
         return tuple(each for each in self.arena.counters if each.id in wanted)
+
+    def close(self, ids: Iterable[str]) -> Stage:
+        """Where some of the requirements are best looked at: by themselves, if they count far."""
+        wanted = frozenset(ids)
+        long = [each for each in self.counters(wanted) if each.longest >= _LONG]
+        if len(wanted) > _FEW or len(long) < 2 or self.arena.memory is not None:
+            return self
+        if wanted not in self._close:
+            self._close[wanted] = interleaved(self, wanted)
+        return self._close[wanted]
 
     def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
         """The game of some counters, under all assumptions."""
@@ -71,7 +86,9 @@ class Stage:
                 raise BeyondError(f"{rule.id} is about other atoms")
             found.append(made)
         arena = replace(self.arena, assumptions=tuple(found))
-        return replace(self, assumptions=(*self.assumptions, *more), arena=arena, _upheld=[])
+        return replace(
+            self, assumptions=(*self.assumptions, *more), arena=arena, _close={}, _upheld=[]
+        )
 
     def generous(self) -> Stage | None:
         """The same where the system chooses numbers of the tick before; None: nobody does.
@@ -158,7 +175,7 @@ def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
         for each in (*first.arena.counters, *first.arena.assumptions)
         for word in each.words
         for weight, bit in enumerate(word)
-        for number in (bit.now, bit.after)
+        for number in (bit.now, bit.after, bit.later)
     }
     count = next(used)  # the same build takes as many again, in the same order
     order = sorted(range(count), key=lambda number: (-weights.get(number, count), number))

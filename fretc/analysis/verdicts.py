@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, repeat
 
 from compiler.formalization.formalized import Formalized
 from fretc.analysis.arena.alphabet import BeyondError
@@ -55,7 +56,7 @@ def component(
 def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
     """The verdict, and how it is known, or why it is not."""
     _check_assumptions(setting, budget)
-    if setting.game(setting.arena.counters, budget).solution().is_realizable:
+    if _is_kept(setting, [each.id for each in setting.arena.counters], budget):
         doubt = setting.left_out or setting.of_outputs
         if doubt is None:
             return Verdict.REALIZABLE, "the system has a strategy"
@@ -67,6 +68,11 @@ def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
         if generous is not None and _is_lost(generous, generous.arena.counters, budget):
             return Verdict.UNREALIZABLE, f"the environment wins, {_WHATEVER}"
     return Verdict.NOT_CHECKED, doubt
+
+
+def _is_kept(setting: Stage, ids: Sequence[str], budget: Budget) -> bool:
+    there = setting.close(ids)
+    return there.game(there.counters(ids), budget).solution().is_realizable
 
 
 _WHATEVER = "whatever the numbers of the tick before are taken for"
@@ -123,7 +129,7 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
         return [counters[i] for i in sorted(members)]
 
     def is_conflict(members: Members) -> bool:
-        return not setting.game(chosen(members), budget).solution().is_realizable
+        return not _is_kept(setting, [each.id for each in chosen(members)], budget)
 
     def near(i: int, j: int) -> bool:
         return bool(read[counters[i].id] & read[counters[j].id])
@@ -134,7 +140,7 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
         at_once = switched(setting.game(counters, budget), setting.fresh)
         sets = at_once.cores(budget) if at_once else cores(len(counters), is_conflict, near)
         for members in sets:
-            yield _conflict(setting, chosen(members), budget)
+            yield _conflict(setting, [each.id for each in chosen(members)], budget)
         if setting.of_inputs is not None:
             yield from _with_the_past(setting, budget)
     except OutOfTimeError as error:
@@ -202,9 +208,14 @@ def _hint(setting: Stage, seconds: float) -> str:
         return ""
 
 
-def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Conflict:
+_LONGEST = 200_000
+"""Ticks of a play that is written down."""
+
+
+def _conflict(whole: Stage, members: Sequence[str], budget: Budget) -> Conflict:
     """A minimal conflict, with a play that the formulas of its monitors confirm."""
-    ids = sorted(each.id for each in counters)
+    ids, setting = sorted(members), whole.close(members)
+    counters = setting.counters(ids)
     game = setting.game(counters, budget)
     try:
         play = Counterstrategy(game, game.solution(traps=True), budget).play()
@@ -215,9 +226,11 @@ def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Co
     lost = broken(rules, alphabet, play, as_fret=setting.as_fret)
     assert lost, f"the play of {', '.join(ids)} breaks none of them"
     assert not broken(setting.assumptions, alphabet, play), "the environment keeps its word"
-    return Conflict(
-        tuple(ids),
-        setting.ticks(ids, play.letters),
-        because(rules, counters, game, play),
-        play.loop,
+    why = because(rules, counters, game, play)
+    if play.ticks > _LONGEST:
+        return Conflict(tuple(ids), (), why)
+    each = setting.ticks(ids, (letter for letter, _ in play.runs))
+    shown = chain.from_iterable(
+        repeat(t, count) for t, (_, count) in zip(each, play.runs, strict=True)
     )
+    return Conflict(tuple(ids), tuple(shown), why, play.loop)

@@ -23,10 +23,12 @@ LONGEST_DELAY = 256
 
 @dataclass(frozen=True, slots=True)
 class Bit:
-    """One bit of a state: its value before a tick, and a variable of the same place after it."""
+    """One bit of a state: its value before a tick, and variables of the same place after it."""
 
     now: int
     after: int
+    later: int
+    """After some more ticks."""
 
 
 class Memory:
@@ -42,7 +44,7 @@ class Memory:
 
     def bit(self) -> Bit:
         """A new one, whose step is to be set."""
-        self.bits.append(Bit(next(self._fresh), next(self._fresh)))
+        self.bits.append(Bit(*(next(self._fresh) for _ in range(3))))
         return self.bits[-1]
 
     def word(self, most: int) -> tuple[list[Bit], Word]:

@@ -9,7 +9,7 @@ Zielonka, Infinite games on finitely coloured graphs, TCS 200 (1998) (strategies
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from compiler.logic import decision_diagrams as bdd
@@ -19,7 +19,10 @@ from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.runs import Runs
+from fretc.analysis.games.squaring import Leaps, Relation, TooLargeError, identity
 
+Letter = Mapping[int, bool]
+"""A value of each input and output."""
 Chain = tuple[tuple[Function, Function], ...]
 """Of each link what is left, and an escape: from states of a trap that are not left the environment
 can see to it that none of the escape comes next. So it comes, link by link, to where its promise is
@@ -34,6 +37,8 @@ class Trap:
     """The states that are left to the system once those of the trap are taken away."""
     chains: tuple[Chain, ...]
     """One, or one for each promise of the environment, which it keeps in turn."""
+    inputs: Letter | None = None
+    """What the environment repeats until the state is in an earlier trap; None: as chains say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +141,19 @@ class Game:
             return answer
         return answer | bdd.some_of_both(self.reachable, -self.kept, self._outputs)
 
+    def surviving(self, states: Function, inputs: Letter) -> Function:
+        """From where the system can stay in these states, while the environment repeats inputs.
+
+        Raises:
+            TooLargeError: their diagrams grow.
+            OutOfTimeError: it takes too long.
+        """
+        known, bits = bdd.point(inputs), self.transition.bits
+        free = bdd.some_of_both(self.reachable, -self.kept, self._outputs) | -self.legal
+        moves = self.transition.relation(states & self.safe, self._outputs, known)
+        moves = moves | (states & bdd.at(free, known) & identity(bits))
+        return Relation(bits, moves, self._budget).lasting()
+
     def solution(self, *, traps: bool = False) -> Solution:
         """Who wins.
 
@@ -153,6 +171,7 @@ class _Search:
         self._game, self._budget, self._keeps = game, budget, traps
         self._initial = game.transition.initial
         self._traps: list[Trap] = []
+        self._leaps = Leaps()
 
     def solution(self, duties: Sequence[Function], promises: Sequence[Function]) -> Solution:
         states = self._safe()
@@ -183,9 +202,22 @@ class _Search:
             if left == states:
                 return states
             self._trapped(left, ((left, states),))
-            states = left
-            if not self._holds(states):
-                return states
+            if not self._holds(left):
+                return left
+            states = self._leapt(left, states) if self._leaps.is_due() else left
+
+    def _leapt(self, left: Function, before: Function) -> Function:
+        """What is left where the environment repeats the inputs by which it has won last."""
+        game = self._game
+        lost = (before - left) & (game.legal - game.answered(before))
+        inputs = whole(lost, game.alphabet.inputs)
+        try:
+            states = left & game.surviving(left, inputs)
+        except TooLargeError:
+            return left
+        if self._keeps and states != left:
+            self._traps.append(Trap(states, (((states, states),),), inputs))
+        return states
 
     def _goal(self, fair: Function, states: Function, promises: Sequence[Function]) -> Goal:
         """How the system reaches `fair` from states without leaving them."""
@@ -232,3 +264,9 @@ class _Search:
                 return tuple(links)
             links.append((left, escape))
             states = left
+
+
+def whole(options: Function, variables: Sequence[int]) -> dict[int, bool]:
+    """A value of each variable, as one of the options has them; false where none asks for more."""
+    values = bdd.witness(options)
+    return {number: values.get(number, False) for number in variables}

@@ -9,7 +9,8 @@ from hypothesis import settings
 from compiler.logic.formula import atoms
 from compiler.logic.spot import holds_on
 from fretc.analysis.games.budget import Budget, OutOfTimeError
-from fretc.analysis.games.plays import Counterstrategy, Letter, Place, Strategy
+from fretc.analysis.games.game import Letter
+from fretc.analysis.games.plays import Counterstrategy, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches
 from fretc.analysis.stage import Stage
 from tests.requirement_sets import (
@@ -41,7 +42,7 @@ def assert_lost(setting: Stage) -> None:
 
 def known(setting: Stage, letters: Sequence[Letter]) -> dict[str, int]:
     names = {name for rule in setting.rules for s in rule.watch.signals for name in atoms(s)}
-    return columns(setting.arena.alphabet, letters, names)
+    return columns(setting.arena.alphabet, [(letter, 1) for letter in letters], names)
 
 
 def assert_won(setting: Stage, choose: random.Random) -> None:
