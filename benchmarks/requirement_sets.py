@@ -22,7 +22,8 @@ def ours(sentences: Sequence[str], named: Roles = ROLES) -> tuple[bool, float]:
     rules(*sentences)
     start = time.process_time()
     setting = staged(*sentences, roles=named)
-    game = setting.game(setting.arena.counters, Budget(LIMIT))
+    there = setting.close(rule.id for rule in setting.rules)
+    game = there.game(there.arena.counters, Budget(LIMIT))
     return game.solution().is_realizable, time.process_time() - start
 
 

@@ -14,14 +14,12 @@ from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vac
 from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import minimal
 from fretc.analysis.reasons import listed
-from fretc.analysis.stage import Stage, interleaved
+from fretc.analysis.stage import Stage
 
 MOST_TRIPLES = 500
 """Of requirements that hang together; of more none is looked at."""
 _FEW = 3
 """So many requirements are looked at by themselves."""
-_LONG = 6
-"""Bits of a count that is worth an order of its own beside another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +125,10 @@ def _is_implied(
     setting: Stage, counter: Counter, others: Sequence[Counter], budget: Budget
 ) -> bool:
     """Whether there are runs that keep the others, and none of them breaks the counter."""
-    runs = setting.runs(others, budget, watched=(counter,))
+    setting = setting.close(each.id for each in (counter, *others))
+    (counter,) = setting.counters([counter.id])
+    kept = setting.counters(each.id for each in others)
+    runs = setting.runs(kept, budget, watched=(counter,))
     lasting = runs.lasting()
     if (runs.transition.initial & lasting) == bdd.false():
         return False  # of no run anything is true
@@ -222,9 +223,9 @@ def _inconsistency(
     setting: Stage, members: Sequence[Counter], alone: Mapping[str, Function], budget: Budget
 ) -> Inconsistency | None:
     ids = sorted(each.id for each in members)
-    if len(members) <= _FEW and sum(each.longest >= _LONG for each in members) > 1:
-        setting = interleaved(setting, ids)
-        members = setting.arena.counters
+    there = setting.close(ids)
+    if there is not setting:
+        setting, members = there, there.counters(ids)
         alone = {each.id: setting.runs((each,), budget).lasting() for each in members}
     runs = setting.runs(members, budget)
     each_alone = bdd.true()

@@ -60,6 +60,8 @@ class _Known:
 
     triggered: dict[tuple[str, ...], frozenset[str]] = field(default_factory=dict)
     """The ids of the rules whose triggers can come as things are, by the ids of those rules."""
+    fits: dict[object, bool] = field(default_factory=dict)
+    """Of rules with such bounds, under such assumptions: whether the system wins."""
     assumptions: dict[tuple[str, ...], Rules | None] = field(default_factory=dict)
     """By their wordings."""
 
@@ -135,6 +137,17 @@ def _with(rules: Rules, changed: Formalized) -> Rules:
 
 def _fits(setting: _Setting, rules: Rules, assumed: Rules) -> bool:
     """Whether the system wins, for certain, and each rule can still be triggered."""
+    key = (
+        tuple((rule.id, rule.ticks) for rule in rules),
+        tuple(rule.requirement.wording.text for rule in assumed),
+    )
+    known = setting.known.fits
+    if key not in known:
+        known[key] = _is_shown_to_fit(setting, rules, assumed)
+    return known[key]
+
+
+def _is_shown_to_fit(setting: _Setting, rules: Rules, assumed: Rules) -> bool:
     there, counters = _staged(setting, rules, assumed)
     if there.left_out is not None or there.of_outputs is not None:
         return False
@@ -158,9 +171,10 @@ def _staged(setting: _Setting, rules: Rules, assumed: Rules) -> tuple[Stage, tup
         and not any(rule.ticks for rule in assumed)
     ):
         with suppress(BeyondError):
-            there = whole.assuming(assumed)
+            there = whole.assuming(assumed).close(rule.id for rule in rules)
             return there, there.counters(rule.id for rule in rules)
     there = stage(rules, (*whole.assumptions, *assumed), whole.roles, as_fret=whole.as_fret)
+    there = there.close(rule.id for rule in rules)
     return there, there.arena.counters
 
 
@@ -201,9 +215,9 @@ def _least_change(setting: _Setting, rule: Formalized) -> Formalized | None:
 
     match timing:
         case Within():
-            least = _first(is_enough, rule.ticks + 1, rule.ticks + setting.longest)
+            least = _first(setting, is_enough, rule.ticks + 1, rule.ticks + setting.longest)
         case For():
-            least = _first(lambda less: is_enough(-less), 1 - rule.ticks, 0)
+            least = _first(setting, lambda less: is_enough(-less), 1 - rule.ticks, 0)
             least = None if least is None else -least
         case Immediately() | Next() | Finally() | Eventually() | Always() | Never():
             return None
@@ -214,16 +228,22 @@ def _least_change(setting: _Setting, rule: Formalized) -> Formalized | None:
     return None if least is None else _bounded(rule, least)
 
 
-def _first(is_enough: Callable[[int], bool], low: int, high: int) -> int | None:
-    """The first number of low..high from which on something monotone holds; None: none."""
+def _first(setting: _Setting, is_enough: Callable[[int], bool], low: int, high: int) -> int | None:
+    """The first number of low..high from which on something monotone holds; None: none.
+
+    It is most often a bound of the conflict, or next to one: these are tried before the others.
+    """
     if low > high or not is_enough(high):
         return None
+    near = {rule.ticks + more for rule in setting.rules if rule.ticks for more in (-1, 0, 1, 2)}
+    marks = sorted({*near, *(-each for each in near)}.intersection(range(low, high)))
     while low < high:
-        middle = (low + high) // 2
+        middle = marks[len(marks) // 2] if marks else (low + high) // 2
         if is_enough(middle):
             high = middle
         else:
             low = middle + 1
+        marks = [each for each in marks if low <= each < high]
     return low
 
 
@@ -321,7 +341,7 @@ def _distances(setting: _Setting, *sides: tuple[str, str]) -> Iterator[Rules]:
     def is_enough(ticks: int) -> bool:
         return next(_kept(setting, *wordings(ticks)), None) is not None
 
-    least = _first(is_enough, 0, setting.longest)
+    least = _first(setting, is_enough, 0, setting.longest)
     if least is not None:
         yield from _kept(setting, *wordings(least))
 

@@ -22,8 +22,8 @@ from fretc.analysis.games.game import Game, Letter, upheld
 from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
 
-_FEW = 3
-"""So many requirements are looked at by themselves."""
+_FEW = 5
+"""So many requirements and assumptions are looked at by themselves."""
 _LONG = 10
 """Bits of a count that is worth an order of its own beside another one."""
 
@@ -53,8 +53,9 @@ class Stage:
     def close(self, ids: Iterable[str]) -> Stage:
         """Where some of the requirements are best looked at: by themselves, if they count far."""
         wanted = frozenset(ids)
-        long = [each for each in self.counters(wanted) if each.longest >= _LONG]
-        if len(wanted) > _FEW or len(long) < 2 or self.arena.memory is not None:
+        members = (*self.counters(wanted), *self.arena.assumptions)
+        long = [each for each in members if each.longest >= _LONG]
+        if len(members) > _FEW or len(long) < 2 or self.arena.memory is not None:
             return self
         if wanted not in self._close:
             self._close[wanted] = interleaved(self, wanted)

@@ -19,7 +19,7 @@ from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.runs import Runs
-from fretc.analysis.games.squaring import Leaps, Relation, TooLargeError, identity
+from fretc.analysis.games.squaring import Leaps, Relation, identity
 
 Letter = Mapping[int, bool]
 """A value of each input and output."""
@@ -211,10 +211,9 @@ class _Search:
         game = self._game
         lost = (before - left) & (game.legal - game.answered(before))
         inputs = whole(lost, game.alphabet.inputs)
-        try:
+        states = left
+        with self._leaps.trial():
             states = left & game.surviving(left, inputs)
-        except TooLargeError:
-            return left
         if self._keeps and states != left:
             self._traps.append(Trap(states, (((states, states),),), inputs))
         return states

@@ -9,7 +9,9 @@ Information and Computation 98 (1992), iterative squaring.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
@@ -17,11 +19,15 @@ from fretc.analysis.arena.memory import Bit
 from fretc.analysis.arena.transition import State
 from fretc.analysis.games.budget import Budget
 
-MOST_NODES = 5_000
+MOST_NODES = 10_000
 """Of a relation; larger ones take longer than the ticks that they stand for."""
 
 
-_PATIENCE = 64
+class TooLargeError(Exception):
+    """The relation has no small diagram."""
+
+
+_PATIENCE = 16
 """Ticks that are looked at one by one, before the first leap over many."""
 
 
@@ -34,19 +40,23 @@ class Leaps:
     """
 
     _ticks: int = 0
-    _wait: int = _PATIENCE
+    _wait: int | None = field(default_factory=lambda: _PATIENCE)
 
     def is_due(self) -> bool:
         """After each tick that is looked at: whether a leap comes next."""
         self._ticks += 1
-        if self._ticks < self._wait:
+        if self._wait is None or self._ticks < self._wait:
             return False
         self._ticks, self._wait = 0, self._wait + _PATIENCE
         return True
 
-
-class TooLargeError(Exception):
-    """The relation has no small diagram."""
+    @contextmanager
+    def trial(self) -> Iterator[None]:
+        """A leap, which finds nothing where a relation is too large; then it was the last one."""
+        try:
+            yield
+        except TooLargeError:
+            self._wait = None
 
 
 @dataclass(frozen=True, slots=True)
