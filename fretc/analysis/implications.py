@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from operator import attrgetter
 
 from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
@@ -50,7 +51,8 @@ def consistency(setting: Stage, seconds: float) -> Iterator[Consistency | OpenQu
     ids = tuple(rule.id for rule in setting.rules)
     question = f"whether any run keeps {listed(ids)}"
     try:
-        runs = setting.runs(setting.arena.counters, Budget(seconds))
+        there = setting.close(ids)
+        runs = there.runs(there.counters(ids), Budget(seconds))
         is_possible = runs.is_possible()
     except OutOfTimeError as error:
         yield Consistency(ids, None)
@@ -152,19 +154,23 @@ def vacuities(setting: Stage, seconds: float) -> Iterator[Vacuity | OpenQuestion
 def _vacuity(
     setting: Stage, rule: Formalized, counter: Counter, others: Sequence[str], budget: Budget
 ) -> Vacuity | None:
-    def excluded(ids: Sequence[str], ticks: Function) -> bool:
-        runs = setting.runs(setting.counters(ids), budget, watched=(counter,))
+    def excluded(ids: Sequence[str], ticks: Callable[[Counter], Function]) -> bool:
+        there = setting.close([*ids, counter.id])
+        (watched,) = there.counters([counter.id])
+        runs = there.runs(there.counters(ids), budget, watched=(watched,))
         lasting = runs.lasting()
         if (runs.transition.initial & lasting) == bdd.false():
             return False
-        return not runs.can_reach(ticks, lasting)
+        return not runs.can_reach(ticks(watched), lasting)
 
-    if rule.sentence.scope is not None and excluded(others, counter.enforced):
-        by = minimal(others, lambda ids: excluded(ids, counter.enforced))
-        return Vacuity(counter.id, tuple(sorted(by)), "scope")
-    if rule.sentence.condition is not None and excluded(others, counter.triggered):
-        by = minimal(others, lambda ids: excluded(ids, counter.triggered))
-        return Vacuity(counter.id, tuple(sorted(by)), "trigger")
+    def by(ticks: Callable[[Counter], Function]) -> tuple[str, ...]:
+        return tuple(sorted(minimal(others, lambda ids: excluded(ids, ticks))))
+
+    in_scope, begun = attrgetter("enforced"), attrgetter("triggered")
+    if rule.sentence.scope is not None and excluded(others, in_scope):
+        return Vacuity(counter.id, by(in_scope), "scope")
+    if rule.sentence.condition is not None and excluded(others, begun):
+        return Vacuity(counter.id, by(begun), "trigger")
     return None
 
 

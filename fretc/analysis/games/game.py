@@ -171,7 +171,7 @@ class _Search:
         self._game, self._budget, self._keeps = game, budget, traps
         self._initial = game.transition.initial
         self._traps: list[Trap] = []
-        self._leaps = Leaps()
+        self._leaps = Leaps([*game.counters, *game.assumptions])
 
     def solution(self, duties: Sequence[Function], promises: Sequence[Function]) -> Solution:
         states = self._safe()

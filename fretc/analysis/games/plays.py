@@ -83,10 +83,10 @@ class Counterstrategy:
                 runs.add({**inputs, **self._breach(state, inputs)})
                 return Play(runs.all, None, state)
             letter = {**inputs, **self._resistance(options, state, inputs, trap)}
+            before, state = state, self._game.transition.next(bdd.point({**state, **letter}))
             if runs.add(letter) > _LONG and self._traps[trap].inputs is not None:
                 ticks, state = self._while_repeated(letter, state, trap)
                 runs.add(letter, ticks)
-            before, state = state, self._game.transition.next(bdd.point({**state, **letter}))
             promise = self._following(state, promise)
 
     def _while_repeated(self, letter: Letter, state: State, trap: int) -> tuple[int, State]:

@@ -28,6 +28,7 @@ class Runs:
         watched: Sequence[Counter] = (),
     ) -> None:
         self._kept, self._budget = kept, budget
+        self._counters = (*kept, *watched)
         self.transition = Transition([*kept, *watched])
         self._letters = bdd.cube([*alphabet.inputs, *alphabet.outputs])
         self.safe = alphabet.legal & alphabet.reachable
@@ -54,7 +55,7 @@ class Runs:
         Args:
             within: states that such a run never leaves; None: all.
         """
-        states, leaps = bdd.true() if within is None else within, Leaps()
+        states, leaps = bdd.true() if within is None else within, Leaps(self._counters)
         while True:
             self._budget.check()
             if leaps.is_due():
@@ -69,7 +70,7 @@ class Runs:
 
     def _leading(self, target: Function, through: Function) -> Function:
         """The states from which a run comes to a target, and nowhere but `through` before it."""
-        found, leaps = bdd.false(), Leaps()
+        found, leaps = bdd.false(), Leaps(self._counters)
         while True:
             self._budget.check()
             if leaps.is_due():
@@ -98,7 +99,7 @@ class Runs:
         """
         initial, moved = self.transition.initial, self.transition.moved
         found = bdd.some_of_both(self.safe & ticks, moved(lasting), self._letters)
-        leaps = Leaps()
+        leaps = Leaps(self._counters)
         while True:
             self._budget.check()
             if leaps.is_due():

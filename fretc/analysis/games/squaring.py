@@ -9,12 +9,14 @@ Information and Computation 98 (1992), iterative squaring.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from itertools import pairwise
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.memory import Bit
 from fretc.analysis.arena.transition import State
 from fretc.analysis.games.budget import Budget
@@ -31,7 +33,6 @@ _PATIENCE = 16
 """Ticks that are looked at one by one, before the first leap over many."""
 
 
-@dataclass(slots=True)
 class Leaps:
     """When many ticks are looked at in one, which takes as long as some hundred single ones.
 
@@ -39,8 +40,10 @@ class Leaps:
     and one that takes n ticks has no more than the root of n leaps.
     """
 
-    _ticks: int = 0
-    _wait: int | None = field(default_factory=lambda: _PATIENCE)
+    def __init__(self, counters: Iterable[Counter]) -> None:
+        """Of a question about such counters."""
+        self._ticks = 0
+        self._wait = _PATIENCE if _are_side_by_side(counters) else None
 
     def is_due(self) -> bool:
         """After each tick that is looked at: whether a leap comes next."""
@@ -57,6 +60,20 @@ class Leaps:
             yield
         except TooLargeError:
             self._wait = None
+
+
+def _are_side_by_side(counters: Iterable[Counter]) -> bool:
+    """Whether no long count stands above another one in the order of variables.
+
+    Sums of such counts have no small diagrams.
+    """
+    words = [[bit.now for bit in word] for each in counters for word in each.words]
+    spans = sorted((min(word), max(word)) for word in words if len(word) >= _LONG)
+    return all(start < end for (_, end), (start, _) in pairwise(spans))
+
+
+_LONG = 6
+"""Bits of a count that is not small."""
 
 
 @dataclass(frozen=True, slots=True)

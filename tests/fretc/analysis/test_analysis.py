@@ -11,8 +11,9 @@ import pytest
 from compiler.formalization.formalized import Formalized
 from fretc.analysis import verdicts
 from fretc.analysis.analysis import analyze
-from fretc.analysis.findings import OpenQuestion, Verdict
+from fretc.analysis.findings import Conflict, OpenQuestion, Verdict
 from fretc.analysis.games.budget import Budget
+from fretc.analysis.verdicts import Completeness
 from fretish.bindings.declarations import Role
 from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, roles, rule, staged
 from tests.requirement_sets import named as named_true
@@ -184,6 +185,23 @@ def test_scaled_durations_give_the_same_answers(scale: int) -> None:
     assert fight.requirements == ("R1", "R2")  # b comes again before the first hold is over
     assert len(fight.play) == 4 * scale + 1
     assert conflicts(analyzed(answered[0], held, after)) == [("R3",), ("R1", "R2")]
+
+
+@pytest.mark.parametrize("ticks", [10, 1_000_000])
+def test_a_million_ticks_are_answered_as_ten_are(ticks: int) -> None:
+    """The trigger comes at the first tick at the earliest, and the hold is over `held` later."""
+    soon = f"upon a the sw shall within {ticks} ticks satisfy x"
+    for held, verdict in ((ticks - 1, REALIZABLE), (ticks, UNREALIZABLE)):
+        setting = staged(soon, f"the sw shall for {held} ticks satisfy !x")
+        (found,) = verdicts.verdict(setting, 60)
+        assert found.verdict is verdict
+    conflict, complete = verdicts.conflicts(setting, 60)
+    assert isinstance(conflict, Conflict)
+    assert isinstance(complete, Completeness)
+    assert conflict.because == (
+        f"at tick {ticks} R1 demands `x` (since tick 0, by tick {ticks}), and R2 forbids it"
+    )
+    assert len(conflict.play) == (ticks + 1 if ticks == 10 else 0), "a million are not written down"
 
 
 # Reasons, roles and readings ----------------------------------------------------------------------

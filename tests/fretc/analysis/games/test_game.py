@@ -101,7 +101,10 @@ def test_leaps_over_many_ticks_change_no_verdict(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(Game, "surviving", counted)
     for seed in range(SETS // 2):
-        sentences, given = drawn(("leap", seed), most=4), [assumed(("leap", seed))] if seed % 2 else []
+        sentences, given = (
+            drawn(("leap", seed), most=4),
+            [assumed(("leap", seed))] if seed % 2 else [],
+        )
         setting = staged(*sentences, assumed=given)
         assumptions = [rule("A1", sentence) for sentence in given]
         if given and not satisfiable(assumptions):
