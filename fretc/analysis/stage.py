@@ -194,7 +194,7 @@ def _built(
     as_fret: bool,
     past: Role = Role.INPUT,
 ) -> Stage:
-    alphabet = _alphabet([*rules, *near], roles, fresh, past)
+    alphabet = alphabet_of([*rules, *near], roles, fresh, past)
     built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
     return Stage(tuple(rules), tuple(near), built, roles, as_fret, past, fresh)
 
@@ -207,8 +207,11 @@ def _has_numbers(rule: Formalized) -> bool:
     return bool(rule.stated) or not declared.propositions.keys().isdisjoint(rule.variables)
 
 
-def _alphabet(rules: Sequence[Formalized], roles: Roles, fresh: Numbers, past: Role) -> Alphabet:
-    """With the numbers that comparisons are about; z3 is imported where there are some."""
+def alphabet_of(rules: Sequence[Formalized], roles: Roles, fresh: Numbers, past: Role) -> Alphabet:
+    """The letters of some rules.
+
+    With the numbers that comparisons are about; z3 is imported where there are some.
+    """
     if not any(map(_has_numbers, rules)):
         return Propositions(rules, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells

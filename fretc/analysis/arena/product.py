@@ -32,7 +32,7 @@ class Arena:
     """What is remembered of numbers; None: nothing."""
 
 
-class _Fixed:
+class Fixed:
     """An alphabet of which each atom has been asked for: a thousand games read it, and it stays."""
 
     def __init__(self, alphabet: Alphabet) -> None:
@@ -60,7 +60,7 @@ def arena(
     beyond: dict[str, str] = {}
     shared: dict[Function, Bit] = {}
     known = {id(rule) for rule in assumptions}
-    for rule in _near_each_other([*rules, *assumptions]):
+    for rule in near_each_other([*rules, *assumptions]):
         try:
             made = counter(rule, alphabet, fresh, shared, as_fret=as_fret and id(rule) not in known)
         except BeyondError as error:
@@ -72,10 +72,10 @@ def arena(
     of_rules = tuple(found[rule.id] for rule in rules if rule.id in found)
     of_assumptions = tuple(found[each.id] for each in assumptions)
     memory = alphabet.memory()
-    return Arena(_Fixed(alphabet), of_rules, of_assumptions, beyond, memory)
+    return Arena(Fixed(alphabet), of_rules, of_assumptions, beyond, memory)
 
 
-def _near_each_other(rules: Sequence[Formalized]) -> list[Formalized]:
+def near_each_other(rules: Sequence[Formalized]) -> list[Formalized]:
     """Those that count come first, each after those with which it shares the most variables.
 
     The others add few bits, or none, and would tear atoms away from the counters that read them.

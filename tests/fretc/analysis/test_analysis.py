@@ -13,6 +13,7 @@ from fretc.analysis import verdicts
 from fretc.analysis.analysis import analyze
 from fretc.analysis.findings import Conflict, OpenQuestion, Verdict
 from fretc.analysis.games.budget import Budget
+from fretc.analysis.games.squaring import Leaps
 from fretc.analysis.verdicts import Completeness
 from fretish.bindings.declarations import Role
 from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, roles, rule, staged
@@ -340,7 +341,8 @@ def test_the_environment_keeps_its_promises_while_it_wins() -> None:
     }
 
 
-def test_what_takes_too_long_comes_with_a_clue() -> None:
+def test_what_takes_too_long_comes_with_a_clue(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Leaps, "is_due", lambda self: False)
     setting = staged(
         "whenever a the sw shall within 1000000 ticks satisfy x",
         "whenever b the sw shall for 1000001 ticks satisfy !x",
