@@ -22,8 +22,8 @@
 extern "C" {
 #endif
 
-#ifndef FRETC_MONITOR_TYPES
-#define FRETC_MONITOR_TYPES
+#ifndef FRETC_MONITOR_TYPES_1
+#define FRETC_MONITOR_TYPES_1
 
 /* A bool is one of these, too. Any other value is unknown. */
 typedef uint8_t fretc_truth;
