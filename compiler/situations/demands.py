@@ -111,7 +111,8 @@ def _for(known: Facts) -> Rows:
         yield "answered-at-last-tick", f.and_(kept, q)
         yield "missed-at-once", f.and_(_first(known), f.not_(q))
     if n > 1:
-        yield "missed-later", f.and_(known.open, f.not_(known.triggered), f.not_(q))
+        near = known.stage.open(f.TRUE, f.Interval(0, n - 1))
+        yield "missed-later", f.and_(near, f.not_(known.triggered), f.not_(q))
     yield "missed-by-one", f.and_(kept, f.not_(q))
     yield "given-up-after", f.and_(known.newest(n + 1, q), f.not_(q))
 

@@ -1,8 +1,9 @@
 """What one tick is to a sentence, as formulas of the past: triggered, open, answered k ticks on.
 
 A demand is open after a tick where what follows can still break it or meet it; the counter of the
-reference automaton is not 0 then. What a fact says holds up to and including the first tick at
-which the sentence is broken; after it a demand that is overdue stays open until it is answered.
+reference automaton is not 0 then, as long as nothing was broken. What a fact says is true after a
+breach, too; but once a deadline of `within` or `after` was missed, those of later demands are not
+told until an answer has come: to remember all would take a bit for each tick of the bound.
 
 No formula looks back by a whole duration tick by tick: the distance to a trigger is told by a
 counter that starts with it, so that a long bound costs the logarithm of its ticks.
@@ -63,25 +64,31 @@ class Facts:
     @cached_property
     def open(self) -> f.Formula:
         """After this tick a demand is open."""
-        demand, stage = self.demand, self.stage
-        q, n = f.not_(demand.response), demand.ticks
-        match demand.kind:
+        stage, n = self.stage, self.demand.ticks
+        q, silent = self.answer, f.not_(self.answer)
+        match self.demand.kind:
             case Kind.IMMEDIATELY:
                 return f.FALSE
             case Kind.NEXT:
                 return stage.trigger
-            case Kind.FINALLY | Kind.ALWAYS:
+            case Kind.FINALLY:
                 return stage.open(f.TRUE)
-            case Kind.EVENTUALLY | Kind.WITHIN | Kind.AFTER | Kind.BEFORE:
+            case Kind.ALWAYS:
                 return stage.open(q)
+            case Kind.EVENTUALLY:
+                return stage.open(silent)
+            case Kind.WITHIN:
+                return stage.open(silent, f.Interval(0, n - 1)) if n else f.FALSE
+            case Kind.AFTER | Kind.NOT_AFTER:
+                return stage.open(silent, f.Interval(0, n))
             case Kind.FOR:
-                return stage.open(f.TRUE, f.Interval(0, n - 1)) if n else f.FALSE
-            case Kind.NOT_AFTER:
-                return stage.open(q, f.Interval(0, n))
+                return stage.open(q, f.Interval(0, n - 1)) if n else f.FALSE
             case Kind.UNTIL:
-                return stage.open(f.not_(demand.stop))
+                return stage.open(f.and_(q, f.not_(self.demand.stop)))
+            case Kind.BEFORE:
+                return stage.open(f.and_(silent, f.not_(self.demand.stop)))
             case _:
-                assert_never(demand.kind)
+                assert_never(self.demand.kind)
 
     @cached_property
     def was_open(self) -> f.Formula:

@@ -12,6 +12,7 @@ import click
 
 from fretc.terminal.options import (
     PATH,
+    SECONDS,
     format_option,
     output_option,
     path_option,
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
 @click.option(
     "--time",
     "seconds",
-    type=click.FloatRange(min=0, min_open=True),
+    type=SECONDS,
     default=20,
     show_default=True,
     help="Seconds of a processor for each question.",

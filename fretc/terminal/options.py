@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -33,6 +34,23 @@ class _Path(click.ParamType[str]):
 
 
 PATH = _Path()
+
+
+class _Seconds(click.FloatRange):
+    """A time that passes: more than 0, and a number (a search ends at no time that is none)."""
+
+    def __init__(self) -> None:
+        super().__init__(min=0, min_open=True)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """As of a range; no comparison excludes what is not a number."""
+        seconds = super().convert(value, param, ctx)
+        if math.isnan(seconds):
+            self.fail(f"{value} is not a number of seconds", param, ctx)
+        return seconds
+
+
+SECONDS = _Seconds()
 
 
 class Renamed(click.Option):

@@ -86,8 +86,13 @@ class Bench:
                     raise
                 self.beyond[each.id] = str(error)
         for each in every:
-            for name in demands(each).atoms:
-                alphabet.atom(name)
+            try:
+                for name in demands(each).atoms:
+                    alphabet.atom(name)
+            except BeyondError as error:
+                if each not in others:
+                    raise
+                raise BeyondError(f"its tests have to keep {each.id}, and there {error}") from None
         numbers_before = alphabet.memory()
         self._always = () if numbers_before is None else (numbers_before,)
         self.alphabet = Fixed(alphabet)

@@ -19,6 +19,7 @@ from fretc.testing.suite import Fate, Met, Mutated, Obligation, Polarity, Test, 
 from fretc.testing.words import Expected, expected, undecided
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import deep
+from monitors.kernel.verdicts import Verdict
 from monitors.loading import load
 
 
@@ -154,9 +155,7 @@ class _Generation:
 
     def _purpose(self, key: str, polarity: Polarity) -> _Purpose:
         words = next(each.words for each in self._situations if each.key == key)
-        if polarity is Polarity.UNKNOWN:
-            return _Purpose(key, words)
-        return _Purpose(f"{key}-{polarity}", f"{words}; {self._rule.id} is {polarity}")
+        return _Purpose(key if polarity is Polarity.UNKNOWN else f"{key}-{polarity}", words)
 
     def _telling_apart(
         self, told: Mapping[str, Answer], runs: Collection[Run]
@@ -183,7 +182,7 @@ class _Generation:
         return Test(
             name=unused(name, names),
             requirement=self._rule.id,
-            words=purpose.words,
+            words="; ".join([purpose.words, *self._outcome(run.polarity, says.verdict)]),
             rows=run.word.rows,
             polarity=run.polarity,
             verdict=says.verdict,
@@ -194,6 +193,13 @@ class _Generation:
             situations=tuple(each.key for each in self._situations if each.key in run.situations),
             kills=tuple(each.key for each in self._wrong if each.key in run.kills),
         )
+
+    def _outcome(self, polarity: Polarity, verdict: Verdict) -> Iterator[str]:
+        """What the run makes of the requirement; nothing broken where only its end says no."""
+        if polarity is Polarity.BROKEN and verdict == Verdict.INCONCLUSIVE:
+            yield f"the run ends while {self._rule.id} is not met"
+        elif polarity is not Polarity.UNKNOWN:
+            yield f"{self._rule.id} is {polarity}"
 
     def _expected(self, run: Run) -> Expected:
         rule, monitor = self._rule, self._monitor

@@ -86,11 +86,25 @@ def _counts(outcomes: Sequence[str], kinds: type[Met] | type[Fate]) -> str:
 
 
 def _remarks(suite: Suite) -> Iterator[Line]:
+    lost = dict(_lost(suite))
+    for id, why in lost.items():
+        yield f"{signs.UNKNOWN.glyph} {id}: nothing was searched: {why}", signs.UNKNOWN.colour
     for situation in _by_situation(suite):
-        yield from _unmet(situation)
+        if situation[0].requirement not in lost:
+            yield from _unmet(situation)
     for mutant in suite.mutants:
-        yield from _surviving(mutant)
+        if mutant.requirement not in lost:
+            yield from _surviving(mutant)
     yield from _doubts(suite)
+
+
+def _lost(suite: Suite) -> Iterator[tuple[str, str]]:
+    """Requirements of which nothing was searched, all for one reason; and that."""
+    for each in suite.requirements:
+        outcomes = (*suite.obligations, *suite.mutants)
+        reasons = {one.why for one in outcomes if one.requirement == each.id}
+        if len(reasons) == 1 and "" not in reasons:
+            yield each.id, reasons.pop()
 
 
 def _doubts(suite: Suite) -> Iterator[Line]:

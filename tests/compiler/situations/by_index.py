@@ -1,7 +1,6 @@
 """The situations of a template once more, from intervals and triggers that are lists of ticks.
 
-Written from the words of the situations and from `tests.meaning`; no formula, no automaton. What it
-says of a tick holds where nothing has been broken before.
+Written from the words of the situations and from `tests.meaning`; no formula, no automaton.
 """
 
 from __future__ import annotations
@@ -104,22 +103,29 @@ class At:
     def _is_open(self, trigger: int, last: int) -> bool:
         """Whether the demand of a trigger is open after the tick `last`."""
         n, passed = self.drawn.n, last - trigger
-        silent = not any(self.q[trigger : last + 1])
+        answers, stops = self.q[trigger : last + 1], self.columns["s"][trigger : last + 1]
+        silent = not any(answers)
         match kind(self.drawn):
             case "immediately":
                 return False
             case "next":
                 return passed == 0
-            case "finally" | "always":
+            case "finally":
                 return True
-            case "eventually" | "within" | "after" | "before":
+            case "always":
+                return all(answers)
+            case "eventually":
                 return silent
+            case "within":
+                return silent and passed < n
             case "for":
-                return passed < n
-            case "not after":
+                return all(answers) and passed < n
+            case "after" | "not after":
                 return silent and passed <= n
             case "until":
-                return not any(self.columns["s"][trigger : last + 1])
+                return all(answers) and not any(stops)
+            case "before":
+                return silent and not any(stops)
             case other:
                 raise AssertionError(other)
 
@@ -323,4 +329,5 @@ class At:
         """The first answer came at the tick before, in this interval, and after its trigger."""
         before = self.previous
         same = self.at > 0 and self.left is not None and before.left == self.left
-        return same and bool(before.open_triggers) and before.q[before.at]
+        answered = before.q[before.at] and not self.columns["s"][before.at]
+        return same and bool(before.open_triggers) and answered

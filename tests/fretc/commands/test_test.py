@@ -80,7 +80,7 @@ def test_what_was_not_searched_is_told(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder), "--time", "0.000001")
     assert run.status == 3
     assert run.out.startswith("? 2 requirements: 0 tests of 0 ticks together; not all was searched")
-    assert "not searched: not answered within 1e-06 s of a processor" in run.out
+    assert "nothing was searched: not answered within 1e-06 s of a processor" in run.out
 
 
 def test_what_others_exclude_is_told(fretc: Fretc, tmp_path: Path) -> None:
@@ -95,3 +95,33 @@ def test_a_sentence_that_cannot_be_read_is_a_mistake(fretc: Fretc, tmp_path: Pat
     run = fretc("test", str(folder))
     assert run.status == 2
     assert "Traceback" not in run.err
+
+
+def test_a_run_that_only_its_end_makes_wrong_is_not_called_broken(
+    fretc: Fretc, tmp_path: Path
+) -> None:
+    folder = written(tmp_path, ["upon go the sw shall eventually satisfy up"])
+    made = json.loads(fretc("test", str(folder), "-o", "-").out)["tests"]
+    ends = [test["words"] for test in made if test["verdict"] == "inconclusive"]
+    assert ends
+    assert all(words.endswith("; the run ends while R1 is not met") for words in ends)
+
+
+def test_nothing_is_said_line_by_line_where_nothing_was_searched(
+    fretc: Fretc, tmp_path: Path
+) -> None:
+    sentences = ["upon persists(2, a) the sw shall immediately satisfy b", SENTENCES[0] + " & a"]
+    run = fretc("test", str(written(tmp_path, sentences)), "-o", str(tmp_path / "suite.json"))
+    assert run.status == 3
+    why = "`persists(2,a)` is more than a value at one tick"
+    assert run.out.split("\n\n")[2].splitlines()[:2] == [
+        f"? R1: nothing was searched: {why}",
+        f"? R2: nothing was searched: its tests have to keep R1, and there {why}",
+    ]
+
+
+@pytest.mark.parametrize("command", ["test", "analyze"])
+def test_a_time_that_is_no_number_is_a_mistake(fretc: Fretc, folder: Path, command: str) -> None:
+    run = fretc(command, str(folder), "--time", "nan")
+    assert run.status == 2
+    assert "nan is not a number of seconds" in run.err
