@@ -101,8 +101,8 @@ def _remarks(suite: Suite) -> Iterator[Line]:
 def _lost(suite: Suite) -> Iterator[tuple[str, str]]:
     """Requirements of which nothing was searched, all for one reason; and that."""
     for each in suite.requirements:
-        outcomes = (*suite.obligations, *suite.mutants)
-        reasons = {one.why for one in outcomes if one.requirement == each.id}
+        reasons = {one.why for one in suite.obligations if one.requirement == each.id}
+        reasons |= {one.why for one in suite.mutants if one.requirement == each.id}
         if len(reasons) == 1 and "" not in reasons:
             yield each.id, reasons.pop()
 
