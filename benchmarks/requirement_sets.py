@@ -10,7 +10,7 @@ import spot
 from compiler.logic import printing
 from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.roles import Roles
-from fretc.analysis.games.budget import Budget
+from fretc.analysis.arena.budget import Budget
 from tests.requirement_sets import ROLES, drawn, roles, rules, staged
 
 LIMIT = 60

@@ -17,7 +17,7 @@ from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from fretc.analysis.arena.alphabet import BeyondError
 from fretc.analysis.findings import Conflict, OpenQuestion, Repair
-from fretc.analysis.games.budget import Budget, OutOfTimeError
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.stage import Stage, stage
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
@@ -68,19 +68,19 @@ class _Setting:
 
 
 def repairs(
-    setting: Stage, conflicts: Sequence[Conflict], seconds: float
+    setting: Stage, conflicts: Sequence[Conflict], budget: Budget
 ) -> Iterator[Repair | OpenQuestion]:
     """What would settle each conflict of a component.
 
     Args:
         setting: of the component.
         conflicts: some of its minimal ones.
-        seconds: of a processor, for all of them.
+        budget: for all of them.
     """
     for conflict in conflicts:
         rules = tuple(rule for rule in setting.rules if rule.id in conflict.requirements)
         for family in (_changes, _promises):
-            share = Budget(seconds / len(conflicts) / 2)
+            share = Budget(budget.seconds / len(conflicts) / 2)
             try:
                 yield from family(_Setting(setting, rules, share), conflict.requirements)
             except (OutOfTimeError, BeyondError) as error:

@@ -11,14 +11,15 @@ from compiler.formalization.letters import atoms_of, comparisons
 from compiler.formalization.resolution import candidates
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, numbers
+from fretc.analysis.arena.budget import ENDLESS, Budget
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about
-from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.game import Game, upheld
 from fretc.analysis.games.plays import Letter
+from fretc.analysis.games.replay import remembering
 from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
 
@@ -32,8 +33,9 @@ class Stage:
     arena: Arena
     roles: Roles
     as_fret: bool
-    past: Role = Role.INPUT
-    """Who chooses numbers of the tick before, as far as nothing is remembered of them."""
+    favoured: Role = Role.INPUT
+    """Who chooses what nothing is known of: a number of the tick before, a signal that may be
+    unknown, what was before the first tick. Whoever loses even so loses."""
     _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
     """What each game of the stage needs of the assumptions, once it has been computed."""
 
@@ -45,24 +47,29 @@ class Stage:
     def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
         """The game of some counters, under all assumptions."""
         kept, assumptions = [*counters], [*self.arena.assumptions]
-        (kept if self.past is Role.OUTPUT else assumptions).extend(self._memory)
+        (kept if self.favoured is Role.OUTPUT else assumptions).extend(self._memory)
         if not self._upheld:
             self._upheld.append(upheld(self.arena.alphabet, assumptions, budget))
         return Game(self.arena.alphabet, kept, assumptions, budget, self._upheld[0])
 
     @property
     def _memory(self) -> tuple[Counter, ...]:
-        return () if self.arena.memory is None else (self.arena.memory,)
+        memory = self.arena.alphabet.memory()
+        return () if memory is None else (memory,)
 
-    def generous(self) -> Stage | None:
-        """The same where the system chooses numbers of the tick before; None: nobody does.
-
-        What cannot be kept even so cannot be kept.
-        """
-        if self.arena.memory is None:
-            return None
-        rules, near = self.rules, self.assumptions
-        return _built(rules, near, self.roles, numbers(), as_fret=self.as_fret, past=Role.OUTPUT)
+    def generous(self, budget: Budget) -> Stage:
+        """The same where the system is favoured: what cannot be kept even so cannot be kept."""
+        if self.arena.alphabet.open is None:
+            return self
+        return _built(
+            self.rules,
+            self.assumptions,
+            self.roles,
+            numbers(),
+            budget,
+            as_fret=self.as_fret,
+            favoured=Role.OUTPUT,
+        )
 
     def runs(
         self, kept: Sequence[Counter], budget: Budget, watched: Sequence[Counter] = ()
@@ -71,18 +78,28 @@ class Stage:
         counters = [*kept, *self.arena.assumptions, *self._memory]
         return Runs(self.arena.alphabet, counters, budget, watched)
 
-    def ticks(self, ids: Iterable[str], letters: Iterable[Letter]) -> tuple[Tick, ...]:
-        """Letters as values of the variables of some requirements and of the assumptions."""
+    def ticks(
+        self, ids: Iterable[str], letters: Iterable[Letter], numbers: Sequence[Tick] = ()
+    ) -> tuple[Tick, ...]:
+        """Letters as values of the variables of some requirements and of the assumptions.
+
+        Args:
+            ids: of the requirements.
+            letters: from the first tick on.
+            numbers: for each of them, where they depend on those of the tick before.
+        """
         wanted = set(ids)
         rules = [*(rule for rule in self.rules if rule.id in wanted), *self.assumptions]
         names = {name for rule in rules for name in (*rule.variables, *atoms_of(rule.sentence))}
-        each = map(self.arena.alphabet.values, letters)
+        alphabet = self.arena.alphabet
+        each = [alphabet.values(letter) for letter in remembering(alphabet, letters)]
+        each = [tick | more for tick, more in zip(each, numbers, strict=True)] if numbers else each
         return tuple({name: tick[name] for name in sorted(tick) if name in names} for tick in each)
 
     @property
     def certain(self) -> tuple[Counter, ...]:
-        """The counters of requirements whose letters are just those that there can be."""
-        doubtful = self.arena.alphabet.doubtful
+        """The counters of requirements of which the environment has no letter too many."""
+        doubtful = self.arena.alphabet.doubtful(Role.INPUT)
         if any(not doubtful.isdisjoint(_atoms(rule)) for rule in self.assumptions):
             return ()
         return self.counters(rule.id for rule in self.rules if doubtful.isdisjoint(_atoms(rule)))
@@ -113,14 +130,16 @@ def stage(
     roles: Roles,
     *,
     as_fret: bool = False,
+    budget: Budget = ENDLESS,
 ) -> Stage:
     """The stage of some requirements.
 
     Raises:
         BeyondError: an assumption has no counter.
+        OutOfTimeError: it takes longer than the budget to sort out their comparisons.
     """
     near = about(rules, assumptions, roles)
-    return _built(rules, near, roles, numbers(), as_fret=as_fret)
+    return _built(rules, near, roles, numbers(), budget, as_fret=as_fret)
 
 
 def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
@@ -133,7 +152,7 @@ def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
     rules = [rule for rule in setting.rules if rule.id in wanted]
     near = about(rules, setting.assumptions, setting.roles)
     used = numbers()
-    first = _built(rules, near, setting.roles, used, as_fret=setting.as_fret)
+    first = _built(rules, near, setting.roles, used, ENDLESS, as_fret=setting.as_fret)
     weights = {
         number: weight
         for each in (*first.arena.counters, *first.arena.assumptions)
@@ -145,7 +164,7 @@ def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
     order = sorted(range(count), key=lambda number: (-weights.get(number, count), number))
     places = {number: place for place, number in enumerate(order)}
     fresh = chain((places[number] for number in range(count)), numbers(count))
-    return _built(rules, near, setting.roles, fresh, as_fret=setting.as_fret)
+    return _built(rules, near, setting.roles, fresh, ENDLESS, as_fret=setting.as_fret)
 
 
 def _built(
@@ -153,19 +172,22 @@ def _built(
     near: Sequence[Formalized],
     roles: Roles,
     fresh: Numbers,
+    budget: Budget,
     *,
     as_fret: bool,
-    past: Role = Role.INPUT,
+    favoured: Role = Role.INPUT,
 ) -> Stage:
-    alphabet = _alphabet([*rules, *near], roles, fresh, past)
+    alphabet = _alphabet([*rules, *near], roles, fresh, favoured, budget)
     built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
-    return Stage(tuple(rules), tuple(near), built, roles, as_fret, past)
+    return Stage(tuple(rules), tuple(near), built, roles, as_fret, favoured)
 
 
-def _alphabet(rules: Sequence[Formalized], roles: Roles, fresh: Numbers, past: Role) -> Alphabet:
+def _alphabet(
+    rules: Sequence[Formalized], roles: Roles, fresh: Numbers, favoured: Role, budget: Budget
+) -> Alphabet:
     """With the numbers that comparisons are about; z3 is imported where there are some."""
     if not any(comparisons(rule) or rule.declarations for rule in rules):
         return Propositions(rules, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 
-    return Cells(rules, roles, fresh, past)
+    return Cells(rules, roles, fresh, favoured, budget)

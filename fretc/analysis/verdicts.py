@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -15,9 +14,9 @@ from fretc.analysis.controllers.files import Form
 from fretc.analysis.controllers.machine import NoMachineError, machine
 from fretc.analysis.controllers.moves import Mealy, mealy
 from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
-from fretc.analysis.games.budget import Budget, OutOfTimeError
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import Members, cores, minimal
-from fretc.analysis.games.plays import Counterstrategy
+from fretc.analysis.games.plays import Counterstrategy, NoPlayError
 from fretc.analysis.games.replay import broken
 from fretc.analysis.reasons import because, listed
 from fretc.analysis.stage import Stage, stage
@@ -31,15 +30,13 @@ class Completeness:
     requirements: tuple[str, ...]
 
 
-def verdict(setting: Stage, seconds: float) -> Iterator[Component]:
+def verdict(setting: Stage, budget: Budget) -> Iterator[Component]:
     """Whether the requirements of a component can be kept together."""
-    start = time.process_time()
     try:
-        answer, why = _verdict(setting, Budget(seconds))
+        answer, why = _verdict(setting, budget)
     except (BeyondError, OutOfTimeError) as error:
         answer, why = Verdict.NOT_CHECKED, str(error)
-    spent = round(time.process_time() - start, 3)
-    yield component(setting.rules, setting.roles, answer, why, spent)
+    yield component(setting.rules, setting.roles, answer, why, round(budget.spent, 3))
 
 
 def component(
@@ -62,35 +59,33 @@ def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
         doubt = setting.of_inputs
         if doubt is None:
             return Verdict.UNREALIZABLE, "the environment wins"
-        generous = setting.generous()
-        if generous is not None and _is_lost(generous, generous.arena.counters, budget):
+        generous = setting.generous(budget)
+        if generous.of_inputs is None and _is_lost(generous, setting.arena.counters, budget):
             return Verdict.UNREALIZABLE, f"the environment wins, {_WHATEVER}"
     return Verdict.NOT_CHECKED, doubt
 
 
-_WHATEVER = "whatever the numbers of the tick before are taken for"
+_WHATEVER = "whatever is taken for what is not known"
 
 
-def _is_lost(generous: Stage, counters: Sequence[Counter], budget: Budget) -> bool:
-    """Whether the environment wins, though the system chooses what is not remembered."""
-    if generous.of_inputs is not None:
-        return False
-    return not generous.game(counters, budget).solution().is_realizable
+def _is_lost(there: Stage, counters: Sequence[Counter], budget: Budget) -> bool:
+    """Whether the environment wins on a stage, of the requirements that counters of any are of."""
+    mine = there.counters(each.id for each in counters)
+    return not there.game(mine, budget).solution().is_realizable
 
 
 def strategy(
-    setting: Stage, seconds: float, *, number: int, form: Form
+    setting: Stage, budget: Budget, *, number: int, form: Form
 ) -> Iterator[Circuit | Mealy | OpenQuestion]:
     """How a component that can be kept is kept.
 
     Args:
         setting: of the component.
-        seconds: of a processor.
+        budget: for finding it.
         number: of the component.
         form: in which the strategy is to be written.
     """
     ids = tuple(rule.id for rule in setting.rules)
-    budget = Budget(seconds)
     try:
         game = setting.game(setting.arena.counters, budget)
         found = machine(game, game.solution(), budget)
@@ -112,14 +107,50 @@ def _check_assumptions(setting: Stage, budget: Budget) -> None:
         raise BeyondError(f"no run keeps the assumptions {ids}")
 
 
-def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completeness | OpenQuestion]:
-    """Every minimal conflict; at the end a question, where there may be more."""
-    budget = Budget(seconds)
-    counters = setting.arena.counters if setting.of_inputs is None else setting.certain
+def conflicts(setting: Stage, budget: Budget) -> Iterator[Conflict | Completeness | OpenQuestion]:
+    """Every minimal conflict; at the end a question, where there may be more.
+
+    Where something is not known, a conflict is certain if the environment wins whatever it is taken
+    for; and so it is minimal, for the environment was favoured when it did not win any less.
+    """
+    question = f"which others of {', '.join(rule.id for rule in setting.rules)} fight"
+    open_: list[str] = []
+    try:
+        _check_assumptions(setting, budget)
+        known = {each.id for each in setting.certain}
+        generous = setting.generous(budget)
+        for counters in _minimal(setting, generous.certain, budget):
+            ids = [each.id for each in counters]
+            if known.issuperset(ids):
+                yield _conflict(setting, counters, budget)
+            elif _is_lost(generous, counters, budget):
+                yield _conflict(generous, generous.counters(ids), budget)
+            else:
+                open_.append(listed(ids))
+    except OutOfTimeError as error:
+        yield OpenQuestion(question, f"{error}{_hint(setting, budget.again())}")
+        return
+    except BeyondError as error:
+        yield OpenQuestion(question, str(error))
+        return
+    doubt = setting.left_out or generous.of_inputs or setting.of_outputs
+    if open_ and doubt is None:
+        doubt = f"{setting.of_inputs}; it decides whether these can be kept: {'; '.join(open_)}"
+    if doubt is None:
+        yield Completeness(tuple(rule.id for rule in setting.rules))
+    else:
+        yield OpenQuestion(question, doubt)
+
+
+def _minimal(
+    setting: Stage, certain: Sequence[Counter], budget: Budget
+) -> Iterator[tuple[Counter, ...]]:
+    """The minimal conflicts of a stage among the requirements that are certain on another one."""
+    counters = setting.counters(each.id for each in certain)
     read = {rule.id: frozenset(rule.variables) for rule in setting.rules}
 
-    def chosen(members: Members) -> list[Counter]:
-        return [counters[i] for i in sorted(members)]
+    def chosen(members: Members) -> tuple[Counter, ...]:
+        return tuple(counters[i] for i in sorted(members))
 
     def is_conflict(members: Members) -> bool:
         return not setting.game(chosen(members), budget).solution().is_realizable
@@ -127,50 +158,14 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
     def near(i: int, j: int) -> bool:
         return bool(read[counters[i].id] & read[counters[j].id])
 
-    question = f"which others of {', '.join(rule.id for rule in setting.rules)} fight"
-    try:
-        _check_assumptions(setting, budget)
-        for members in cores(len(counters), is_conflict, near):
-            yield _conflict(setting, chosen(members), budget)
-        if setting.of_inputs is not None:
-            yield from _with_the_past(setting, budget)
-    except OutOfTimeError as error:
-        yield OpenQuestion(question, f"{error}{_hint(setting, seconds)}")
-        return
-    except BeyondError as error:
-        yield OpenQuestion(question, str(error))
-        return
-    doubt = setting.left_out or setting.of_inputs
-    if doubt is None:
-        yield Completeness(tuple(rule.id for rule in setting.rules))
-    else:
-        yield OpenQuestion(question, doubt)
-
-
-def _with_the_past(setting: Stage, budget: Budget) -> Iterator[Conflict]:
-    """Conflicts about numbers of the tick before that are certain, and certain to be minimal."""
-    generous = setting.generous()
-    if generous is None:
-        return
-    counters = generous.arena.counters
-    known = {each.id for each in setting.certain}
-
-    def is_conflict(members: Members) -> bool:
-        return _is_lost(generous, [counters[i] for i in sorted(members)], budget)
-
-    for members in cores(len(counters), is_conflict, lambda i, j: True):
-        ids = sorted(counters[i].id for i in members)
-        fewer = [[id for id in ids if id != other] for other in ids]
-        games = (setting.game(setting.counters(each), budget) for each in fewer)
-        if not known.issuperset(ids) and all(game.solution().is_realizable for game in games):
-            yield Conflict(tuple(ids), (), f"the environment wins, {_WHATEVER}; no play is shown")
+    return map(chosen, cores(len(counters), is_conflict, near))
 
 
 _SHORT = 200
 """Ticks of the longest duration where durations are scaled."""
 
 
-def _hint(setting: Stage, seconds: float) -> str:
+def _hint(setting: Stage, budget: Budget) -> str:
     """What fights where all durations are a fraction of what they are: a clue, and no finding."""
     longest = max((rule.ticks or 0 for rule in setting.rules), default=0)
     factor = -(-longest // _SHORT)
@@ -185,7 +180,6 @@ def _hint(setting: Stage, seconds: float) -> str:
     )
     scaled = stage(rules, assumptions, setting.roles, as_fret=setting.as_fret)
     every = [each.id for each in scaled.arena.counters]
-    budget = Budget(seconds)
 
     def fights(ids: Sequence[str]) -> bool:
         game = scaled.game(scaled.counters(ids), budget)
@@ -205,7 +199,7 @@ def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Co
     game = setting.game(counters, budget)
     try:
         play = Counterstrategy(game, game.solution(traps=True), budget).play()
-    except OutOfTimeError as error:
+    except (NoPlayError, OutOfTimeError) as error:
         return Conflict(tuple(ids), (), f"the environment wins by a play that is {error}")
     rules = [rule for rule in setting.rules if rule.id in ids]
     alphabet = setting.arena.alphabet
@@ -214,7 +208,7 @@ def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Co
     assert not broken(setting.assumptions, alphabet, play), "the environment keeps its word"
     return Conflict(
         tuple(ids),
-        setting.ticks(ids, play.letters),
+        setting.ticks(ids, play.letters, play.numbers),
         because(rules, counters, game, play),
         play.loop,
     )

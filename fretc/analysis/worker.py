@@ -17,7 +17,7 @@ from multiprocessing.context import ForkProcess
 
 from compiler.files.processes import reply
 from fretc.analysis.analysis import Finding, Job
-from fretc.analysis.games.budget import guard
+from fretc.analysis.arena.budget import guard
 from fretish.reading.recursion import deep
 
 MEMORY = 4 * 2**30

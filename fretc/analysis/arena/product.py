@@ -28,19 +28,19 @@ class Arena:
     assumptions: tuple[Counter, ...]
     beyond: dict[str, str]
     """Why a requirement has no counter, by its id."""
-    memory: Counter | None = None
-    """What is remembered of numbers; None: nothing."""
 
 
 class _Fixed:
     """An alphabet of which each atom has been asked for: a thousand games read it, and it stays."""
 
     def __init__(self, alphabet: Alphabet) -> None:
-        self.atom, self.values = alphabet.atom, alphabet.values
+        memory = alphabet.memory()
+        self.atom, self.values, self.course = alphabet.atom, alphabet.values, alphabet.course
         self.inputs, self.outputs = tuple(alphabet.inputs), tuple(alphabet.outputs)
         self.legal, self.reachable = alphabet.legal, alphabet.reachable
         self.doubts, self.labels = alphabet.doubts, alphabet.labels
-        self.doubtful, self.memory = alphabet.doubtful, alphabet.memory
+        self.doubtful, self.open = alphabet.doubtful, alphabet.open
+        self.memory = lambda: memory
 
 
 def arena(
@@ -71,8 +71,7 @@ def arena(
             found[rule.id] = made
     of_rules = tuple(found[rule.id] for rule in rules if rule.id in found)
     of_assumptions = tuple(found[each.id] for each in assumptions)
-    memory = alphabet.memory()
-    return Arena(_Fixed(alphabet), of_rules, of_assumptions, beyond, memory)
+    return Arena(_Fixed(alphabet), of_rules, of_assumptions, beyond)
 
 
 def _near_each_other(rules: Sequence[Formalized]) -> list[Formalized]:

@@ -68,6 +68,22 @@ def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Patt
     return tuple(found)
 
 
+def another(
+    formulas: Sequence[Term], known: Sequence[Pattern], domain: Term, limit: Limit
+) -> bool:
+    """Whether the formulas can have truth values together that are not known.
+
+    Raises:
+        BeyondError: it takes too long.
+    """
+    if len(known) == 2 ** len(formulas):
+        return False
+    solver = z3.Solver()
+    solver.add(domain)
+    solver.add([z3.Not(z3.And(literals(formulas, each))) for each in known])
+    return next_model(solver, limit) is not None
+
+
 def cells(
     formulas: Sequence[Term],
     known: Sequence[Pattern],
@@ -147,13 +163,14 @@ def point(constraints: Sequence[Term], variables: Sequence[Term]) -> Point:
     solver.set("timeout", _PATIENCE)
     solver.add(*constraints)
     solver.push()
-    solver.add([z3.IsInt(each) for each in variables if each.is_real()])
+    solver.add([z3.IsInt(each) for each in variables if z3.is_real(each)])
     if solver.check() != z3.sat:
         solver.pop()
         solver.set("timeout", 0)
         answer = solver.check()
         assert answer == z3.sat, "the pattern has been seen"
     model = solver.model()
+    variables = [each for each in variables if z3.is_arith(each)]
     values = [model.eval(each, model_completion=True) for each in variables]
     return {
         str(each): Fraction(str(value.as_fraction() if value.is_real() else value.as_long()))

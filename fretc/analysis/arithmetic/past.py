@@ -12,7 +12,9 @@ from dataclasses import dataclass
 
 import z3
 
-from fretc.analysis.arithmetic.terms import Atom, Atoms, Before, Term, read_by
+from fretc.analysis.arithmetic.atoms import Atom, Atoms
+from fretc.analysis.arithmetic.steps import AtomOfTick
+from fretc.analysis.arithmetic.terms import Before, Term, read_by
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,5 +67,5 @@ def _named(atoms: Atoms, formula: Term) -> str:
     found = next(same, None)
     if found is None:
         found = formula.sexpr()
-        atoms.found[found] = Atom(formula, read_by(formula))
+        atoms.found[found] = Atom(AtomOfTick(formula, z3.BoolVal(True)), read_by(formula))
     return found

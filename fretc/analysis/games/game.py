@@ -17,7 +17,7 @@ from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.transition import Transition
-from fretc.analysis.games.budget import Budget
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.games.runs import Runs
 
 Chain = tuple[tuple[Function, Function], ...]

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.transition import State
-from fretc.analysis.games.budget import Budget
+from fretc.analysis.arena.alphabet import Tick
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.games.game import Game, Goal, Solution, Trap
 
 Letter = Mapping[int, bool]
@@ -24,6 +25,16 @@ class Play:
     """The tick to which the last one leads back for ever; None: the last tick breaks something."""
     state: State
     """Before the last tick."""
+    numbers: tuple[Tick, ...] = ()
+    """Of each tick, where they depend on those of the tick before."""
+
+
+class NoPlayError(Exception):
+    """The environment wins, but no play shows it; the message says why."""
+
+
+_MOST_NUMBERS = 500
+"""Ticks of a play whose numbers may come back to what they were."""
 
 
 class Counterstrategy:
@@ -35,12 +46,14 @@ class Counterstrategy:
     def __init__(self, game: Game, solution: Solution, budget: Budget) -> None:
         assert not solution.is_realizable
         self._game, self._traps, self._budget = game, solution.traps, budget
+        self._course = game.alphabet.course(budget)
 
     def play(self) -> Play:
         """From the initial state to a breach, or round and round without what must come.
 
         Raises:
             OutOfTimeError: it has too many ticks.
+            NoPlayError: its numbers come back to nothing that was.
         """
         state: State = self._game.transition.start
         promise, trap = 0, len(self._traps) - 1
@@ -49,20 +62,36 @@ class Counterstrategy:
         before = state
         while True:
             self._budget.check()
-            key = (promise, *state.values())
+            key = (promise, *state.values(), *(self._course.last if self._course else ()))
             if key in seen:
-                return Play(tuple(letters), seen[key], before)
+                return Play(tuple(letters), seen[key], before, self._numbers)
             seen[key] = len(letters)
+            if self._course is not None and len(letters) > _MOST_NUMBERS:
+                raise NoPlayError(f"not shown: its numbers do not come back in {_MOST_NUMBERS} ticks")
             trap = self._number(bdd.point(state), trap)
             inputs = self._inputs(state, promise, self._traps[trap])
             options = self._options(state, inputs)
             if options == bdd.false():
-                letters.append(inputs | self._breach(state, inputs))
-                return Play(tuple(letters), None, state)
-            letter = inputs | self._resistance(options, state, inputs, trap)
+                letters.append(self._followed(inputs | self._breach(state, inputs)))
+                return Play(tuple(letters), None, state, self._numbers)
+            letter = self._followed(inputs | self._resistance(options, state, inputs, trap))
             letters.append(letter)
             before, state = state, self._game.transition.next(bdd.point({**state, **letter}))
             promise = self._following(state, promise)
+
+    def _followed(self, letter: Letter) -> Letter:
+        """The letter, for which numbers are chosen."""
+        if self._course is not None:
+            self._course.follow(letter)
+        return letter
+
+    @property
+    def _numbers(self) -> tuple[Tick, ...]:
+        return () if self._course is None else tuple(self._course.ticks)
+
+    def _possible(self, inputs: Letter) -> Function:
+        """The outputs that the numbers of the tick before leave."""
+        return bdd.true() if self._course is None else self._course.possible(inputs)
 
     def _following(self, state: State, promise: int) -> int:
         """The promise that the environment keeps next, once it is in a state."""
@@ -94,7 +123,8 @@ class Counterstrategy:
 
     def _options(self, state: State, inputs: Letter) -> Function:
         """The outputs that break nothing."""
-        return bdd.at(self._game.safe, bdd.point({**state, **inputs}))
+        safe = bdd.at(self._game.safe, bdd.point({**state, **inputs}))
+        return safe & self._possible(inputs)
 
     def _resistance(
         self, options: Function, state: State, inputs: Letter, trap: int
@@ -117,7 +147,7 @@ class Counterstrategy:
     def _breach(self, state: State, inputs: Letter) -> dict[int, bool]:
         """Outputs that break as few requirements as can be."""
         known = bdd.point({**state, **inputs})
-        options = bdd.at(self._game.reachable, known)
+        options = bdd.at(self._game.reachable, known) & self._possible(inputs)
         for counter in self._game.counters:
             kept = options & bdd.at(counter.safe, known)
             options = kept if kept != bdd.false() else options

@@ -6,13 +6,14 @@ monitors of its requirements find it, too.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
+from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.plays import Letter, Play
 
 ROUNDS = 3
@@ -23,11 +24,24 @@ def columns(alphabet: Alphabet, letters: Sequence[Letter], atoms: Iterable[str])
     """Each atom over time, bit i for tick i."""
     functions = {name: alphabet.atom(name) for name in atoms}
     bits: dict[str, list[str]] = {name: [] for name in functions}
-    for letter in reversed(letters):
+    for letter in reversed([*remembering(alphabet, letters)]):
         known = bdd.point(letter)
         for name, function in functions.items():
             bits[name].append("1" if bdd.at(function, known) == bdd.true() else "0")
     return {name: int("".join(values) or "0", 2) for name, values in bits.items()}
+
+
+def remembering(alphabet: Alphabet, letters: Iterable[Letter]) -> Iterator[Letter]:
+    """The letters of a run from its first tick on, each with what is remembered before it."""
+    memory = alphabet.memory()
+    if memory is None:
+        yield from letters
+        return
+    transition = Transition([memory])
+    state = transition.start
+    for letter in letters:
+        yield {**letter, **state}
+        state = transition.next(bdd.point({**letter, **state}))
 
 
 def broken(

@@ -13,7 +13,7 @@ from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.transition import Transition
-from fretc.analysis.games.budget import Budget
+from fretc.analysis.arena.budget import Budget
 
 
 class Runs:

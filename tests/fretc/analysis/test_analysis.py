@@ -12,7 +12,7 @@ from compiler.formalization.formalized import Formalized
 from fretc.analysis import verdicts
 from fretc.analysis.analysis import analyze
 from fretc.analysis.findings import OpenQuestion, Verdict
-from fretc.analysis.games.budget import Budget
+from fretc.analysis.arena.budget import Budget
 from fretish.bindings.declarations import Role
 from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, roles, rule, staged
 from tests.requirement_sets import named as named_true
@@ -328,7 +328,7 @@ def test_what_takes_too_long_comes_with_a_clue() -> None:
         "whenever b the sw shall for 1000001 ticks satisfy !x",
         "whenever b the sw shall immediately satisfy x | y",
     )
-    (found,) = verdicts.conflicts(setting, seconds=0.3)
+    (found,) = verdicts.conflicts(setting, Budget(0.3))
     assert isinstance(found, OpenQuestion)
     assert found.why == (
         "not answered within 0.3 s of a processor; "

@@ -8,7 +8,7 @@ from hypothesis import settings
 
 from compiler.logic.formula import atoms
 from compiler.logic.spot import holds_on
-from fretc.analysis.games.budget import Budget, OutOfTimeError
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.games.plays import Counterstrategy, Letter, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches
 from fretc.analysis.stage import Stage
