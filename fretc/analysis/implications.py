@@ -9,9 +9,9 @@ from itertools import combinations
 from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vacuity
-from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import minimal
 from fretc.analysis.reasons import listed
 from fretc.analysis.stage import Stage, interleaved
@@ -51,14 +51,17 @@ def consistency(setting: Stage, budget: Budget) -> Iterator[Consistency | OpenQu
     """Whether any run keeps all requirements."""
     ids = tuple(rule.id for rule in setting.rules)
     question = f"whether any run keeps {listed(ids)}"
+    counters = setting.arena.counters
+    doubt = setting.left_out or setting.of_inputs or setting.of_outputs
     try:
-        runs = setting.runs(setting.arena.counters, budget)
-        is_possible = runs.is_possible()
+        is_possible = setting.runs(counters, budget).is_possible()
+        if is_possible and setting.left_out is None and doubt is not None:
+            is_certain = setting.runs(counters, budget, certain=True).is_possible()
+            doubt = None if is_certain else doubt
     except OutOfTimeError as error:
         yield Consistency(ids, None)
         yield OpenQuestion(question, str(error))
         return
-    doubt = setting.left_out or setting.of_inputs or setting.of_outputs
     if is_possible and doubt is not None:
         yield Consistency(ids, None)
         yield OpenQuestion(question, doubt)

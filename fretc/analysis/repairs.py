@@ -16,8 +16,8 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from fretc.analysis.arena.alphabet import BeyondError
-from fretc.analysis.findings import Conflict, OpenQuestion, Repair
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
+from fretc.analysis.findings import Conflict, OpenQuestion, Repair
 from fretc.analysis.stage import Stage, stage
 from fretish import expressions as e
 from fretish.bindings.declarations import Role

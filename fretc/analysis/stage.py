@@ -72,11 +72,16 @@ class Stage:
         )
 
     def runs(
-        self, kept: Sequence[Counter], budget: Budget, watched: Sequence[Counter] = ()
+        self,
+        kept: Sequence[Counter],
+        budget: Budget,
+        watched: Sequence[Counter] = (),
+        *,
+        certain: bool = False,
     ) -> Runs:
         """The runs that keep some counters, and all assumptions."""
         counters = [*kept, *self.arena.assumptions, *self._memory]
-        return Runs(self.arena.alphabet, counters, budget, watched)
+        return Runs(self.arena.alphabet, counters, budget, watched, certain=certain)
 
     def ticks(
         self, ids: Iterable[str], letters: Iterable[Letter], numbers: Sequence[Tick] = ()

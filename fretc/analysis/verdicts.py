@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from compiler.files.records import replace as altered
 from compiler.formalization.formalized import Formalized
 from fretc.analysis.arena.alphabet import BeyondError
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.controllers.circuit import Circuit, circuit
 from fretc.analysis.controllers.files import Form
 from fretc.analysis.controllers.machine import NoMachineError, machine
 from fretc.analysis.controllers.moves import Mealy, mealy
 from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
-from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import Members, cores, minimal
 from fretc.analysis.games.plays import Counterstrategy, NoPlayError
 from fretc.analysis.games.replay import broken
@@ -59,8 +59,8 @@ def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
         doubt = setting.of_inputs
         if doubt is None:
             return Verdict.UNREALIZABLE, "the environment wins"
-        generous = setting.generous(budget)
-        if generous.of_inputs is None and _is_lost(generous, setting.arena.counters, budget):
+        generous, ids = setting.generous(budget), [rule.id for rule in setting.rules]
+        if generous.of_inputs is None and _is_lost(generous, ids, budget):
             return Verdict.UNREALIZABLE, f"the environment wins, {_WHATEVER}"
     return Verdict.NOT_CHECKED, doubt
 
@@ -68,10 +68,9 @@ def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
 _WHATEVER = "whatever is taken for what is not known"
 
 
-def _is_lost(there: Stage, counters: Sequence[Counter], budget: Budget) -> bool:
-    """Whether the environment wins on a stage, of the requirements that counters of any are of."""
-    mine = there.counters(each.id for each in counters)
-    return not there.game(mine, budget).solution().is_realizable
+def _is_lost(there: Stage, ids: Iterable[str], budget: Budget) -> bool:
+    """Whether the environment wins against some requirements."""
+    return not there.game(there.counters(ids), budget).solution().is_realizable
 
 
 def strategy(
@@ -111,54 +110,60 @@ def conflicts(setting: Stage, budget: Budget) -> Iterator[Conflict | Completenes
     """Every minimal conflict; at the end a question, where there may be more.
 
     Where something is not known, a conflict is certain if the environment wins whatever it is taken
-    for; and so it is minimal, for the environment was favoured when it did not win any less.
+    for; it is minimal for certain if the environment does not win any less, though it is favoured.
     """
     question = f"which others of {', '.join(rule.id for rule in setting.rules)} fight"
-    open_: list[str] = []
     try:
         _check_assumptions(setting, budget)
-        known = {each.id for each in setting.certain}
         generous = setting.generous(budget)
-        for counters in _minimal(setting, generous.certain, budget):
-            ids = [each.id for each in counters]
-            if known.issuperset(ids):
-                yield _conflict(setting, counters, budget)
-            elif _is_lost(generous, counters, budget):
-                yield _conflict(generous, generous.counters(ids), budget)
-            else:
-                open_.append(listed(ids))
+        ids = [each.id for each in generous.certain]
+        for core in _minimal(generous, ids, budget):
+            yield _certain(setting, generous, core, budget)
+        doubt = setting.left_out or generous.of_inputs or setting.of_outputs
+        if doubt is None and setting.of_inputs is not None:
+            more = [
+                each
+                for each in _minimal(setting, ids, budget)
+                if not _is_lost(generous, each, budget)
+            ]
+            which = "; ".join(listed(each) for each in more)
+            if more:
+                doubt = f"{setting.of_inputs}; that decides whether these can be kept: {which}"
     except OutOfTimeError as error:
         yield OpenQuestion(question, f"{error}{_hint(setting, budget.again())}")
         return
     except BeyondError as error:
         yield OpenQuestion(question, str(error))
         return
-    doubt = setting.left_out or generous.of_inputs or setting.of_outputs
-    if open_ and doubt is None:
-        doubt = f"{setting.of_inputs}; it decides whether these can be kept: {'; '.join(open_)}"
     if doubt is None:
         yield Completeness(tuple(rule.id for rule in setting.rules))
     else:
         yield OpenQuestion(question, doubt)
 
 
-def _minimal(
-    setting: Stage, certain: Sequence[Counter], budget: Budget
-) -> Iterator[tuple[Counter, ...]]:
-    """The minimal conflicts of a stage among the requirements that are certain on another one."""
-    counters = setting.counters(each.id for each in certain)
-    read = {rule.id: frozenset(rule.variables) for rule in setting.rules}
+def _minimal(there: Stage, ids: Sequence[str], budget: Budget) -> Iterator[tuple[str, ...]]:
+    """The minimal conflicts of some requirements."""
+    read = {rule.id: frozenset(rule.variables) for rule in there.rules}
 
-    def chosen(members: Members) -> tuple[Counter, ...]:
-        return tuple(counters[i] for i in sorted(members))
-
-    def is_conflict(members: Members) -> bool:
-        return not setting.game(chosen(members), budget).solution().is_realizable
+    def chosen(members: Members) -> tuple[str, ...]:
+        return tuple(ids[i] for i in sorted(members))
 
     def near(i: int, j: int) -> bool:
-        return bool(read[counters[i].id] & read[counters[j].id])
+        return bool(read[ids[i]] & read[ids[j]])
 
-    return map(chosen, cores(len(counters), is_conflict, near))
+    found = cores(len(ids), lambda members: _is_lost(there, chosen(members), budget), near)
+    return map(chosen, found)
+
+
+def _certain(setting: Stage, generous: Stage, ids: Sequence[str], budget: Budget) -> Conflict:
+    """A conflict whatever is taken for what is not known."""
+    if {each.id for each in setting.certain}.issuperset(ids):
+        return _conflict(setting, ids, budget)
+    found = _conflict(generous, ids, budget)
+    fewer = [[id for id in ids if id != other] for other in ids]
+    if any(_is_lost(setting, each, budget) for each in fewer):
+        return altered(found, because=f"{found.because}; fewer of them may fight already")
+    return found
 
 
 _SHORT = 200
@@ -182,8 +187,7 @@ def _hint(setting: Stage, budget: Budget) -> str:
     every = [each.id for each in scaled.arena.counters]
 
     def fights(ids: Sequence[str]) -> bool:
-        game = scaled.game(scaled.counters(ids), budget)
-        return not game.solution().is_realizable
+        return _is_lost(scaled, ids, budget)
 
     try:
         if not fights(every):
@@ -193,9 +197,9 @@ def _hint(setting: Stage, budget: Budget) -> str:
         return ""
 
 
-def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Conflict:
+def _conflict(setting: Stage, ids: Sequence[str], budget: Budget) -> Conflict:
     """A minimal conflict, with a play that the formulas of its monitors confirm."""
-    ids = sorted(each.id for each in counters)
+    ids, counters = sorted(ids), setting.counters(ids)
     game = setting.game(counters, budget)
     try:
         play = Counterstrategy(game, game.solution(traps=True), budget).play()

@@ -63,6 +63,14 @@ class Alphabet(Protocol):
         """Over inputs and outputs: what the system can do. For all legal inputs it can do some."""
 
     @property
+    def possible(self) -> Function:
+        """Which letters there can be, whoever sets them. What follows from these is certain."""
+
+    @property
+    def certain(self) -> Function:
+        """Which letters there are for certain, over what `memory` has, too."""
+
+    @property
     def doubts(self) -> Mapping[Role, str]:
         """Why its letters are more than there can be, of inputs or of outputs; none: they are not.
 

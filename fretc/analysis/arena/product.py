@@ -38,6 +38,7 @@ class _Fixed:
         self.atom, self.values, self.course = alphabet.atom, alphabet.values, alphabet.course
         self.inputs, self.outputs = tuple(alphabet.inputs), tuple(alphabet.outputs)
         self.legal, self.reachable = alphabet.legal, alphabet.reachable
+        self.possible, self.certain = alphabet.possible, alphabet.certain
         self.doubts, self.labels = alphabet.doubts, alphabet.labels
         self.doubtful, self.open = alphabet.doubtful, alphabet.open
         self.memory = lambda: memory

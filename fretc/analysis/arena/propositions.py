@@ -121,6 +121,16 @@ class Propositions:
         """The patterns of outputs that some values have."""
         return self._possible(Role.OUTPUT)
 
+    @property
+    def possible(self) -> Function:
+        """The patterns that some values have."""
+        return self.legal & self.reachable
+
+    @property
+    def certain(self) -> Function:
+        """The same; none where some may have no values."""
+        return bdd.false() if self.doubts else self.possible
+
     def _possible(self, role: Role) -> Function:
         found = bdd.true()
         for each in self._excluded:

@@ -17,7 +17,7 @@ from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.course import NumberCourse
-from fretc.analysis.arithmetic.durations import Duration, held
+from fretc.analysis.arithmetic.durations import Duration, Held, held
 from fretc.analysis.arithmetic.groups import Group, choice, linked, owners
 from fretc.analysis.arithmetic.past import remembered
 from fretc.analysis.arithmetic.projection import Limit
@@ -54,7 +54,7 @@ class Cells:
         self._kept = Memory(fresh, {})
         self._groups: list[Group] = []
         self._of: dict[str, Group] = {}
-        self._lasted: dict[Duration, Function] = {}
+        self._lasted: dict[Duration, Held] = {}
         self._asked: dict[str, Function] = {}
         self._free: list[int] = []
         """Bits of the favoured player: whether what lasts has done so since before the run."""
@@ -103,18 +103,18 @@ class Cells:
         found = bdd.false()
         for values, case in lasting.cases.items():
             term = self.atom(case)
-            for value, function in zip(values, lasted, strict=True):
-                term = term & (function if value else -function)
+            for value, each in zip(values, lasted, strict=True):
+                term = term & (each.is_so if value else -each.is_so)
             found = found | term
         return found
 
-    def _lasted_so(self, duration: Duration) -> Function:
+    def _lasted_so(self, duration: Duration) -> Held:
         if duration not in self._lasted:
             throughout, at_last = self.atom(duration.throughout), self.atom(duration.at_last)
             self._free.append(next(self._fresh))
             open_ = bdd.variable(self._free[-1])
-            made = held(self._kept, duration.ticks, throughout, at_last, open_)
-            self._lasted[duration] = made
+            held_ = held(self._kept, duration.ticks, throughout, at_last, open_)
+            self._lasted[duration] = held_
         return self._lasted[duration]
 
     @property
@@ -146,6 +146,26 @@ class Cells:
         found = self._plain.reachable
         for each in self._used:
             found = found & each.reachable
+        return found
+
+    @property
+    def possible(self) -> Function:
+        """All patterns."""
+        found = self._plain.possible
+        for each in self._used:
+            found = found & each.possible
+        return found
+
+    @property
+    def certain(self) -> Function:
+        """Those with nothing unknown; of numbers of the tick before none is certain."""
+        if self._atoms.before:
+            return bdd.false()
+        found = self._plain.certain
+        for each in self._used:
+            found = found & each.known
+        for lasted in self._lasted.values():
+            found = found - lasted.is_open
         return found
 
     @property
@@ -192,7 +212,7 @@ class Cells:
                 was, now = self._kept.keep(self.atom(pair.now)), self.atom(pair.then)
                 first = {True: now, False: -now, None: bdd.true()}[pair.first]
                 agrees = agrees & bdd.choice(begun, -(was ^ now), first)
-        bits = self._kept.needed([agrees, *self._lasted.values()])
+        bits = self._kept.needed([agrees, *(each.is_so for each in self._lasted.values())])
         if not bits:
             return None
         steps = tuple(self._kept.steps[bit] for bit in bits)

@@ -112,9 +112,7 @@ class Atoms:
             self._terms.holds(reading.expression, value, self._known) for value in (True, False)
         )
         signals = frozenset(each for each in read_by(true) if each in self.variables)
-        return Moment(
-            true, false, signals, reading.aggregate, reading.on_unknown, reading.names
-        )
+        return Moment(true, false, signals, reading.aggregate, reading.on_unknown, reading.names)
 
     def _known(self, compared: Term) -> Term:
         return z3.And([z3.Not(unknown(name)) for name in read_by(compared)])
@@ -139,7 +137,9 @@ class Atoms:
             steps = Steps(group, self.variables, open_)
             if steps.is_crossed and steps.has_flags:
                 why = "read the same samples in part, and what may be unknown"
-                self.refused |= dict.fromkeys(group, f"{' and '.join(f'`{n}`' for n in group)} {why}")
+                self.refused |= dict.fromkeys(
+                    group, f"{' and '.join(f'`{n}`' for n in group)} {why}"
+                )
                 continue
             for name, copy in steps.copies.items():
                 self._add(name, copy, steps.of[name])

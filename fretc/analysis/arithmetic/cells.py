@@ -68,9 +68,7 @@ def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Patt
     return tuple(found)
 
 
-def another(
-    formulas: Sequence[Term], known: Sequence[Pattern], domain: Term, limit: Limit
-) -> bool:
+def another(formulas: Sequence[Term], known: Sequence[Pattern], domain: Term, limit: Limit) -> bool:
     """Whether the formulas can have truth values together that are not known.
 
     Raises:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import z3
-
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Tick
@@ -44,7 +42,7 @@ class NumberCourse:
         for group in self._groups:
             before = self._before(group)
             if before:
-                found = found & group.possible(inputs, before, Limit(self._budget))
+                found = found & group.left(inputs, before, Limit(self._budget))
         return found
 
     def follow(self, letter: Mapping[int, bool]) -> None:

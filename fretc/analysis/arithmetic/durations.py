@@ -108,9 +108,18 @@ def _put(part: e.Expression, values: Mapping[e.Persistence, bool]) -> e.Expressi
     return e.with_children(part, [_put(each, values) for each in e.children(part)])
 
 
+@dataclass(frozen=True, slots=True)
+class Held:
+    """Whether something has lasted, over a letter and what is remembered."""
+
+    is_so: Function
+    is_open: Function
+    """Whether that depends on what was before the first tick."""
+
+
 def held(
     memory: Memory, ticks: int, throughout: Function, at_last: Function, open_: Function
-) -> Function:
+) -> Held:
     """Whether something has lasted so many ticks.
 
     Args:
@@ -121,10 +130,11 @@ def held(
         open_: whether it is taken to have lasted since before the first tick.
     """
     bits, known = memory.word(ticks)
-    begun = only(-equals(known, ticks), successor(known))
-    more = either(equals(known, ticks), constant(ticks, known), begun)
+    is_enough = equals(known, ticks)
+    more = either(is_enough, constant(ticks, known), successor(known))
     memory.set(bits, only(at_last, either(throughout & some(known), more, constant(1, known))))
     broken = memory.bit()
     was = bdd.variable(broken.now)
     memory.steps[broken] = was | -throughout
-    return throughout & (equals(known, ticks) | (open_ - was))
+    is_open = throughout - was - is_enough
+    return Held((throughout & is_enough) | (is_open & open_), is_open)

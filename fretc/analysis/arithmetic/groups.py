@@ -77,10 +77,8 @@ class Group:
         """
         self._choice, self._atoms, self._fresh = choice, atoms, fresh
         found = _sorted_out(choice, limit)
-        is_more = bool(found.open) and choice.role is favoured
-        self._patterns = [*found.patterns, *(found.open if is_more else ())]
-        self._cells = found.cells
-        self._is_open = bool(found.open)
+        self._patterns, self._cells, self._open = found.patterns, found.cells, found.open
+        self._is_favoured = choice.role is favoured
         self._bits: dict[int, int] = {}
         """Of the formulas that a cell does not decide."""
         self._cell_bits: list[int] = []
@@ -90,7 +88,7 @@ class Group:
     @property
     def open(self) -> str | None:
         """What is unknown of it; None: nothing that matters."""
-        if not self._is_open:
+        if not self._open:
             return None
         signals = dict.fromkeys(self._atoms.of(str(flag)) for flag in self._choice.flags)
         shown = " and ".join(f"`{each}`" for each in signals)
@@ -143,7 +141,7 @@ class Group:
     def legal(self) -> Function:
         """The cells that there are, or the patterns of inputs."""
         if self._choice.role is Role.INPUT:
-            return self._some_of(self._patterns)
+            return self._of_player()
         found = bdd.false() if self._cells else bdd.true()
         for place in range(len(self._cells)):
             found = found | self._cell(place)
@@ -155,11 +153,25 @@ class Group:
         if self._choice.role is Role.INPUT:
             return bdd.true()
         if not self._cells:
-            return self._some_of(self._patterns)
+            return self._of_player()
         found = bdd.false()
         for place, cell in enumerate(self._cells):
             found = found | (self._cell(place) & self._some_of(cell.patterns))
         return found
+
+    def _of_player(self) -> Function:
+        """The patterns that its player chooses from."""
+        return self.possible if self._is_favoured else self.known
+
+    @property
+    def known(self) -> Function:
+        """The patterns that there are where nothing is unknown."""
+        return self.legal & self.reachable if self._cells else self._some_of(self._patterns)
+
+    @property
+    def possible(self) -> Function:
+        """All patterns that there are."""
+        return self.known | self._some_of(self._open)
 
     def _some_of(self, known: Iterable[Pattern]) -> Function:
         found = bdd.false()
@@ -196,9 +208,7 @@ class Group:
         assert place is not None, "the letter is whole"
         return self._point(place, self._signs(letter), given)
 
-    def possible(
-        self, inputs: Mapping[int, bool], given: Sequence[Term], limit: Limit
-    ) -> Function:
+    def left(self, inputs: Mapping[int, bool], given: Sequence[Term], limit: Limit) -> Function:
         """Over outputs: the patterns of numbers that keep what is given."""
         choice, place = self._choice, self._place(inputs)
         assert place is not None, "the inputs are whole"

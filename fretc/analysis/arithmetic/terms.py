@@ -5,7 +5,7 @@ A variable has the unit of its signal. Where several units meet, all is converte
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -76,6 +76,8 @@ class Terms:
         variable, signal = self.variables[name], self._signals.get(name)
         if signal is not None and signal.values:
             return z3.Or([variable == self._place(word) for word in signal.values])
+        if (bounds := self._range(name)) is not None:
+            return z3.And(variable >= bounds[0], variable <= bounds[1])
         if self._kind(name) is Kind.NATURAL:
             return variable >= 0
         return z3.BoolVal(True)
@@ -93,6 +95,13 @@ class Terms:
     def _kind(self, name: str) -> Kind | None:
         declared = self._types.get(name)
         return kind(declared) if declared else None
+
+    def _range(self, name: str) -> tuple[int, int] | None:
+        """The least and the greatest number of a message that is one whole number."""
+        signal = self._signals.get(name)
+        if signal is None or signal.type is None or str(signal.path) != f"{signal.path.topic}.data":
+            return None
+        return _RANGES.get(signal.type.replace("/msg/", "/"))
 
     def _meets_units(self, part: e.Expression) -> bool:
         scales = {self._scale(name.id) for name in e.names(part)}
@@ -166,7 +175,7 @@ class Terms:
         is_word = signal is not None and bool(signal.values)
         if known is Kind.TRUTH:
             raise BeyondError("compares a truth value with a number")
-        whole = is_word or known in (Kind.WHOLE, Kind.NATURAL)
+        whole = is_word or known in (Kind.WHOLE, Kind.NATURAL) or self._range(name) is not None
         made = z3.Int(name) if whole else z3.Real(name)
         variable = self.variables.setdefault(name, made)
         if not is_base or is_word:
@@ -175,6 +184,14 @@ class Terms:
         if scale is None:
             raise BeyondError(f"needs the unit of `{name}`, which has none")
         return variable if scale == 1 else _exact(scale) * variable
+
+
+_RANGES: Mapping[str, tuple[int, int]] = {
+    "std_msgs/Bool": (0, 1),
+    **{f"std_msgs/Int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)},
+    **{f"std_msgs/UInt{n}": (0, 2**n - 1) for n in (8, 16, 32, 64)},
+}
+"""Of their field `data`."""
 
 
 def read_by(formula: Term) -> frozenset[str]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.transition import State
 from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
+from fretc.analysis.arena.transition import State
 from fretc.analysis.games.game import Game, Goal, Solution, Trap
 
 Letter = Mapping[int, bool]
@@ -67,7 +67,9 @@ class Counterstrategy:
                 return Play(tuple(letters), seen[key], before, self._numbers)
             seen[key] = len(letters)
             if self._course is not None and len(letters) > _MOST_NUMBERS:
-                raise NoPlayError(f"not shown: its numbers do not come back in {_MOST_NUMBERS} ticks")
+                raise NoPlayError(
+                    f"not shown: its numbers do not come back in {_MOST_NUMBERS} ticks"
+                )
             trap = self._number(bdd.point(state), trap)
             inputs = self._inputs(state, promise, self._traps[trap])
             options = self._options(state, inputs)

@@ -11,8 +11,8 @@ import pytest
 from compiler.formalization.formalized import Formalized
 from fretc.analysis import verdicts
 from fretc.analysis.analysis import analyze
-from fretc.analysis.findings import OpenQuestion, Verdict
 from fretc.analysis.arena.budget import Budget
+from fretc.analysis.findings import OpenQuestion, Verdict
 from fretish.bindings.declarations import Role
 from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, roles, rule, staged
 from tests.requirement_sets import named as named_true

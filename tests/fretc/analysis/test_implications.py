@@ -8,8 +8,8 @@ import pytest
 import spot
 
 from compiler.logic import printing
-from fretc.analysis.findings import Analysis, Inconsistency
 from fretc.analysis.arena.budget import Budget
+from fretc.analysis.findings import Analysis, Inconsistency
 from fretc.analysis.implications import inconsistencies
 from tests.requirement_sets import analyzed, drawn, rules, staged, terse
 

@@ -15,8 +15,8 @@ from compiler.logic import printing
 from compiler.targets.python import monitor as target
 from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.alphabet import Tick
-from fretc.analysis.findings import Verdict
 from fretc.analysis.arena.budget import Budget
+from fretc.analysis.findings import Verdict
 from fretc.analysis.games.plays import Counterstrategy, Strategy
 from fretc.analysis.stage import Stage, stage
 from fretc.analysis.verdicts import verdict
