@@ -107,7 +107,6 @@ def analyze(
 
 Question = Callable[[Stage, Budget], Iterator[Finding]]
 _OF_GROUPS: Mapping[str, Question] = {
-    "can any run keep {}?": of_runs.consistency,
     "does each of {} say anything?": of_runs.constants,
     "is each of {} ever triggered?": of_runs.vacuities,
     "do some of {} imply others?": of_runs.redundancies,
@@ -134,6 +133,7 @@ def jobs(
         *([_promises(assumptions, roles, options)] if assumptions else []),
         *(setting.verdict() for setting in components),
         *(setting.conflicts() for setting in components),
+        *(setting.consistency() for setting in groups),
         *(
             setting.job(title, question)
             for title, question in _OF_GROUPS.items()
@@ -210,7 +210,8 @@ class _Setting:
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
             budget = Budget(self._options.seconds)
             try:
-                yield from verdict(self._stage(budget), budget)
+                found, self._built = verdict(self._stage(budget), budget)
+                yield found
             except (BeyondError, OutOfTimeError) as error:
                 yield not_checked(str(error))
 
@@ -230,6 +231,24 @@ class _Setting:
                 yield Completeness(self._ids)
             else:
                 yield from self._answers(title, conflicts)
+
+        return Job(title, ask, partial(OpenQuestion, title))
+
+    def consistency(self) -> Job:
+        """Whether any run keeps a group: one does if there is a strategy for each component."""
+        title = f"can any run keep {self._name}?"
+
+        def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            kept = {
+                id
+                for each in known
+                if isinstance(each, Component) and each.verdict is Verdict.REALIZABLE
+                for id in each.requirements
+            }
+            if kept.issuperset(self._ids):
+                yield Consistency(self._ids, True)
+            else:
+                yield from self._answers(title, of_runs.consistency)
 
         return Job(title, ask, partial(OpenQuestion, title))
 

@@ -36,6 +36,8 @@ class Stage:
     favoured: Role = Role.INPUT
     """Who chooses what nothing is known of: a number of the tick before, a signal that may be
     unknown, what was before the first tick. Whoever loses even so loses."""
+    steps: int = 0
+    """How many ticks before a bound of a number it is remembered whether that is within reach."""
     _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
     """What each game of the stage needs of the assumptions, once it has been computed."""
 
@@ -69,7 +71,20 @@ class Stage:
             budget,
             as_fret=self.as_fret,
             favoured=Role.OUTPUT,
+            steps=self.steps,
         )
+
+    def finer(self, budget: Budget) -> Stage | None:
+        """The same with twice as much remembered of numbers; None: that tells nothing more."""
+        if not self.arena.alphabet.is_refinable or self.steps >= _MOST_STEPS:
+            return None
+        steps, near = 2 * self.steps or 1, self.assumptions
+        found = _built(
+            self.rules, near, self.roles, numbers(), budget, as_fret=self.as_fret, steps=steps
+        )
+        if (found.left_out, found.of_outputs) != (self.left_out, self.of_outputs):
+            return None  # it is more than can be sorted out
+        return None if found.arena.size == self.arena.size else found
 
     def runs(
         self,
@@ -181,18 +196,27 @@ def _built(
     *,
     as_fret: bool,
     favoured: Role = Role.INPUT,
+    steps: int = 0,
 ) -> Stage:
-    alphabet = _alphabet([*rules, *near], roles, fresh, favoured, budget)
+    alphabet = _alphabet([*rules, *near], roles, fresh, favoured, budget, steps)
     built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
-    return Stage(tuple(rules), tuple(near), built, roles, as_fret, favoured)
+    return Stage(tuple(rules), tuple(near), built, roles, as_fret, favoured, steps)
+
+
+_MOST_STEPS = 32
 
 
 def _alphabet(
-    rules: Sequence[Formalized], roles: Roles, fresh: Numbers, favoured: Role, budget: Budget
+    rules: Sequence[Formalized],
+    roles: Roles,
+    fresh: Numbers,
+    favoured: Role,
+    budget: Budget,
+    steps: int,
 ) -> Alphabet:
     """With the numbers that comparisons are about; z3 is imported where there are some."""
     if not any(comparisons(rule) or rule.declarations for rule in rules):
         return Propositions(rules, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 
-    return Cells(rules, roles, fresh, favoured, budget)
+    return Cells(rules, roles, fresh, favoured, budget, steps)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from compiler.files.records import replace as altered
 from compiler.formalization.formalized import Formalized
@@ -30,13 +30,33 @@ class Completeness:
     requirements: tuple[str, ...]
 
 
-def verdict(setting: Stage, budget: Budget) -> Iterator[Component]:
-    """Whether the requirements of a component can be kept together."""
+def verdict(setting: Stage, budget: Budget) -> tuple[Component, Stage]:
+    """Whether the requirements of a component can be kept together, and the stage that tells.
+
+    Where that depends on numbers of earlier ticks, more and more of them is remembered.
+    """
+    answer, why = _answer(setting, budget)
+    there = setting
+    while answer is Verdict.NOT_CHECKED:
+        try:
+            finer = there.finer(budget)
+        except (BeyondError, OutOfTimeError):
+            break
+        if finer is None:
+            break
+        there = finer
+        found, because_ = _answer(there, budget)
+        if found is not Verdict.NOT_CHECKED:
+            answer, why, setting = found, because_, there
+    spent = round(budget.spent, 3)
+    return component(setting.rules, setting.roles, answer, why, spent), setting
+
+
+def _answer(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
     try:
-        answer, why = _verdict(setting, budget)
+        return _verdict(setting, budget)
     except (BeyondError, OutOfTimeError) as error:
-        answer, why = Verdict.NOT_CHECKED, str(error)
-    yield component(setting.rules, setting.roles, answer, why, round(budget.spent, 3))
+        return Verdict.NOT_CHECKED, str(error)
 
 
 def component(
@@ -111,34 +131,88 @@ def conflicts(setting: Stage, budget: Budget) -> Iterator[Conflict | Completenes
 
     Where something is not known, a conflict is certain if the environment wins whatever it is taken
     for; it is minimal for certain if the environment does not win any less, though it is favoured.
+    Where neither is certain, more of numbers is remembered.
     """
     question = f"which others of {', '.join(rule.id for rule in setting.rules)} fight"
+    shown: set[tuple[str, ...]] = set()
+    found = _Fights(setting, setting)
     try:
         _check_assumptions(setting, budget)
-        generous = setting.generous(budget)
-        ids = [each.id for each in generous.certain]
-        for core in _minimal(generous, ids, budget):
-            yield _certain(setting, generous, core, budget)
-        doubt = setting.left_out or generous.of_inputs or setting.of_outputs
-        if doubt is None and setting.of_inputs is not None:
-            more = [
-                each
-                for each in _minimal(setting, ids, budget)
-                if not _is_lost(generous, each, budget)
-            ]
-            which = "; ".join(listed(each) for each in more)
-            if more:
-                doubt = f"{setting.of_inputs}; that decides whether these can be kept: {which}"
+        there: Stage | None = setting
+        while there is not None:
+            now = _Fights(there, there.generous(budget))
+            for core in now.minimal(budget):
+                if core not in shown:
+                    shown.add(core)
+                    yield _conflict(now.sure(core), core, budget)
+            found = now
+            there = there.finer(budget) if found.is_open else None
+        for core in found.larger:
+            yield _perhaps_larger(_conflict(found.generous, core, budget))
     except OutOfTimeError as error:
+        for core in found.larger:
+            yield _perhaps_larger(Conflict(core, (), "the environment wins"))
         yield OpenQuestion(question, f"{error}{_hint(setting, budget.again())}")
         return
     except BeyondError as error:
         yield OpenQuestion(question, str(error))
         return
-    if doubt is None:
+    if (doubt := found.doubt) is None:
         yield Completeness(tuple(rule.id for rule in setting.rules))
     else:
         yield OpenQuestion(question, doubt)
+
+
+def _perhaps_larger(conflict: Conflict) -> Conflict:
+    return altered(conflict, because=f"{conflict.because}; fewer of them may fight already")
+
+
+@dataclass(slots=True)
+class _Fights:
+    """The minimal conflicts of a stage, as far as what is not known lets them be told."""
+
+    strict: Stage
+    """Where the environment is favoured."""
+    generous: Stage
+    """Where the system is."""
+    larger: list[tuple[str, ...]] = field(default_factory=list)
+    """Conflicts of which it is not certain that they are minimal."""
+    smaller: list[tuple[str, ...]] = field(default_factory=list)
+    """What the environment wins only where it is favoured."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether more might be told of them."""
+        return bool(self.larger or self.smaller)
+
+    def minimal(self, budget: Budget) -> Iterator[tuple[str, ...]]:
+        """Those that are certain; then all others are known, too."""
+        ids = [each.id for each in self.generous.certain]
+        for core in _minimal(self.generous, ids, budget):
+            fewer = [[id for id in core if id != other] for other in core]
+            is_sure = self.sure(core) is self.strict
+            if is_sure or not any(_is_lost(self.strict, each, budget) for each in fewer):
+                yield core
+            else:
+                self.larger.append(core)
+        if self.generous is not self.strict:
+            for core in _minimal(self.strict, ids, budget):
+                if not _is_lost(self.generous, core, budget):
+                    self.smaller.append(core)
+
+    def sure(self, ids: Sequence[str]) -> Stage:
+        """The stage whose plays of these requirements are certain."""
+        known = {each.id for each in self.strict.certain}
+        return self.strict if known.issuperset(ids) else self.generous
+
+    @property
+    def doubt(self) -> str | None:
+        """Why there may be more conflicts; None: there are no others."""
+        doubt = self.strict.left_out or self.generous.of_inputs or self.strict.of_outputs
+        if doubt is None and self.smaller:
+            which = "; ".join(map(listed, self.smaller))
+            return f"{self.strict.of_inputs}; that decides whether these can be kept: {which}"
+        return doubt
 
 
 def _minimal(there: Stage, ids: Sequence[str], budget: Budget) -> Iterator[tuple[str, ...]]:
@@ -153,17 +227,6 @@ def _minimal(there: Stage, ids: Sequence[str], budget: Budget) -> Iterator[tuple
 
     found = cores(len(ids), lambda members: _is_lost(there, chosen(members), budget), near)
     return map(chosen, found)
-
-
-def _certain(setting: Stage, generous: Stage, ids: Sequence[str], budget: Budget) -> Conflict:
-    """A conflict whatever is taken for what is not known."""
-    if {each.id for each in setting.certain}.issuperset(ids):
-        return _conflict(setting, ids, budget)
-    found = _conflict(generous, ids, budget)
-    fewer = [[id for id in ids if id != other] for other in ids]
-    if any(_is_lost(setting, each, budget) for each in fewer):
-        return altered(found, because=f"{found.because}; fewer of them may fight already")
-    return found
 
 
 _SHORT = 200

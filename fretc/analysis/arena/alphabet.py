@@ -82,6 +82,10 @@ class Alphabet(Protocol):
         """The atoms of which a player has too many letters."""
 
     @property
+    def is_refinable(self) -> bool:
+        """Whether more can be remembered of numbers than is."""
+
+    @property
     def open(self) -> str | None:
         """What one player chooses that nobody does, as far as that is not known; None: nothing."""
 

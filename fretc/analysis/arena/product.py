@@ -29,6 +29,11 @@ class Arena:
     beyond: dict[str, str]
     """Why a requirement has no counter, by its id."""
 
+    @property
+    def size(self) -> int:
+        """Bits of a letter."""
+        return len(self.alphabet.inputs) + len(self.alphabet.outputs)
+
 
 class _Fixed:
     """An alphabet of which each atom has been asked for: a thousand games read it, and it stays."""
@@ -41,6 +46,7 @@ class _Fixed:
         self.possible, self.certain = alphabet.possible, alphabet.certain
         self.doubts, self.labels = alphabet.doubts, alphabet.labels
         self.doubtful, self.open = alphabet.doubtful, alphabet.open
+        self.is_refinable = alphabet.is_refinable
         self.memory = lambda: memory
 
 

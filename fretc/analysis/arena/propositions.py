@@ -64,6 +64,11 @@ class Propositions:
         return frozenset(self._doubted[role])
 
     @property
+    def is_refinable(self) -> bool:
+        """Nothing is remembered of numbers."""
+        return False
+
+    @property
     def open(self) -> None:
         """Nothing is left to a favoured player."""
 

@@ -19,7 +19,7 @@ from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.course import NumberCourse
 from fretc.analysis.arithmetic.durations import Duration, Held, held
 from fretc.analysis.arithmetic.groups import Group, choice, linked, owners
-from fretc.analysis.arithmetic.past import remembered
+from fretc.analysis.arithmetic.past import Remembered, remembered
 from fretc.analysis.arithmetic.projection import Limit
 from fretish.bindings.declarations import Role
 
@@ -34,6 +34,7 @@ class Cells:
         favoured: who chooses what is not known: numbers of the tick before, as far as nothing is
             remembered of them, whether a signal is unknown, and what was before the first tick.
         budget: for sorting the comparisons.
+        steps: how many ticks before a bound it is remembered whether that is within reach.
 
     Raises:
         OutOfTimeError: the budget is over.
@@ -46,10 +47,11 @@ class Cells:
         fresh: Numbers,
         favoured: Role,
         budget: Budget,
+        steps: int = 0,
     ) -> None:
         self._favoured = favoured
         self._atoms = Atoms(rules)
-        self._pairs = remembered(self._atoms)
+        self._pairs = remembered(self._atoms, steps)
         self._fresh = fresh
         self._kept = Memory(fresh, {})
         self._groups: list[Group] = []
@@ -169,6 +171,11 @@ class Cells:
         return found
 
     @property
+    def is_refinable(self) -> bool:
+        """Whether comparisons look back at a number."""
+        return bool(self._atoms.before)
+
+    @property
     def open(self) -> str | None:
         """What the favoured player chooses though nobody does; None: nothing."""
         before = next(iter(self._atoms.before), None)
@@ -205,18 +212,28 @@ class Cells:
     def memory(self) -> Counter | None:
         """What is remembered of earlier ticks: whoever chooses numbers of these keeps to it."""
         pairs = [each for each in self._pairs if each.now in self._of and each.then in self._of]
-        agrees = bdd.true()
-        if pairs:
-            begun = self._kept.keep(bdd.true())
-            for pair in pairs:
-                was, now = self._kept.keep(self.atom(pair.now)), self.atom(pair.then)
-                first = {True: now, False: -now, None: bdd.true()}[pair.first]
-                agrees = agrees & bdd.choice(begun, -(was ^ now), first)
+        agrees = self._agreement(pairs) if pairs else bdd.true()
         bits = self._kept.needed([agrees, *(each.is_so for each in self._lasted.values())])
         if not bits:
             return None
         steps = tuple(self._kept.steps[bit] for bit in bits)
         return Counter("", bits, steps, agrees, None, (), bdd.true(), bdd.true())
+
+    def _agreement(self, pairs: Sequence[Remembered]) -> Function:
+        """Whether numbers of the tick before are as they were, where they have a pattern at all.
+
+        Without the patterns the bits of many bounds would agree in too many ways to write down.
+        """
+        then = [self.atom(pair.then) for pair in pairs]
+        mine = {bit for function in then for bit in bdd.support(function)}
+        others = [bit for bit in bdd.support(self.possible) if bit not in mine]
+        agrees = bdd.some(self.possible, bdd.cube(others))
+        begun = self._kept.keep(bdd.true())
+        for pair, now in zip(pairs, then, strict=True):
+            was = self._kept.keep(self.atom(pair.now))
+            first = {True: now, False: -now, None: bdd.true()}[pair.first]
+            agrees = agrees & bdd.choice(begun, -(was ^ now), first)
+        return agrees
 
     def course(self, budget: Budget) -> NumberCourse | None:
         """A run that has not begun; None: no letter depends on earlier numbers."""

@@ -154,7 +154,8 @@ class Atoms:
             if any(not moments[each].signals.isdisjoint(open_) for each in lasting.atoms):
                 self.refused[name] = f"`{name}` has a duration of what may be unknown"
                 del self.lasting[name]
-                moments = {n: m for n, m in moments.items() if n not in lasting.atoms}
+        needed = {each for lasting in self.lasting.values() for each in lasting.atoms}
+        gone = self._parts - needed
         known = [(unknown(name), z3.BoolVal(False)) for name in {*self.variables} - {*open_}]
         return {
             name: replace(
@@ -163,6 +164,7 @@ class Atoms:
                 false=z3.simplify(z3.substitute(each.false, *known)),
             )
             for name, each in moments.items()
+            if name not in gone
         }
 
     def _add(self, variable: str, term: Term, of: str) -> None:

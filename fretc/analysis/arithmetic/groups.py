@@ -245,6 +245,8 @@ class Group:
     def _point(self, place: int, signs: Pattern, given: Sequence[Term] = ()) -> Point:
         formulas = [self._choice.formulas[number] for number in self._bits]
         kept = [*literals(formulas, signs), *self._choice.domains.values(), *given]
+        if signs not in self._open:
+            kept += [z3.Not(flag) for flag in self._choice.flags]
         inputs, outputs = (self._choice.variables[role] for role in (Role.INPUT, Role.OUTPUT))
         if not self._cells:
             return point(kept, [*inputs, *outputs])

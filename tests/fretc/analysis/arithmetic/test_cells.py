@@ -123,7 +123,7 @@ def test_the_tick_before_gives_no_wrong_verdict() -> None:
         of = "io"[seed % 2]
         links = " & ".join(f"!p{k} & G(X p{k} <-> {of}{k})" for k in range(2))
         past = {name: text.replace("p", f"preInt(0, {of})") for name, text in meant.items()}
-        (found,) = verdict(staged_numbers(sentences, past), Budget(60))
+        found, _ = verdict(staged_numbers(sentences, past), Budget(60))
         if found.verdict is not Verdict.NOT_CHECKED:
             is_realizable = synthesized(sentences, meant, links, "oup")
             assert (found.verdict is REALIZABLE) is is_realizable, (sentences, past)
