@@ -203,7 +203,8 @@ def _built(
     return Stage(tuple(rules), tuple(near), built, roles, as_fret, favoured, steps)
 
 
-_MOST_STEPS = 32
+_MOST_STEPS = 8
+"""With more the comparisons of a group take longer to sort out than a question may."""
 
 
 def _alphabet(

@@ -180,9 +180,9 @@ class Group:
         return found
 
     def labels(self) -> Iterator[tuple[int, str]]:
-        """Each bit of a formula, and an atom that has it."""
+        """Each bit of a formula, and an atom of a sentence that has it."""
         for name, (number, is_so) in self._choice.of.items():
-            if is_so and number in self._bits:
+            if is_so and number in self._bits and self._atoms.found[name].names:
                 yield self._bits[number], name
 
     @property
