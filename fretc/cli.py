@@ -43,6 +43,7 @@ _COMMANDS = Registry(
         "bind": "fretc.commands.bind:bind",
         "check": "fretc.commands.check:check",
         "analyze": "fretc.commands.analyze:analyze",
+        "test": "fretc.commands.test:test",
         "audit": "fretc.commands.audit:audit",
         "report": "fretc.commands.report:report",
         "trends": "fretc.commands.trends:trends",

@@ -124,6 +124,18 @@ def in_ticks(sentence: Sentence, clock: Clock | None) -> int | Diagnostic | None
     return ticks or _inexact(bound, clock, exact)
 
 
+def in_unit(ticks: int, unit: TimeUnit, clock: Clock | None) -> Duration:
+    """So many ticks: in the unit where that is exact, else in a smaller one, or in ticks."""
+    if unit == "tick" or clock is None or clock.period is None:
+        return Duration(ticks, unit)
+    smaller = [each for each in reversed(NANOSECONDS) if NANOSECONDS[each] <= NANOSECONDS[unit]]
+    for each in smaller:
+        amount, rest = divmod(ticks * clock.period, NANOSECONDS[each])
+        if rest == 0:
+            return Duration(amount, each)
+    return Duration(ticks, "tick")
+
+
 def _fewer_is_stricter(sentence: Sentence) -> bool | None:
     """Whether the sentence asks for more when its timing counts fewer ticks; None: for neither.
 

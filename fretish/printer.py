@@ -50,8 +50,8 @@ def sentence(tree: s.Sentence) -> str:
     The words that only the writer's taste decides stay: `the`, and `when`, `if`, `where` or `upon`.
     """
     parts = [
-        _scope(tree.scope) if tree.scope else "",
-        _condition(tree.condition) if tree.condition else "",
+        f"{scope(tree.scope)}," if tree.scope else "",
+        condition(tree.condition) if tree.condition else "",
         f"{'the ' if tree.article else ''}{identifier(tree.component)} shall",
         f"with probability {tree.probability.op} {tree.probability.digits}"
         if tree.probability
@@ -62,17 +62,18 @@ def sentence(tree: s.Sentence) -> str:
     return " ".join(part for part in parts if part)
 
 
-def _scope(scope: s.Scope) -> str:
+def scope(tree: s.Scope) -> str:
     """A scope that is one variable is a mode: `in m mode`; any other expression is a `while`."""
-    wordings = _MODES if isinstance(scope.mode, e.Name) else _SCOPES
-    return f"{wordings[scope.kind].format(expression(scope.mode))},"
+    wordings = _MODES if isinstance(tree.mode, e.Name) else _SCOPES
+    return wordings[tree.kind].format(expression(tree.mode))
 
 
-def _condition(condition: s.Condition) -> str:
-    if condition.kind is s.ConditionKind.HOLDING:
-        return f"whenever {expression(condition.expression)}"
-    word = condition.word if condition.word in ("when", "if", "where") else "upon"
-    return f"{word} {expression(condition.expression)}"
+def condition(tree: s.Condition) -> str:
+    """`whenever p`, or `upon p` with the word of the writer."""
+    if tree.kind is s.ConditionKind.HOLDING:
+        return f"whenever {expression(tree.expression)}"
+    word = tree.word if tree.word in ("when", "if", "where") else "upon"
+    return f"{word} {expression(tree.expression)}"
 
 
 def timing(tree: s.Timing) -> str:

@@ -301,6 +301,19 @@ def duration(timing: Timing) -> Duration | None:
             assert_never(timing)
 
 
+def with_duration(timing: Timing, other: Duration) -> Timing:
+    """The timing with another duration, if it counts one."""
+    match timing:
+        case Within() | For() | After():
+            return replace(timing, duration=other)
+        case Immediately() | Next() | Finally() | Eventually() | Always() | Never():
+            return timing
+        case Until() | Before():
+            return timing
+        case _:
+            assert_never(timing)
+
+
 def stop(timing: Timing) -> Expression | None:
     """The stop condition of the timing, if it has one."""
     match timing:

@@ -15,9 +15,10 @@ ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
 fretish.diagnostics  fretish.reading  fretish.mistakes  fretish  fretish.bindings
-compiler.files  compiler.logic.ordering  compiler.logic  compiler.formalization  compiler.project
-compiler.agents
-compiler.targets  compiler.targets.python  compiler.targets.automata  compiler.targets.ajpf
+compiler.files  compiler.logic.ordering  compiler.logic  compiler.formalization
+compiler.situations  compiler.project  compiler.agents  compiler.program
+compiler.targets  compiler.targets.python  compiler.targets.javascript
+compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit
@@ -26,6 +27,7 @@ fretc.verification.engines  fretc.verification.monitor  fretc.verification.inter
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis.controllers
 fretc.analysis
+fretc.testing
 fretc.report.traceability  fretc.attestation  fretc.reproduction
 fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front
@@ -106,6 +108,7 @@ DOORS = {
         "fretc/analysis/arithmetic/steps.py",
         "fretc/analysis/arithmetic/terms.py",
         "fretc/analysis/arithmetic/thresholds.py",
+        "fretc/analysis/games/lassos.py",
         "fretc/verification/loop/bounds.py",
     },
     "reqif": {"compiler/project/parents.py", "fretc/report/forms/reqif.py"},

@@ -11,10 +11,11 @@ from compiler.logic import claims
 from fretc.analysis import evidence, findings
 from fretc.audit.evidence import schema
 from fretc.audit.store import manifest
+from fretc.testing import suite
 
 SCHEMAS = {"evidence": schema.schema(), "verification": claims.schema()}
 SCHEMAS |= {"store": manifest.schema(), "analysis": findings.schema()}
-SCHEMAS |= {"analyzed-set": evidence.schema()}
+SCHEMAS |= {"analyzed-set": evidence.schema(), "tests": suite.schema()}
 
 
 @pytest.mark.parametrize(("name", "made"), SCHEMAS.items())

@@ -228,8 +228,9 @@ class _Teller:
             later = _later(hit - window.trigger)
             return f"{self._name} is {str(wanted).lower()} at tick {hit}, {later}"
         deadline = window.trigger + ticks
+        what = "scope" if self._is_closed(window) else "run"
         return (
-            f"and the scope ends at tick {window.right}, before the deadline at tick {deadline}: "
+            f"and the {what} ends at tick {window.right}, before the deadline at tick {deadline}: "
             "nothing is required"
         )
 

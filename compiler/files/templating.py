@@ -55,6 +55,7 @@ def _environment() -> Environment:
     )
     environment.filters["python"] = python
     environment.filters["comment"] = comment
+    environment.filters["js"] = script
     environment.filters["json"] = to_json
     environment.filters["data"] = data
     environment.filters["toml"] = toml
@@ -98,6 +99,11 @@ def python(value: object) -> str:
     if isinstance(value, str):
         return json.dumps(value)
     return ascii(value)
+
+
+def script(text: str) -> str:
+    """The text as a JavaScript string, in ASCII; it ends no `<script>` that it stands in."""
+    return json.dumps(text).replace("<", "\\u003c")
 
 
 def comment(text: str, mark: str = "#") -> str:

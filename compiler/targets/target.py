@@ -63,6 +63,8 @@ class Target:
     """Warnings about the whole output, beside the `remark` on each rule."""
     per_rule: bool = True
     """False where all rules go into one file, for exchange with another tool."""
+    joins: bool = False
+    """Whether `Options.one_file` puts all rules into one file."""
     next_step: str = ""
     """A command for the first file, `{}`, and what it does; for whoever makes one anew."""
     weak: Target | None = None

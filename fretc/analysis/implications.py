@@ -176,6 +176,8 @@ def inconsistencies(setting: Stage, budget: Budget) -> Iterator[Inconsistency | 
     Source: Post, Hoenicke, Podelski, rt-Inconsistency: a new property for real-time requirements,
     FASE 2011. It is not monotone, so nothing is made smaller by leaving requirements out.
     """
+    if len(setting.rules) == 1:
+        return
     doubt = setting.of_inputs or setting.of_outputs
     counters = setting.arena.counters
     question = (

@@ -21,7 +21,7 @@ from fretc.analysis.findings import Conflict, OpenQuestion, Repair
 from fretc.analysis.stage import Stage, stage
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
-from fretish.clock import NANOSECONDS, Clock
+from fretish.clock import in_unit
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import expression
@@ -30,14 +30,12 @@ from fretish.syntax import (
     After,
     Always,
     Before,
-    Duration,
     Eventually,
     Finally,
     For,
     Immediately,
     Never,
     Next,
-    TimeUnit,
     Until,
     Within,
 )
@@ -189,22 +187,10 @@ def _first(is_enough: Callable[[int], bool], low: int, high: int) -> int | None:
 
 def _bounded(rule: Formalized, ticks: int) -> Formalized | None:
     timing = cast("Within | For", rule.written.timing)
-    duration = _duration(ticks, timing.duration.unit, rule.clock)
+    duration = in_unit(ticks, timing.duration.unit, rule.clock)
     changed = replace(rule.written, timing=replace(timing, duration=duration))
     found = _formalized(rule.id, printed(changed), rule)
     return found if found is not None and found.ticks == ticks else None
-
-
-def _duration(ticks: int, unit: TimeUnit, clock: Clock | None) -> Duration:
-    """So many ticks: in the unit of the sentence where that is exact, else in a smaller one."""
-    if unit == "tick" or clock is None or clock.period is None:
-        return Duration(ticks, unit)
-    smaller = [each for each in reversed(NANOSECONDS) if NANOSECONDS[each] <= NANOSECONDS[unit]]
-    for each in smaller:
-        amount, rest = divmod(ticks * clock.period, NANOSECONDS[each])
-        if rest == 0:
-            return Duration(amount, each)
-    return Duration(ticks, "tick")
 
 
 # Assumptions -----------------------------------------------------------------------------------

@@ -198,7 +198,7 @@ def _built(
     favoured: Role = Role.INPUT,
     steps: int = 0,
 ) -> Stage:
-    alphabet = _alphabet([*rules, *near], roles, fresh, favoured, budget, steps)
+    alphabet = alphabet_of([*rules, *near], roles, fresh, favoured, budget, steps)
     built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
     return Stage(tuple(rules), tuple(near), built, roles, as_fret, favoured, steps)
 
@@ -207,17 +207,31 @@ _MOST_STEPS = 8
 """With more the comparisons of a group take longer to sort out than a question may."""
 
 
-def _alphabet(
+def alphabet_of(
     rules: Sequence[Formalized],
     roles: Roles,
     fresh: Numbers,
     favoured: Role,
-    budget: Budget,
-    steps: int,
+    budget: Budget = ENDLESS,
+    steps: int = 0,
+    *,
+    of_moments: bool = False,
 ) -> Alphabet:
-    """With the numbers that comparisons are about; z3 is imported where there are some."""
+    """The letters of some rules.
+
+    With the numbers that comparisons are about; z3 is imported where there are some.
+
+    Args:
+        rules: whose atoms they have.
+        roles: of their variables.
+        fresh: variables for bits.
+        favoured: who chooses what is not known.
+        budget: for sorting comparisons out.
+        steps: how many ticks before a bound it is remembered whether that is within reach.
+        of_moments: whether propositions over several samples are true or false at will.
+    """
     if not any(comparisons(rule) or rule.declarations for rule in rules):
         return Propositions(rules, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 
-    return Cells(rules, roles, fresh, favoured, budget, steps)
+    return Cells(rules, roles, fresh, favoured, budget, steps, of_moments=of_moments)

@@ -82,10 +82,30 @@ def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
         generous, ids = setting.generous(budget), [rule.id for rule in setting.rules]
         if generous.of_inputs is None and _is_lost(generous, ids, budget):
             return Verdict.UNREALIZABLE, f"the environment wins, {_WHATEVER}"
+        answer = _unrolled(setting, budget) if generous is not setting else None
+        if answer is not None:
+            return answer
     return Verdict.NOT_CHECKED, doubt
 
 
 _WHATEVER = "whatever is taken for what is not known"
+
+
+def _unrolled(setting: Stage, budget: Budget) -> tuple[Verdict, str] | None:
+    """What a run shows where there are no inputs: it keeps all, or there is none."""
+    from fretc.analysis.games.lassos import Impossible, lasso
+
+    chosen = [setting.roles[name] for rule in setting.rules for name in rule.variables]
+    is_certain = setting.left_out is None and setting.of_outputs is None
+    if not is_certain or setting.assumptions or Role.INPUT in chosen:
+        return None
+    found = lasso(setting.rules, setting.roles, budget, as_fret=setting.as_fret)
+    if found is None:
+        return None
+    if isinstance(found, Impossible):
+        return Verdict.UNREALIZABLE, f"no run of {found.ticks} ticks keeps all of them"
+    run = f"a run of {len(found.numbers)} ticks that repeats itself from tick {found.loop} on"
+    return Verdict.REALIZABLE, f"there are no inputs, and {run} keeps all of them"
 
 
 def _is_lost(there: Stage, ids: Iterable[str], budget: Budget) -> bool:

@@ -14,12 +14,14 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 from multiprocessing.context import ForkProcess
+from typing import Any, TypeVar
 
 from compiler.files.processes import reply
-from fretc.analysis.analysis import Finding, Job
 from fretc.analysis.arena.budget import guard
+from fretc.analysis.games.job import Job
 from fretish.reading.recursion import deep
 
+F = TypeVar("F")
 MEMORY = 4 * 2**30
 """Bytes of address space that the process may take."""
 
@@ -28,7 +30,7 @@ class Stopped(Exception):  # noqa: N818
     """Ctrl-C; what was found before it has been given."""
 
 
-def findings(jobs: Sequence[Job], progress: Callable[[str], None]) -> Iterator[Finding]:
+def findings(jobs: Sequence[Job[F]], progress: Callable[[str], None]) -> Iterator[F]:
     """What the jobs find, and what each of them lacks whose process ended.
 
     Args:
@@ -38,7 +40,7 @@ def findings(jobs: Sequence[Job], progress: Callable[[str], None]) -> Iterator[F
     Raises:
         Stopped: on Ctrl-C, after what each remaining job lacks.
     """
-    found: list[Finding] = []
+    found: list[F] = []
     with _interruption() as is_stopped:
         number = 0
         while number < len(jobs) and not is_stopped():
@@ -82,10 +84,8 @@ def _interruption() -> Iterator[Callable[[], bool]]:
         signal.signal(signal.SIGINT, before)
 
 
-def _next(
-    process: ForkProcess, answers: Connection, is_stopped: Callable[[], bool]
-) -> Finding | Exception | None:
-    """What was sent next; after Ctrl-C the rest of it.
+def _next(process: ForkProcess, answers: Connection, is_stopped: Callable[[], bool]) -> Any:
+    """What was sent next: a finding, a mistake of ours, None; after Ctrl-C the rest of it.
 
     Raises:
         EOFError: nothing comes any more.
@@ -95,7 +95,7 @@ def _next(
     if is_stopped():
         process.kill()
     try:
-        sent: Finding | Exception | None = answers.recv()
+        sent = answers.recv()
     except OSError as error:  # in the midst of it
         raise EOFError from error
     return sent
@@ -105,7 +105,7 @@ _PATIENCE = 0.1
 """Seconds after which Ctrl-C is looked at."""
 
 
-def _started(jobs: Sequence[Job], found: Sequence[Finding]) -> tuple[ForkProcess, Connection]:
+def _started(jobs: Sequence[Job[F]], found: Sequence[F]) -> tuple[ForkProcess, Connection]:
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=_answer, args=(theirs, jobs, tuple(found)), daemon=True)
@@ -114,7 +114,7 @@ def _started(jobs: Sequence[Job], found: Sequence[Finding]) -> tuple[ForkProcess
     return process, ours
 
 
-def _answer(connection: Connection, jobs: Sequence[Job], found: Sequence[Finding]) -> None:
+def _answer(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) -> None:
     """Send each finding, None at the end of each job, and a mistake of ours where there is one."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to both; the parent decides
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # BuDDy's last words
@@ -128,7 +128,7 @@ def _answer(connection: Connection, jobs: Sequence[Job], found: Sequence[Finding
 
 
 @deep
-def _answer_all(connection: Connection, jobs: Sequence[Job], found: Sequence[Finding]) -> None:
+def _answer_all(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) -> None:
     known = list(found)
     for job in jobs:
         for finding in job.ask(known):

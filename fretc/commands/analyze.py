@@ -100,8 +100,8 @@ def analyze(
     from fretc.analysis.text_output import lines
     from fretish.printer import sentence as printed
 
-    project, first = _project(files, requirements, bindings)
-    rules = _rules(project, component)
+    project, first = project_of(files, requirements, bindings)
+    rules = in_force(project, component)
     assumed, remarks = assumptions(rules, project.declarations)
     say_briefly(remarks, first)
     if has_errors(remarks):
@@ -202,7 +202,9 @@ def _smaller(form: str) -> str:
     return "`--emit python` has no states, and writes far larger strategies"
 
 
-def _project(files: Sequence[str], requirements: str, bindings: str | None) -> tuple[Project, str]:
+def project_of(
+    files: Sequence[str], requirements: str, bindings: str | None
+) -> tuple[Project, str]:
     """The project, and where it is; a mistake in it stops the command."""
     from compiler.project.folder import load
     from compiler.project.paths import listed, requirement_files
@@ -218,7 +220,7 @@ def _project(files: Sequence[str], requirements: str, bindings: str | None) -> t
     return project, first
 
 
-def _rules(project: Project, component: str | None) -> tuple[Formalized, ...]:
+def in_force(project: Project, component: str | None) -> tuple[Formalized, ...]:
     """The rules that are asked about: those that are in force."""
     rules = tuple(rule for rule in project.rules if rule.requirement.status != "retired")
     if component is not None:

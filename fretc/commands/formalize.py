@@ -75,8 +75,9 @@ def compile_(
     from compiler.project.folder import load
     from compiler.project.paths import listed
 
-    if one_file and "monitor" not in kinds:
-        stop(Diagnostic(Code.BAD_USAGE, "`--one-file` is for `--emit monitor`", help="add it"))
+    if one_file and not any(TARGETS[kind].joins for kind in kinds):
+        joining = " and ".join(f"`--emit {name}`" for name, each in TARGETS.items() if each.joins)
+        stop(Diagnostic(Code.BAD_USAGE, f"`--one-file` is for {joining}", help="add one of them"))
     if weaken:
         _check_weaken(kinds)
     paths = listed(files)
@@ -206,7 +207,7 @@ def _emitted(
     answers = [(rule, target.refuse(rule)) for rule in rules]
     wrong = [diagnostic for _, diagnostic in answers if diagnostic is not None]
     whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
-    one_file = options.one_file and target.name == "monitor"
+    one_file = options.one_file and target.joins
     if one_file:
         whole += clashes(rules)
     if whole or (wrong and (one_file or not target.per_rule)):

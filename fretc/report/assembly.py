@@ -85,7 +85,7 @@ def report(
     runs_by_key = runs(briefs)
     all_runs = tuple(runs_by_key.values())
     all_proofs = merged(proofs.proofs if proofs else (), ajpf)
-    assessed = assessments(project, briefs, lock, waivers, all_proofs)
+    assessed = assessments(project, briefs, lock, waivers, all_proofs, together)
     chains = [assessment.standing.chain for assessment in assessed]
     withdrawn = withdrawn_requirements(project.requirements, chains, lock)
     anchors = {assessment.id: assessment.anchor for assessment in reversed(assessed)}
@@ -112,7 +112,7 @@ def report(
     changes = reviews.changes(assessed, project)
     groups = reviews.change_groups(assessed, changes)
     changed = tuple(reviews.change_sentences(changes, groups))
-    signature_list = signatures(book, assessed, evidence, proofs)
+    signature_list = signatures(book, assessed, evidence, proofs, together)
     overall_result = overall(
         project, assessed, sections, all_runs, reservations, withdrawn, signature_list, changed
     )

@@ -429,6 +429,8 @@ def test_the_monitors_of_a_folder_can_be_one_file(fretc: Fretc) -> None:
     assert fretc("req", "--emit", "monitor", "--one-file").status == 0
     machine = load("monitors.py", Path("build/monitors.py").read_text("utf-8"))
     assert [known.id for known in machine.REQUIREMENTS] == ["a", "b"]
+    assert fretc("req", "--emit", "js", "--one-file").status == 0
+    assert Path("build/monitors.mjs").read_text("utf-8").count("fingerprint:") == 2
 
 
 def test_names_that_become_one_in_one_file_are_refused(fretc: Fretc) -> None:

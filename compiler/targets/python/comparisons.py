@@ -1,15 +1,17 @@
-"""The comparisons of sentences → Python: the truth of propositions from the variables of a tick.
+"""The comparisons of sentences → text: the truth of propositions from the variables of a tick.
 
 The numbers of a sentence are in the units of the signals that they meet. Numbers alone are computed
 here, exactly; all else by the functions of `monitors.kernel.readings`, which compute as an audit
 does (`fretc.logs.signals.measures`). A comparison that holds anything else stays a proposition.
+The text is calls of these functions, so it is Python and JavaScript at once; languages differ in
+how they spell constants.
 """
 
 from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -170,7 +172,7 @@ class NotCompiledError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _Term:
-    """A number as text; a constant has its exact value, too."""
+    """A number as text; a constant has its exact value in place of it."""
 
     text: str
     scale: Fraction | None = None
@@ -195,12 +197,35 @@ NAMES = FUNCTIONS | {"kept"}
 """What no variable in it is called."""
 
 
+@dataclass(frozen=True, slots=True)
+class Spelling:
+    """How a language writes constants."""
+
+    number: Callable[[Fraction], str]
+    scale: Callable[[Fraction], str]
+    """What a number is multiplied by."""
+    truth: Callable[[bool | None], str]
+    """None: unknown."""
+
+
+def _number(value: Fraction) -> str:
+    return f'exact("{written(value)}")'
+
+
+def _scale(value: Fraction) -> str:
+    return f'exact("{value}")'
+
+
+PYTHON = Spelling(_number, _scale, str)
+
+
 @dataclass(slots=True)
 class Writer:
     """The text of comparisons; what they look back at is kept from tick to tick."""
 
     parameters: Mapping[str, str]
     """Of each variable."""
+    spelling: Spelling = PYTHON
     units: Mapping[str, tuple[str, Fraction]] = field(default_factory=dict)
     earlier: dict[tuple[str, str], str] = field(default_factory=dict)
     """What is looked back at, and what it was before the first tick: the name of its value."""
@@ -219,11 +244,11 @@ class Writer:
             raise NotCompiledError  # nothing says in which unit the variable is
         left, right = self._term(compared.tree.left), self._term(compared.tree.right)
         if _UNKNOWN in (left, right):
-            return "None"
-        left, right, _ = _in_one_unit(left, right)
+            return self.spelling.truth(None)
+        left, right, _ = self._in_one_unit(left, right)
         if left.exact is not None and right.exact is not None:
-            return str(e.COMPARE[op](left.exact, right.exact))
-        text = f'compared({left.text}, "{op}", {right.text})'
+            return self.spelling.truth(e.COMPARE[op](left.exact, right.exact))
+        text = f'compared({self._text(left)}, "{op}", {self._text(right)})'
         if max(map(_nesting, (text, *itertools.chain(*self.earlier)))) > _MOST_NESTING:
             raise NotCompiledError
         return text
@@ -251,7 +276,7 @@ class Writer:
                 return _Term(self.parameters[name], scale)
             case e.Negation(arg):
                 term = self._term(arg)
-                return _applied("negative", term, None if term.exact is None else -term.exact)
+                return self._applied("negative", term, None if term.exact is None else -term.exact)
             case e.Arithmetic(op, left, right):
                 return self._arithmetic(op, self._term(left), self._term(right))
             case e.Call(name, args) if name in ("preInt", "preReal") and len(args) == 2:
@@ -265,41 +290,80 @@ class Writer:
         if _UNKNOWN in (left, right):
             return _UNKNOWN
         if op == "^":
-            return _power(left, right)
+            return self._power(left, right)
         if op in ("*", "/"):
             left, right = (_plain(each) for each in (left, right))
             scale = _combined(op, left.scale, right.scale)
         else:
-            left, right, scale = _in_one_unit(left, right)
+            left, right, scale = self._in_one_unit(left, right)
         if left.exact is not None and right.exact is not None:
             return _constant(computed(op, left.exact, right.exact), scale)
-        return _Term(f"{_ARITHMETIC[op]}({left.text}, {right.text})", scale)
+        return _Term(f"{_ARITHMETIC[op]}({self._text(left)}, {self._text(right)})", scale)
 
     def _call(self, name: str, args: Sequence[_Term]) -> _Term:
         if name == "abs":
             if len(args) != 1:
                 raise NotCompiledError
             (term,) = args
-            return _applied("absolute", term, None if term.exact is None else abs(term.exact))
+            return self._applied("absolute", term, None if term.exact is None else abs(term.exact))
         found, *rest = args
         for term in rest:
             if _UNKNOWN in (found, term):
                 return _UNKNOWN
-            first, second, scale = _in_one_unit(found, term)
+            first, second, scale = self._in_one_unit(found, term)
             if first.exact is not None and second.exact is not None:
                 found = _constant(called(name, [first.exact, second.exact]), scale)
             else:
-                found = _Term(f"{_ENDS[name]}({first.text}, {second.text})", scale)
+                text = f"{_ENDS[name]}({self._text(first)}, {self._text(second)})"
+                found = _Term(text, scale)
         return found
 
     def _before(self, initial: _Term, term: _Term) -> _Term:
         """The value of the tick before; at the first tick, the initial one."""
         if _UNKNOWN in (initial, term):  # a mistake in the sentence: nothing is compared with it
             raise NotCompiledError
-        before, now, scale = _in_one_unit(initial, term)
-        key = f"first({before.text})", f"first({now.text})" if now.exact is not None else now.text
+        before, now, scale = self._in_one_unit(initial, term)
+        text = self._text(now)
+        key = f"first({self._text(before)})", text if now.exact is None else f"first({text})"
         name = self.earlier.setdefault(key, f"_earlier_{len(self.earlier) + 1}")
         return _Term(name, scale)
+
+    def _text(self, term: _Term) -> str:
+        return term.text if term.exact is None else self.spelling.number(term.exact)
+
+    def _in_one_unit(self, left: _Term, right: _Term) -> tuple[_Term, _Term, Fraction | None]:
+        """Both in one unit, and the factor of it: that of what is measured."""
+        if left.scale is None or right.scale is None or left.scale == right.scale:
+            return left, right, right.scale if left.scale is None else left.scale
+        if left.exact is not None and right.exact is None:
+            return _constant(left.exact * left.scale / right.scale, right.scale), right, right.scale
+        if right.exact is not None and left.exact is None:
+            return left, _constant(right.exact * right.scale / left.scale, left.scale), left.scale
+        return self._in_base(left, left.scale), self._in_base(right, right.scale), Fraction(1)
+
+    def _in_base(self, term: _Term, scale: Fraction) -> _Term:
+        if term.exact is not None:
+            return _constant(term.exact * scale, Fraction(1))
+        text = f"in_base({self._text(term)}, {self.spelling.scale(scale)})"
+        return _Term(text, Fraction(1))
+
+    def _applied(self, function: str, term: _Term, exact: Fraction | None) -> _Term:
+        if term == _UNKNOWN or exact is not None:
+            return _constant(exact, term.scale)
+        return _Term(f"{function}({self._text(term)})", term.scale)
+
+    def _power(self, base: _Term, exponent: _Term) -> _Term:
+        if exponent.exact is None:
+            raise NotCompiledError
+        try:
+            times = whole_exponent(exponent.exact)
+            value = None if base.exact is None else computed("^", base.exact, exponent.exact)
+        except ValueError:
+            raise NotCompiledError from None
+        scale = None if base.scale is None else base.scale**times
+        if value is not None:
+            return _constant(value, scale)
+        return _Term(f"power({self._text(base)}, {times})", scale)
 
 
 _WRITTEN = re.compile(r"\d{1,60}(?:\.\d{1,60})?(?:[eE][+-]?\d{1,3})?", re.ASCII)
@@ -315,7 +379,7 @@ def _constant(value: Fraction | None, scale: Fraction | None = None) -> _Term:
         return _UNKNOWN
     if max(map(int.bit_length, value.as_integer_ratio())) > _MOST_BITS:
         raise NotCompiledError
-    return _Term(f'exact("{written(value)}")', scale, value)
+    return _Term("", scale, value)
 
 
 def written(value: Fraction) -> str:
@@ -335,7 +399,7 @@ def _plain(factor: _Term) -> _Term:
     """A factor: a constant is in its base unit."""
     if factor.exact is None or factor.scale is None:
         return factor
-    return _in_base(factor, factor.scale)
+    return _constant(factor.exact * factor.scale, Fraction(1))
 
 
 def _combined(op: str, left: Fraction | None, right: Fraction | None) -> Fraction | None:
@@ -344,43 +408,6 @@ def _combined(op: str, left: Fraction | None, right: Fraction | None) -> Fractio
         return None
     a, b = (Fraction(1) if each is None else each for each in (left, right))
     return a * b if op == "*" else a / b
-
-
-def _in_one_unit(left: _Term, right: _Term) -> tuple[_Term, _Term, Fraction | None]:
-    """Both in one unit, and the factor of it: that of what is measured."""
-    if left.scale is None or right.scale is None or left.scale == right.scale:
-        return left, right, right.scale if left.scale is None else left.scale
-    if left.exact is not None and right.exact is None:
-        return _constant(left.exact * left.scale / right.scale, right.scale), right, right.scale
-    if right.exact is not None and left.exact is None:
-        return left, _constant(right.exact * right.scale / left.scale, left.scale), left.scale
-    return _in_base(left, left.scale), _in_base(right, right.scale), Fraction(1)
-
-
-def _in_base(term: _Term, scale: Fraction) -> _Term:
-    if term.exact is not None:
-        return _constant(term.exact * scale, Fraction(1))
-    return _Term(f'in_base({term.text}, exact("{scale}"))', Fraction(1))
-
-
-def _applied(function: str, term: _Term, exact: Fraction | None) -> _Term:
-    if term == _UNKNOWN or exact is not None:
-        return _constant(exact, term.scale)
-    return _Term(f"{function}({term.text})", term.scale)
-
-
-def _power(base: _Term, exponent: _Term) -> _Term:
-    if exponent.exact is None:
-        raise NotCompiledError
-    try:
-        times = whole_exponent(exponent.exact)
-        value = None if base.exact is None else computed("^", base.exact, exponent.exact)
-    except ValueError:
-        raise NotCompiledError from None
-    scale = None if base.scale is None else base.scale**times
-    if value is not None:
-        return _constant(value, scale)
-    return _Term(f"power({base.text}, {times})", scale)
 
 
 _MOST_NESTING = 150

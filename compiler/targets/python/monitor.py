@@ -20,10 +20,9 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized, plain
 from compiler.formalization.obligation import TRAITS, Trait, obligation
 from compiler.logic import printing
+from compiler.program.program import MARKS, SIGNALS
 from compiler.targets.python.comparisons import ANNOTATIONS, NAMES, Front, Writer, front
 from compiler.targets.python.program import (
-    MARKS,
-    SIGNALS,
     Program,
     locals_of,
     marks_of,
@@ -41,14 +40,19 @@ from monitors.source_text import kernel, kernel_of_variables
 
 
 def refuse(rule: Formalized) -> Diagnostic | None:
+    """F312 and F601: what a monitor in Python cannot be made of."""
+    return refusal(rule, "Python")
+
+
+def refusal(rule: Formalized, language: str) -> Diagnostic | None:
     """F312: a monitor steps by ticks, so it must be known how long a tick is.
 
-    F601: Python reads no more than 200 parentheses within each other; and one run cannot show
-    a probability.
+    F601: Python reads no more than 200 parentheses within each other, and what it refuses is in no
+    other language either; and one run cannot show a probability.
     """
     if not is_readable(rule):
         return not_expressible(
-            "Python",
+            language,
             rule,
             f"more than {_MOST_LEVELS} operators within each other",
             "give parts of the expression names of their own",
@@ -120,7 +124,7 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
     if options.one_file:
         return (Artifact(PurePosixPath("monitors.py"), text(*rules)),)
     return tuple(
-        Artifact(PurePosixPath(f"{_module(stem(rule))}_monitor.py"), text(rule)) for rule in rules
+        Artifact(PurePosixPath(f"{module(stem(rule))}_monitor.py"), text(rule)) for rule in rules
     )
 
 
@@ -148,7 +152,7 @@ def text(*rules: Formalized) -> str:
         title=", ".join(rule.id for rule in rules),
         class_name=_class_name(rules[0].id) if len(rules) == 1 else "All",
         version=__version__,
-        rules=[_described(rule) for rule in rules],
+        rules=[described(rule) for rule in rules],
         probabilistic=[_probability_note(rule) for rule in probabilistic],
         tick=str(rules[0].clock) if rules[0].clock else "not declared",
         inputs=inputs,
@@ -265,7 +269,8 @@ def _probability_note(rule: Formalized) -> dict[str, str]:
     return {"id": rule.id, "odds": f"{odds.op} {odds.digits}", "fingerprint": rule.fingerprint}
 
 
-def _described(rule: Formalized) -> dict[str, object]:
+def described(rule: Formalized) -> dict[str, object]:
+    """What the head of a monitor says of a rule."""
     return {
         "id": rule.id,
         "sentence": " ".join(rule.requirement.wording.text.split()),
@@ -287,7 +292,8 @@ def _identifier(id: str) -> str:
     return name if name[0].isalpha() else f"R{name}"
 
 
-def _module(name: str) -> str:
+def module(name: str) -> str:
+    """The name of a file that can be imported."""
     return re.sub(r"[^a-z0-9_]", "_", name)
 
 
@@ -351,5 +357,6 @@ TARGET = Target(
     emit,
     refuse,
     remark,
+    joins=True,
     next_step="`python {} TRACE.csv` judges a table with a column for each of its names",
 )

@@ -33,7 +33,7 @@ class Memory:
     """The bits of one requirement, while it is built."""
 
     def __init__(self, fresh: Numbers, shared: dict[Function, Bit]) -> None:
-        self._fresh, self._shared = fresh, shared
+        self._fresh, self.shared = fresh, shared
         self.bits: list[Bit] = []
         self.steps: dict[Bit, Function] = {}
         """The value of each bit after a tick, over bits before it and a letter."""
@@ -53,11 +53,11 @@ class Memory:
 
     def keep(self, value: Function) -> Function:
         """The value at the tick before; false at the first one."""
-        if value in self._shared:
-            self.bits.append(self._shared[value])
+        if value in self.shared:
+            self.bits.append(self.shared[value])
         else:
-            self._shared[value] = self.bit()
-        bit = self._shared[value]
+            self.shared[value] = self.bit()
+        bit = self.shared[value]
         self.steps[bit] = value
         return bdd.variable(bit.now)
 

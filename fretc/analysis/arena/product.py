@@ -35,7 +35,7 @@ class Arena:
         return len(self.alphabet.inputs) + len(self.alphabet.outputs)
 
 
-class _Fixed:
+class Fixed:
     """An alphabet of which each atom has been asked for: a thousand games read it, and it stays."""
 
     def __init__(self, alphabet: Alphabet) -> None:
@@ -67,7 +67,7 @@ def arena(
     beyond: dict[str, str] = {}
     shared: dict[Function, Bit] = {}
     known = {id(rule) for rule in assumptions}
-    for rule in _near_each_other([*rules, *assumptions]):
+    for rule in near_each_other([*rules, *assumptions]):
         try:
             made = counter(rule, alphabet, fresh, shared, as_fret=as_fret and id(rule) not in known)
         except BeyondError as error:
@@ -78,10 +78,10 @@ def arena(
             found[rule.id] = made
     of_rules = tuple(found[rule.id] for rule in rules if rule.id in found)
     of_assumptions = tuple(found[each.id] for each in assumptions)
-    return Arena(_Fixed(alphabet), of_rules, of_assumptions, beyond)
+    return Arena(Fixed(alphabet), of_rules, of_assumptions, beyond)
 
 
-def _near_each_other(rules: Sequence[Formalized]) -> list[Formalized]:
+def near_each_other(rules: Sequence[Formalized]) -> list[Formalized]:
     """Those that count come first, each after those with which it shares the most variables.
 
     The others add few bits, or none, and would tear atoms away from the counters that read them.

@@ -23,6 +23,19 @@ class Transition:
                 self._after[bit.now], self._steps[bit.now] = bit.after, step
         self.start: State = dict.fromkeys(self._steps, False)
 
+    def needed(self, *functions: Function) -> Transition:
+        """The same of those bits on which the functions depend, at a tick or at a later one."""
+        waiting, found = list(functions), set[int]()
+        while waiting:
+            read = {number for number in bdd.support(waiting.pop()) if number in self._steps}
+            waiting.extend(self._steps[number] for number in read - found)
+            found |= read
+        kept = Transition(())
+        kept._after = {number: self._after[number] for number in self._steps if number in found}
+        kept._steps = {number: self._steps[number] for number in self._steps if number in found}
+        kept.start = dict.fromkeys(kept._steps, False)
+        return kept
+
     @property
     def initial(self) -> Function:
         """The one state before the first tick."""

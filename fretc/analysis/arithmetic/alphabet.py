@@ -21,6 +21,7 @@ from fretc.analysis.arithmetic.durations import Duration, Held, held
 from fretc.analysis.arithmetic.groups import Group, choice, linked, owners
 from fretc.analysis.arithmetic.past import Remembered, remembered
 from fretc.analysis.arithmetic.projection import Limit
+from fretc.analysis.arithmetic.terms import Term
 from fretish.bindings.declarations import Role
 
 
@@ -35,6 +36,7 @@ class Cells:
             remembered of them, whether a signal is unknown, and what was before the first tick.
         budget: for sorting the comparisons.
         steps: how many ticks before a bound it is remembered whether that is within reach.
+        of_moments: whether propositions over several samples are left to `Propositions`.
 
     Raises:
         OutOfTimeError: the budget is over.
@@ -48,9 +50,11 @@ class Cells:
         favoured: Role,
         budget: Budget,
         steps: int = 0,
+        *,
+        of_moments: bool = False,
     ) -> None:
         self._favoured = favoured
-        self._atoms = Atoms(rules)
+        self._atoms = Atoms(rules, of_moments=of_moments)
         self._pairs = remembered(self._atoms, steps)
         self._fresh = fresh
         self._kept = Memory(fresh, {})
@@ -118,6 +122,16 @@ class Cells:
             held_ = held(self._kept, duration.ticks, throughout, at_last, open_)
             self._lasted[duration] = held_
         return self._lasted[duration]
+
+    @property
+    def numbers(self) -> Atoms:
+        """The comparisons, as formulas of z3."""
+        return self._atoms
+
+    @property
+    def formulas(self) -> Mapping[int, Term]:
+        """Each bit that stands for a comparison, and its formula."""
+        return {bit: formula for each in self._used for bit, formula in each.formulas()}
 
     @property
     def inputs(self) -> Sequence[int]:

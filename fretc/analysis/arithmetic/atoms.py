@@ -35,7 +35,13 @@ class Atom:
 class Atoms:
     """The atoms of some rules that are linear, by the names that formulas give them."""
 
-    def __init__(self, rules: Sequence[Formalized]) -> None:
+    def __init__(self, rules: Sequence[Formalized], *, of_moments: bool = False) -> None:
+        """The atoms.
+
+        Args:
+            rules: whose they are.
+            of_moments: whether those alone are read that are of one sample, and known.
+        """
         self._terms = Terms(rules)
         self.found: dict[str, Atom] = {}
         self.refused: dict[str, str] = {}
@@ -48,6 +54,8 @@ class Atoms:
         self._parts: set[str] = set()
         moments: dict[str, Moment] = {}
         for name, reading in readings(rules):
+            if of_moments and not reading.is_of_moment:
+                continue
             if name not in moments and name not in self.refused and name not in self.lasting:
                 self._read(name, reading, moments)
         self._sort(moments)
@@ -61,6 +69,11 @@ class Atoms:
     def before(self) -> Mapping[str, Before]:
         """What variables for numbers of the tick before are."""
         return self._terms.before
+
+    @property
+    def is_of_moments(self) -> bool:
+        """Whether all are of the numbers of one step, and known."""
+        return not self._of and not self.lasting
 
     def of(self, variable: str) -> str:
         """The name whose number a variable is, at some step."""

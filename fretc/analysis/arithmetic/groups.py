@@ -179,6 +179,10 @@ class Group:
             found = found | bdd.point({bit: pattern[n] for n, bit in self._bits.items()})
         return found
 
+    def formulas(self) -> Iterator[tuple[int, Term]]:
+        """Each bit of a formula, and that."""
+        return ((bit, self._choice.formulas[number]) for number, bit in self._bits.items())
+
     def labels(self) -> Iterator[tuple[int, str]]:
         """Each bit of a formula, and an atom of a sentence that has it."""
         for name, (number, is_so) in self._choice.of.items():

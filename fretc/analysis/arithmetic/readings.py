@@ -26,6 +26,12 @@ class Reading:
     period: int | None = None
     """Nanoseconds of a tick; None where the clock has no period."""
 
+    @property
+    def is_of_moment(self) -> bool:
+        """Whether one sample decides it, which is known."""
+        lasts = any(isinstance(part, e.Persistence) for part in e.parts(self.expression))
+        return self.aggregate is Aggregate.LAST and self.on_unknown is None and not lasts
+
 
 def readings(rules: Sequence[Formalized]) -> Iterator[tuple[str, Reading]]:
     """Of each atom that compares numbers or words, by the name that formulas give it."""

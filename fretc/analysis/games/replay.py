@@ -6,7 +6,7 @@ monitors of its requirements find it, too.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
@@ -71,15 +71,51 @@ def _is_broken(
     *,
     as_fret: bool,
 ) -> bool:
-    signals = (rule.watch.breach, rule.watch.fails)
-    atoms = dict.fromkeys(name for signal in signals for name in f.atoms(signal))
-    known = columns(alphabet, letters, atoms)
-    breach, fails = (evaluate(signal, known, len(letters)) for signal in signals)
+    breach, fails = _watched((rule.watch.breach, rule.watch.fails), alphabet, letters)
     last = 1 << len(letters) - 1
     if loop is None:
         return bool((breach | (fails if as_fret else 0)) & last)
     rounds = ((1 << len(letters)) - 1) >> loop << loop
     return breach == 0 and fails & rounds == rounds
+
+
+def kept(
+    rules: Sequence[Formalized],
+    alphabet: Alphabet,
+    letters: Sequence[Letter],
+    tail: int,
+    waiting: Collection[str],
+    *,
+    as_fret: bool = False,
+) -> bool:
+    """Whether a run breaks none of the requirements, and leaves none unmet in its last ticks.
+
+    Args:
+        rules: all that are to be kept.
+        alphabet: of the letters.
+        letters: with the loop of the run, several times.
+        tail: how many ticks the loop has.
+        waiting: ids of those whose demands may not stay open for ever; `finally` on a run without
+            an end is met.
+        as_fret: whether nothing may be owed at the end of any tick.
+    """
+    end = ((1 << tail) - 1) << len(letters) - tail
+    for rule in rules:
+        signals = (rule.watch.breach, rule.watch.doom, rule.watch.fails)
+        breach, doom, fails = _watched(signals, alphabet, letters)
+        is_open = rule.id in waiting and fails & end == end
+        if breach or (fails if as_fret else doom or is_open):
+            return False
+    return True
+
+
+def _watched(
+    signals: Sequence[f.Formula], alphabet: Alphabet, letters: Sequence[Letter]
+) -> Iterator[int]:
+    """Each signal over time, bit i for tick i."""
+    atoms = dict.fromkeys(name for signal in signals for name in f.atoms(signal))
+    known = columns(alphabet, letters, atoms)
+    return (evaluate(signal, known, len(letters)) for signal in signals)
 
 
 def first_breaches(

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from compiler.targets.python.program import SIGNALS
+from compiler.program.program import SIGNALS
 from fretc.verification.monitor.text_check import own
 
 

@@ -14,7 +14,7 @@ from itertools import product
 from typing import Any
 
 from compiler.logic.orders import Exclusion, only_possible
-from compiler.targets.python.program import MARKS, SIGNALS
+from compiler.program.program import MARKS, SIGNALS
 from fretc.verification.monitor.machine import Cells
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth

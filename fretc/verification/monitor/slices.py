@@ -11,7 +11,7 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from compiler.formalization.letters import Valuation
-from compiler.targets.python.program import MARKS
+from compiler.program.program import MARKS
 from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.text_check import own

@@ -13,13 +13,14 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
+from compiler.program.program import MARKS, SIGNALS
 from compiler.targets.python.monitor import (
     MOST_PARAMETERS,
     is_inlined,
     parameters_of,
     prefixes_of,
 )
-from compiler.targets.python.program import MARKS, SIGNALS, locals_of, negation
+from compiler.targets.python.program import locals_of, negation
 from fretc.verification.monitor.column_layout import check_columns
 from fretc.verification.monitor.front_layout import check_front, declared_variables
 from fretc.verification.monitor.statements import (

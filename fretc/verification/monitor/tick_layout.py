@@ -11,7 +11,8 @@ import copy
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from compiler.targets.python.program import MARKS, SIGNALS, negation
+from compiler.program.program import MARKS, SIGNALS
+from compiler.targets.python.program import negation
 from fretc.verification.monitor.statements import (
     StrangeError,
     body_of,

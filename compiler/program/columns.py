@@ -1,0 +1,37 @@
+"""The same as a block's instructions, over whole traces: one operator over columns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from compiler.program.values import Value
+
+
+@dataclass(frozen=True, slots=True)
+class AtFirst:
+    """True at tick 0 alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Before:
+    """The value of the tick before; at tick 0, `weak`."""
+
+    value: Value
+    weak: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Since:
+    """`guard S[lo,hi] witness` in ticks; `dual`: the negation of that of the negated values."""
+
+    guard: Value | None
+    """None: nothing has to hold since the witness."""
+    witness: Value
+    lo: int
+    hi: int | None
+    dual: bool
+    unbounded: str | None = None
+    """The name of the same without bounds, where that is computed before."""
+
+
+Column = Value | AtFirst | Before | Since

@@ -1,0 +1,1 @@
+"""What a run can show of a sentence, and which other sentences it should tell from it."""

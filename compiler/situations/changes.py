@@ -1,0 +1,127 @@
+"""Small changes of an expression: one operand, one operator, one threshold."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import islice
+
+from compiler.situations.thresholds import written
+from fretish import expressions as e
+from fretish.printer import expression
+
+MOST_PARTS = 100
+"""Of an expression with more, as a tree, no part is changed alone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """An expression with one thing changed."""
+
+    operator: str
+    """`dropped`, `negated`, `operator`, `compared` or `threshold`."""
+    about: str
+    """As it is printed: the operand that is dropped or negated, else what stands there now."""
+    words: str
+    whole: e.Expression
+
+
+def changes(whole: e.Expression) -> Iterator[Change]:
+    """Each change of one part of an expression, outer parts first; none of a large one."""
+    if not is_large(whole):
+        yield from _changes(whole)
+
+
+def is_large(whole: e.Expression) -> bool:
+    """Whether its parts are not looked at one by one."""
+    return sum(1 for _ in islice(e.parts(whole), MOST_PARTS + 1)) > MOST_PARTS
+
+
+def _changes(whole: e.Expression) -> Iterator[Change]:
+    yield from _dropped(whole)
+    yield from _other_operator(whole)
+    match whole:
+        case e.Comparison():
+            yield from _comparison(whole)
+        case e.Not() | e.And() | e.Or() | e.Xor() | e.Implies() | e.Iff():
+            yield from _within(whole)
+        case _:
+            pass  # what a call is about is its own
+
+
+def _within(whole: e.Expression) -> Iterator[Change]:
+    """Changes of one operand."""
+    operands = e.children(whole)
+    for place, operand in enumerate(operands):
+        own = [*_changes(operand)]
+        if not isinstance(whole, e.Not):  # its operand negated is the whole negated
+            own.insert(0, _replaced("negated", operand, opposite(operand)))
+        for change in own:
+            parts = (*operands[:place], change.whole, *operands[place + 1 :])
+            yield replace(change, whole=e.with_children(whole, parts))
+
+
+def opposite(part: e.Expression) -> e.Expression:
+    """Its negation, without two of them in a row."""
+    return part.arg if isinstance(part, e.Not) else e.Not(part)
+
+
+def _dropped(whole: e.Expression) -> Iterator[Change]:
+    """One operand of a conjunction or disjunction is left out."""
+    if not isinstance(whole, e.And | e.Or):
+        return
+    for place, operand in enumerate(whole.args):
+        rest = (*whole.args[:place], *whole.args[place + 1 :])
+        text = expression(operand)
+        less = rest[0] if len(rest) == 1 else replace(whole, args=rest)
+        yield Change("dropped", text, f"without `{text}`", less)
+
+
+def _other_operator(whole: e.Expression) -> Iterator[Change]:
+    """`|` for `&`, and the like."""
+    match whole:
+        case e.And(args):
+            yield _replaced("operator", whole, e.with_children(e.Or(args), args))
+        case e.Or(args):
+            yield _replaced("operator", whole, e.with_children(e.And(args), args))
+        case e.Xor(left, right):
+            yield _replaced("operator", whole, e.either(left, right))
+        case e.Implies(left, right):
+            yield _replaced("operator", whole, e.Iff(left, right))
+        case e.Iff(left, right):
+            yield _replaced("operator", whole, e.Implies(left, right))
+        case _:
+            pass
+
+
+_NEAR: Mapping[e.ComparisonOperator, tuple[e.ComparisonOperator, ...]] = {
+    "<": ("<=", ">"),
+    "<=": ("<", ">="),
+    ">": (">=", "<"),
+    ">=": (">", "<="),
+    "=": (),
+    "!=": (),
+}
+"""For `=` there is `negated` already."""
+
+
+def _comparison(whole: e.Comparison) -> Iterator[Change]:
+    for op in _NEAR[whole.op]:
+        yield _replaced("compared", whole, replace(whole, op=op))
+    for other in _moved(whole.left):
+        yield _replaced("threshold", whole, replace(whole, left=other))
+    for other in _moved(whole.right):
+        yield _replaced("threshold", whole, replace(whole, right=other))
+
+
+def _moved(side: e.Expression) -> Iterator[e.Expression]:
+    """A number by a step more, and less."""
+    number = written(side)
+    if number is not None:
+        yield from (number.moved(number.step), number.moved(-number.step))
+
+
+def _replaced(operator: str, old: e.Expression, new: e.Expression) -> Change:
+    was, now = expression(old), expression(new)
+    about = was if operator == "negated" else now
+    return Change(operator, about, f"`{now}` in place of `{was}`", new)

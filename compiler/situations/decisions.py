@@ -1,0 +1,92 @@
+"""What decides alone: each operand of a mode, condition, response or stop condition.
+
+An operand decides where the opposite value of it would change the whole expression, and that would
+change what the sentence demands. So each is shown true and shown false where it decides; operands
+that cannot change alone, since they read the same numbers, need no pair of ticks that differ in
+nothing else: that is the masking form of the criterion.
+
+Source: Chilenski, An investigation of three forms of the modified condition decision coverage
+criterion, DOT/FAA/AR-01/18, 2001.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.obligation import Read, boolean
+from compiler.formalization.predicates import Past
+from compiler.logic import formula as f
+from compiler.situations.changes import is_large
+from compiler.situations.facts import Facts
+from fretish import expressions as e
+from fretish import syntax as s
+
+
+@dataclass(frozen=True, slots=True)
+class Operand:
+    """A part of an expression that `&`, `!` and the like join: a name, a comparison, a call."""
+
+    part: str
+    """`mode`, `condition`, `response` or `stop condition`."""
+    expression: e.Expression
+    atom: str | None
+    """Its name in formulas; None where it speaks of other ticks."""
+    whole: f.Formula
+    """The expression that it is in."""
+    decides: f.Formula
+    """Its value at this tick decides something; the formula does not ask what it is there."""
+    alone: bool
+    """Whether it is the whole, or that negated."""
+
+
+def operands(rule: Formalized, known: Facts) -> Iterator[Operand]:
+    """Those of each part of a sentence; of a large part none."""
+    sentence = rule.sentence
+    scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
+    past, kind = Past(), scope.kind if scope else None
+    inside = partial(boolean, expand=past.inside(kind, known.whole.mode))
+    if scope is not None:
+        read = partial(boolean, expand=past.alone())
+        yield from _operands("mode", scope.mode, read, known.asks_for_mode)
+    if condition is not None:
+        asked = known.asks_for_condition
+        yield from _operands("condition", condition.expression, inside, asked)
+    yield from _operands("response", sentence.response, inside, known.asks_for_answer)
+    if stop is not None:
+        yield from _operands("stop condition", stop, inside, known.asks_for_stop)
+
+
+def _operands(part: str, whole: e.Expression, read: Read, asked: f.Formula) -> Iterator[Operand]:
+    if is_large(whole):
+        return
+    found = [*dict.fromkeys(_joined(whole))]
+    for each in found:
+        value = read(each)
+        name = value.name if isinstance(value, f.Atom) else None
+        changes = f.xor(read(_with(whole, each, value=True)), read(_with(whole, each, value=False)))
+        decides = f.and_(asked, changes)
+        yield Operand(part, each, name, read(whole), decides, alone=len(found) == 1)
+
+
+def _joined(whole: e.Expression) -> Iterator[e.Expression]:
+    match whole:
+        case e.Not() | e.And() | e.Or() | e.Xor() | e.Implies() | e.Iff():
+            for each in e.children(whole):
+                yield from _joined(each)
+        case e.Truth():
+            return
+        case _:
+            yield whole
+
+
+def _with(whole: e.Expression, operand: e.Expression, *, value: bool) -> e.Expression:
+    """The expression with a truth value in place of an operand, wherever it stands."""
+    match whole:
+        case e.Not() | e.And() | e.Or() | e.Xor() | e.Implies() | e.Iff():
+            parts = [_with(each, operand, value=value) for each in e.children(whole)]
+            return e.with_children(whole, parts)
+        case _:
+            return e.Truth(value) if whole == operand else whole

@@ -1,0 +1,183 @@
+"""The situations of each timing: answered at once, at the last tick, one tick too late, never.
+
+Of an `only` scope they are those of the dual, for that is what it demands outside of itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import assert_never
+
+from compiler.formalization.obligation import Kind
+from compiler.logic import formula as f
+from compiler.situations.facts import Facts
+
+Rows = Iterator[tuple[str, f.Formula]]
+"""Keys, and formulas of the past; FALSE where no interval ends."""
+
+
+def of_demand(known: Facts) -> Rows:
+    """The situations that the timing of a sentence has."""
+    return _rows(known.demand.kind)(known)
+
+
+def _rows(kind: Kind) -> Callable[[Facts], Rows]:
+    match kind:
+        case Kind.IMMEDIATELY:
+            return _immediately
+        case Kind.NEXT:
+            return _next
+        case Kind.FINALLY:
+            return _finally
+        case Kind.EVENTUALLY:
+            return _eventually
+        case Kind.ALWAYS:
+            return _always
+        case Kind.WITHIN:
+            return _within
+        case Kind.FOR:
+            return _for
+        case Kind.AFTER:
+            return _after
+        case Kind.NOT_AFTER:
+            return _not_after
+        case Kind.UNTIL:
+            return _until
+        case Kind.BEFORE:
+            return _before
+        case _:
+            assert_never(kind)
+
+
+def _immediately(known: Facts) -> Rows:
+    missed = f.and_(known.triggered, f.not_(known.answer))
+    yield "answered-at-once", f.and_(known.triggered, known.answer)
+    yield "missed-by-one", missed
+    yield "one-tick-late", _late(known, missed)
+
+
+def _next(known: Facts) -> Rows:
+    q, missed = known.answer, f.and_(known.was_open, f.not_(known.answer))
+    yield "answered-too-early", f.and_(f.previous(f.and_(known.triggered, q)), missed)
+    yield "answered-at-last-tick", f.and_(known.was_open, q)
+    yield "missed-by-one", missed
+    yield "one-tick-late", _late(known, missed)
+
+
+def _finally(known: Facts) -> Rows:
+    q, missed = known.answer, f.and_(known.waiting, f.not_(known.answer))
+    gone = f.and_(missed, f.previous(known.stage.open(f.TRUE)), f.previous(q))
+    yield "answered-too-early", _at_its_end(known, gone)
+    yield "answered-at-last-tick", _at_its_end(known, f.and_(known.waiting, q))
+    yield "missed-by-one", _at_its_end(known, missed)
+    yield "one-tick-late", f.and_(_at_its_end(known, missed), q)
+
+
+def _eventually(known: Facts) -> Rows:
+    q = known.answer
+    yield "answered-at-once", f.and_(_first(known), q)
+    yield "answered-later", f.and_(known.was_open, q)
+    yield "answered-at-last-tick", _at_its_end(known, f.and_(known.was_open, q))
+    yield "missed-by-one", _at_its_end(known, known.open)
+    yield "one-tick-late", f.and_(_at_its_end(known, known.open), q)
+
+
+def _always(known: Facts) -> Rows:
+    q = known.answer
+    yield "answered-at-once", f.and_(_first(known), q)
+    yield "missed-at-once", f.and_(_first(known), f.not_(q))
+    yield "missed-later", f.and_(known.was_open, f.not_(q))
+    yield "missed-by-one", _at_its_end(known, f.and_(known.was_open, f.not_(q)))
+
+
+def _within(known: Facts) -> Rows:
+    q, n = known.answer, known.demand.ticks
+    last = known.oldest(n)
+    missed = f.and_(last, f.not_(q))
+    yield "answered-at-once", f.and_(known.oldest(0), q)
+    if n > 1:
+        yield "answered-later", f.and_(known.was_open, q, _in_time(known))
+    if n:
+        yield "answered-at-last-tick", f.and_(last, q)
+    yield "missed-by-one", missed
+    yield "one-tick-late", _late(known, missed)
+
+
+def _for(known: Facts) -> Rows:
+    q, n = known.answer, known.demand.ticks
+    kept = known.newest(n, q)
+    yield "answered-at-once", f.and_(known.triggered, q)
+    if n:
+        yield "answered-at-last-tick", f.and_(kept, q)
+        yield "missed-at-once", f.and_(_first(known), f.not_(q))
+    if n > 1:
+        yield "missed-later", f.and_(known.open, f.not_(known.triggered), f.not_(q))
+    yield "missed-by-one", f.and_(kept, f.not_(q))
+    yield "given-up-after", f.and_(known.newest(n + 1, q), f.not_(q))
+
+
+def _after(known: Facts) -> Rows:
+    q, n = known.answer, known.demand.ticks
+    last = known.oldest(n + 1)
+    missed = f.and_(last, f.not_(q))
+    yield "answered-at-once", f.and_(known.oldest(0), q)
+    if n:
+        yield "answered-too-early", f.and_(known.oldest(n), q)
+    yield "answered-at-last-tick", f.and_(last, q)
+    yield "missed-by-one", missed
+    yield "one-tick-late", _late(known, missed)
+
+
+def _not_after(known: Facts) -> Rows:
+    q, n = known.answer, known.demand.ticks
+    beyond = known.oldest(n + 1)
+    yield "answered-at-once", f.and_(known.oldest(0), q)
+    if n > 1:
+        yield "answered-later", f.and_(known.was_open, q, _in_time(known))
+    if n:
+        yield "answered-at-last-tick", f.and_(known.oldest(n), q)
+    yield "one-tick-late", f.and_(beyond, q)
+    yield "never-answered", f.and_(beyond, f.not_(q))
+
+
+def _until(known: Facts) -> Rows:
+    q, stop = known.answer, known.demand.stop
+    asked = f.and_(known.was_open, f.not_(stop))
+    yield "answered-at-once", f.and_(_first(known), q, f.not_(stop))
+    yield "missed-at-once", f.and_(_first(known), f.not_(q), f.not_(stop))
+    yield "missed-later", f.and_(asked, f.not_(q))
+    yield "missed-by-one", f.and_(known.inside, f.previous(f.and_(asked, f.not_(q))), stop)
+    yield "stopped-at-once", f.and_(_first(known), stop)
+    yield "stopped-later", f.and_(known.was_open, stop, q)
+    yield "stopped-unanswered", f.and_(known.was_open, stop, f.not_(q))
+
+
+def _before(known: Facts) -> Rows:
+    q, stop = known.answer, known.demand.stop
+    answered = f.and_(known.was_open, q, f.not_(stop))
+    yield "answered-at-once", f.and_(_first(known), q, f.not_(stop))
+    yield "answered-later", answered
+    yield "answered-at-last-tick", f.and_(known.inside, f.previous(answered), stop)
+    yield "one-tick-late", f.and_(known.was_open, stop, q)
+    yield "stopped-at-once", f.and_(_first(known), stop)
+    yield "stopped-unanswered", f.and_(known.was_open, stop, f.not_(q))
+
+
+def _first(known: Facts) -> f.Formula:
+    """Triggered, with no demand open."""
+    return f.and_(known.triggered, f.not_(known.was_open))
+
+
+def _in_time(known: Facts) -> f.Formula:
+    """The first trigger since the last answer lies no more than n - 1 ticks back."""
+    return f.once(known.oldest(0), f.Interval(0, known.demand.ticks - 1))
+
+
+def _late(known: Facts, missed: f.Formula) -> f.Formula:
+    """The answer comes at the tick after the one at which it was missed, in the same interval."""
+    return f.and_(known.inside, f.previous(missed), known.answer)
+
+
+def _at_its_end(known: Facts, last: f.Formula) -> f.Formula:
+    """The interval is over, and this held at its last tick."""
+    return f.and_(known.ended, f.previous(last))

@@ -1,0 +1,208 @@
+"""What one tick is to a sentence, as formulas of the past: triggered, open, answered k ticks on.
+
+A demand is open after a tick where what follows can still break it or meet it; the counter of the
+reference automaton is not 0 then. What a fact says holds up to and including the first tick at
+which the sentence is broken; after it a demand that is overdue stays open until it is answered.
+
+No formula looks back by a whole duration tick by tick: the distance to a trigger is told by a
+counter that starts with it, so that a long bound costs the logarithm of its ticks.
+
+Source: `compiler.formalization.reference`, the definition as counters, that the tests hold this to.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import assert_never
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait, obligation
+from compiler.formalization.past import Stage, staged
+from compiler.formalization.predicates import Past
+from compiler.logic import formula as f
+from fretish.syntax import ConditionKind, ScopeKind
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Facts of a tick, over the atoms of the sentence."""
+
+    whole: Obligation
+
+    @cached_property
+    def stage(self) -> Stage:
+        """Where the sentence is enforced, and where its demands begin."""
+        return staged(self.whole)
+
+    @property
+    def demand(self) -> Demand:
+        """What a trigger asks for; outside of an `only` scope, the dual of what is written."""
+        return self.whole.demand
+
+    @property
+    def inside(self) -> f.Formula:
+        """The tick lies in an interval of the scope."""
+        return self.stage.inside
+
+    @property
+    def ended(self) -> f.Formula:
+        """It is the first tick after an interval; FALSE where no interval ends."""
+        return self.stage.leaves
+
+    @property
+    def triggered(self) -> f.Formula:
+        """A demand begins here."""
+        return self.stage.trigger
+
+    @property
+    def answer(self) -> f.Formula:
+        """The response is as it is demanded: for `never`, that it is false."""
+        return self.demand.response
+
+    @cached_property
+    def open(self) -> f.Formula:
+        """After this tick a demand is open."""
+        demand, stage = self.demand, self.stage
+        q, n = f.not_(demand.response), demand.ticks
+        match demand.kind:
+            case Kind.IMMEDIATELY:
+                return f.FALSE
+            case Kind.NEXT:
+                return stage.trigger
+            case Kind.FINALLY | Kind.ALWAYS:
+                return stage.open(f.TRUE)
+            case Kind.EVENTUALLY | Kind.WITHIN | Kind.AFTER | Kind.BEFORE:
+                return stage.open(q)
+            case Kind.FOR:
+                return stage.open(f.TRUE, f.Interval(0, n - 1)) if n else f.FALSE
+            case Kind.NOT_AFTER:
+                return stage.open(q, f.Interval(0, n))
+            case Kind.UNTIL:
+                return stage.open(f.not_(demand.stop))
+            case _:
+                assert_never(demand.kind)
+
+    @cached_property
+    def was_open(self) -> f.Formula:
+        """A demand that was open after the tick before still concerns this one."""
+        return f.and_(self.inside, f.previous(self.open))
+
+    @cached_property
+    def waiting(self) -> f.Formula:
+        """A demand begins here, or was open after the tick before."""
+        return f.or_(self.triggered, self.was_open)
+
+    def oldest(self, ticks: int) -> f.Formula:
+        """The first trigger since the last answer lies so many ticks back.
+
+        This tick is not asked for its answer.
+        """
+        unanswered = f.and_(self.inside, f.previous(self.stage.open(f.not_(self.answer))))
+        first = f.and_(self.triggered, f.not_(unanswered))
+        if ticks == 0:
+            return first
+        near = f.once(first, f.Interval(0, ticks - 1))
+        return f.and_(unanswered, f.previous(near), f.not_(near))
+
+    def newest(self, ticks: int, kept: f.Formula = f.TRUE) -> f.Formula:
+        """The last trigger of this interval lies so many ticks back.
+
+        Args:
+            ticks: from the trigger to this tick.
+            kept: what has held since, this tick left out.
+        """
+        if ticks == 0:
+            return self.triggered
+        near = f.Interval(0, ticks - 1)
+        since = f.previous(self.stage.open(kept, near))
+        return f.and_(self.inside, since, f.not_(self.stage.open(f.TRUE, near)))
+
+    # What decides here -------------------------------------------------------------------------
+
+    @cached_property
+    def asks_for_mode(self) -> f.Formula:
+        """The mode at this tick decides where the sentence is enforced."""
+        match self.whole.scope:
+            case None:
+                return f.FALSE
+            case ScopeKind.IN | ScopeKind.NOT_IN | ScopeKind.ONLY_IN:
+                return f.TRUE
+            case ScopeKind.BEFORE | ScopeKind.ONLY_AFTER:
+                return f.not_(f.previous(self.stage.over))
+            case ScopeKind.AFTER | ScopeKind.ONLY_BEFORE:
+                return f.not_(f.previous(self.inside))
+            case _:
+                assert_never(self.whole.scope)
+
+    @cached_property
+    def asks_for_condition(self) -> f.Formula:
+        """The condition at this tick decides whether a demand begins that changes anything."""
+        match self.whole.condition:
+            case None:
+                return f.FALSE
+            case ConditionKind.HOLDING:
+                can_trigger = self.inside
+            case ConditionKind.TRIGGER:
+                p = self.whole.trigger
+                fell = f.weak_previous if self.stage.left == f.FIRST else f.previous
+                rises = f.or_(self.stage.left, fell(f.not_(p)))
+                can_trigger = f.and_(self.inside, rises)
+            case _:
+                assert_never(self.whole.condition)
+        return f.and_(can_trigger, self._takes_a_trigger)
+
+    @property
+    def _takes_a_trigger(self) -> f.Formula:
+        """A trigger here would change what is demanded."""
+        unanswered, closed = f.not_(self.answer), f.not_(self.was_open)
+        match self.demand.kind:
+            case Kind.IMMEDIATELY | Kind.NOT_AFTER:
+                return unanswered
+            case Kind.NEXT:
+                return f.or_(closed, self.answer)
+            case Kind.FOR:
+                return f.or_(closed, self.answer) if self.demand.ticks else unanswered
+            case Kind.AFTER:
+                in_order = f.iff(self.answer, self.oldest(self.demand.ticks + 1))
+                return f.or_(closed, in_order)
+            case Kind.FINALLY | Kind.ALWAYS:
+                return closed
+            case Kind.EVENTUALLY | Kind.WITHIN:
+                return f.and_(closed, unanswered)
+            case Kind.UNTIL:
+                return f.and_(closed, f.not_(self.demand.stop))
+            case Kind.BEFORE:
+                return f.and_(closed, f.or_(self.demand.stop, unanswered))
+            case _:
+                assert_never(self.demand.kind)
+
+    @cached_property
+    def asks_for_answer(self) -> f.Formula:
+        """The response at this tick decides something."""
+        match self.demand.kind:
+            case Kind.IMMEDIATELY:
+                return self.triggered
+            case Kind.NEXT:
+                return self.was_open
+            case Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
+                return self.waiting
+            case Kind.WITHIN | Kind.FOR | Kind.NOT_AFTER:
+                return self.waiting
+            case Kind.AFTER:
+                clash = f.and_(self.triggered, self.oldest(self.demand.ticks + 1))
+                return f.and_(self.waiting, f.not_(clash))
+            case Kind.UNTIL | Kind.BEFORE:
+                return f.and_(self.waiting, f.not_(self.demand.stop))
+            case _:
+                assert_never(self.demand.kind)
+
+    @cached_property
+    def asks_for_stop(self) -> f.Formula:
+        """The stop condition at this tick decides something."""
+        return self.waiting if Trait.STOPS in TRAITS[self.demand.kind] else f.FALSE
+
+
+def facts(rule: Formalized) -> Facts:
+    """Of a rule, its temporal predicates read as formulas of the past."""
+    return Facts(obligation(rule.sentence, rule.ticks or 0, Past()))

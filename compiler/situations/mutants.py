@@ -1,0 +1,202 @@
+"""Sentences that somebody might have written, or meant, in place of the right one.
+
+Tests that cannot tell a sentence from its mutants would not notice that it is wrong. The operators
+are those of `OPERATORS`, each at every place where it fits, in their order.
+
+Source: Fraser, Wotawa, Complementary criteria for testing temporal logic properties, TAP 2009;
+Black, Okun, Yesha, Mutation operators for specifications, ASE 2000.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import Formalized
+from compiler.situations.changes import changes, opposite
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.clock import in_unit
+from fretish.diagnostics.source import Source
+from fretish.printer import canonical, condition, expression, scope, timing
+from fretish.printer import sentence as printed
+from fretish.reading.recursion import deep
+
+OPERATORS: Mapping[str, str] = {
+    "scope": "another scope, or none",
+    "condition": "`whenever` for `upon` and the other way, or no condition",
+    "timing": "another timing, with the duration or the stop condition of the sentence; a timing "
+    "that needs a duration which the sentence lacks has one of 3 ticks",
+    "bound": "a duration one tick longer or shorter, half, twice, or none",
+    "negated": "a part, or an operand in it, negated",
+    "stuck": "a part that is always true, or always false",
+    "dropped": "a conjunction or disjunction without one operand",
+    "operator": "`|` for `&`, `&` for `|`, `|` for `xor`, `<->` for `->`, `->` for `<->`",
+    "compared": "`<=` for `<` and the other way, `>` for `<` and the other way",
+    "threshold": "a number in a comparison, more or less by one unit of its last digit",
+}
+"""What each does. A part is the mode, the condition, the response or the stop condition."""
+_UNBOUND = s.Duration(3, "tick")
+
+
+@dataclass(frozen=True, slots=True)
+class Mutant:
+    """A sentence that somebody might have written, or meant, in place of the right one."""
+
+    key: str
+    """An operator of `OPERATORS`, behind a colon the place; unique within a rule."""
+    words: str
+    """For people: what stands in place of what."""
+    rule: Formalized
+    """Of the same id and bindings."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Draft:
+    """A mutant that may say nothing new, or nothing at all."""
+
+    key: str
+    words: str
+    sentence: s.Sentence
+
+
+@deep
+def mutants(rule: Formalized) -> tuple[Mutant, ...]:
+    """Those of a rule; no two have the same sentence, and none has that of the rule.
+
+    A sentence that cannot be formalized is none.
+    """
+    seen = {canonical(rule.written)}
+    found: dict[str, Mutant] = {}
+    for draft in _drafts(rule):
+        text = canonical(draft.sentence)
+        formalized = None if text in seen else _formalized(rule, draft.sentence)
+        seen.add(text)
+        if formalized is not None:
+            key = _unique(draft.key, found)
+            found[key] = Mutant(key, draft.words, formalized)
+    return tuple(found.values())
+
+
+def _unique(key: str, taken: Mapping[str, Mutant]) -> str:
+    number = 2
+    while f"{key}-{number}" in taken:
+        number += 1
+    return f"{key}-{number}" if key in taken else key
+
+
+def _formalized(rule: Formalized, sentence: s.Sentence) -> Formalized | None:
+    source = Source(rule.requirement.wording.source.name, printed(sentence))
+    formalized, _ = formalize(replace(rule.requirement, wording=source.span()), rule.declarations)
+    return formalized
+
+
+def _drafts(rule: Formalized) -> Iterator[_Draft]:
+    sentence = rule.written
+    yield from _scopes(sentence)
+    yield from _conditions(sentence)
+    yield from _timings(sentence)
+    yield from _bounds(rule)
+    found = [draft for part in _parts(sentence) for draft in _of_part(sentence, *part)]
+    order = [*OPERATORS]
+    yield from sorted(found, key=lambda draft: order.index(draft.key.partition(":")[0]))
+
+
+# The template -----------------------------------------------------------------------------------
+
+
+def _scopes(sentence: s.Sentence) -> Iterator[_Draft]:
+    own = sentence.scope
+    if own is None:
+        return
+    for kind in s.ScopeKind:
+        other = replace(own, kind=kind)
+        words = f"`{scope(other)}` in place of `{scope(own)}`"
+        yield _Draft(f"scope:{own.kind}->{kind}", words, replace(sentence, scope=other))
+    yield _Draft("scope:missing", f"without `{scope(own)}`", replace(sentence, scope=None))
+
+
+def _conditions(sentence: s.Sentence) -> Iterator[_Draft]:
+    own = sentence.condition
+    if own is None:
+        return
+    for kind in s.ConditionKind:
+        other = replace(own, kind=kind)
+        words = f"`{condition(other)}` in place of `{condition(own)}`"
+        yield _Draft(f"condition:{own.kind}->{kind}", words, replace(sentence, condition=other))
+    words = f"without `{condition(own)}`"
+    yield _Draft("condition:missing", words, replace(sentence, condition=None))
+
+
+def _timings(sentence: s.Sentence) -> Iterator[_Draft]:
+    own, stop = sentence.timing, s.stop(sentence.timing)
+    bound = s.duration(own) or _UNBOUND
+    others: list[s.Timing] = [s.Immediately(), s.Next(), s.Finally(), s.Eventually(), s.Always()]
+    others += [s.Never(), s.Within(bound), s.For(bound), s.After(bound)]
+    others += [] if stop is None else [s.Until(stop), s.Before(stop)]
+    for other in others:
+        if type(other) is not type(own):
+            words = f"`{timing(other)}` in place of {_named(own)}"
+            changed = replace(sentence, timing=other)
+            key = f"timing:{s.timing_key(sentence)}->{s.timing_key(changed)}"
+            yield _Draft(key, words, changed)
+
+
+def _named(own: s.Timing) -> str:
+    return f"`{timing(own)}`" if timing(own) else "no timing"
+
+
+def _bounds(rule: Formalized) -> Iterator[_Draft]:
+    own, ticks = s.duration(rule.written.timing), rule.ticks
+    if own is None or ticks is None:
+        return
+    others = {
+        "bound:+1": ticks + 1,
+        "bound:-1": ticks - 1,
+        "bound:half": ticks // 2,
+        "bound:double": 2 * ticks,
+        "bound:0": 0,
+    }
+    for key, number in others.items():
+        if number >= 0:
+            other = s.with_duration(rule.written.timing, in_unit(number, own.unit, rule.clock))
+            words = f"`{timing(other)}` in place of `{timing(rule.written.timing)}`"
+            yield _Draft(key, words, replace(rule.written, timing=other))
+
+
+# The expressions --------------------------------------------------------------------------------
+
+
+def _parts(sentence: s.Sentence) -> Iterator[tuple[str, e.Expression]]:
+    stop = s.stop(sentence.timing)
+    if sentence.scope is not None:
+        yield "mode", sentence.scope.mode
+    if sentence.condition is not None:
+        yield "condition", sentence.condition.expression
+    yield "response", sentence.response
+    if stop is not None:
+        yield "stop", stop
+
+
+def _of_part(sentence: s.Sentence, name: str, part: e.Expression) -> Iterator[_Draft]:
+    text = expression(part)
+
+    def draft(key: str, words: str, other: e.Expression) -> _Draft:
+        return _Draft(key, words, _with(sentence, name, other))
+
+    other = opposite(part)
+    yield draft(f"negated:{name}", f"`{expression(other)}` in place of `{text}`", other)
+    for value in (True, False):
+        stuck = e.Truth(value)
+        words = f"`{expression(stuck)}` in place of `{text}`"
+        yield draft(f"stuck:{name}-{expression(stuck)}", words, stuck)
+    for change in changes(part):
+        about = change.about.replace(" ", "")
+        yield draft(f"{change.operator}:{name}:{about}", change.words, change.whole)
+
+
+def _with(sentence: s.Sentence, name: str, part: e.Expression) -> s.Sentence:
+    """The sentence with another expression in one place."""
+    place = {id(each): part if key == name else each for key, each in _parts(sentence)}
+    return s.with_expressions(sentence, lambda each: place[id(each)])

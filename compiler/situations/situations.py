@@ -1,0 +1,310 @@
+"""The ways in which a run can meet a sentence: what tests should show, and recorded runs show.
+
+A list for each sentence, always in the order of `MEANINGS`. What makes no sense for a sentence is
+not in its list (no last tick without a bound); what makes sense and cannot happen is, for only a
+search can tell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import assert_never
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.obligation import TRAITS, Kind, Trait
+from compiler.logic import formula as f
+from compiler.situations.decisions import Operand, operands
+from compiler.situations.demands import of_demand
+from compiler.situations.facts import Facts, facts
+from compiler.situations.thresholds import Place, places
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.checking import LOOK_AHEAD, calls, conditions
+from fretish.clock import duration_text
+from fretish.printer import expression
+from fretish.reading.recursion import deep
+
+MEANINGS: Mapping[str, str] = {
+    "never-enforced": "the run never comes to the scope",
+    "never-triggered": "{trigger} triggers nothing in the whole run",
+    "triggered-at-start": "triggered at tick 0",
+    "triggered-later": "triggered after the first tick of the scope",
+    "triggered-while-open": "triggered again while a demand is open",
+    "triggered-again": "triggered again, with no demand open",
+    "condition-stays": "{trigger} is still true at the tick after a trigger",
+    "condition-across-entry": "{trigger} is true before the scope begins, and as it begins",
+    "condition-outside": "{trigger} is true outside of the scope",
+    "first-interval": "triggered in the first interval of the scope",
+    "second-interval": "triggered in a later interval of the scope",
+    "mode-again": "{mode} changes again, and no interval begins or ends by it",
+    "answered-at-once": "{answer} at the trigger",
+    "answered-too-early": "{answer} at the tick before {last}, and not at that",
+    "answered-later": "{answer} after the trigger, with time left",
+    "answered-at-last-tick": "{answer} at {last}",
+    "missed-at-once": "{none} at the trigger",
+    "missed-later": "{none} at a later tick",
+    "missed-by-one": "{none} at {last}",
+    "one-tick-late": "{none} at {last}, and {answer} one tick later",
+    "given-up-after": "{answer} up to {last}, and not one tick later",
+    "never-answered": "{none} up to {last}, nor at the tick after it",
+    "stopped-at-once": "{stop} at the trigger",
+    "stopped-later": "{stop} while a demand is open, and {answer}",
+    "stopped-unanswered": "{stop} while a demand is open, and {none}",
+    "scope-ends-open": "the scope ends while a demand is open",
+    "run-ends-open": "the run ends while a demand is open",
+    "run-ends-answered": "{answer} at the last tick of the run, in the scope",
+    "run-ends-missed": "{none} at the last tick of the run, in the scope",
+    "alone-true": "`{operand}` alone makes the {part} true",
+    "alone-false": "`{operand}` alone makes the {part} false",
+    "threshold-below": "`{measured}` one step below the threshold of `{operand}` ({number})",
+    "threshold-at": "`{measured}` at the threshold of `{operand}` ({number})",
+    "threshold-above": "`{measured}` one step above the threshold of `{operand}` ({number})",
+    "unknown": "`{operand}` is unknown where it decides the {part}",
+}
+"""What a run shows, by the key of the situation."""
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """A way in which a run can meet a sentence: what a test or a recorded run should show.
+
+    A run has come by it at the first tick at which all holds that it asks for.
+    """
+
+    key: str
+    """From `MEANINGS`, behind a colon what it is about; unique within a rule."""
+    words: str
+    """For people."""
+    formula: f.Formula
+    """Of the past, over the atoms of the sentence."""
+    at_end: bool = False
+    """Whether the last tick of a run alone counts."""
+    unknown: str | None = None
+    """An atom that must be unknown at that tick. The formula says that its value decides; where
+    parts of the sentence share the atom, it has to hold whatever the atom is there."""
+    place: Place | None = None
+    """Where a number must be at that tick, too: over signals as bindings have them, or over the
+    variables of the sentence, where none are bound."""
+
+
+@deep
+def situations(rule: Formalized) -> tuple[Situation, ...]:
+    """Those of a rule, in the order of `MEANINGS`.
+
+    None of a sentence with predicates that look ahead: no formula of the past says what they are.
+    """
+    if any(name in LOOK_AHEAD for each in conditions(rule.sentence) for name in calls(each)):
+        return ()
+    known, read = facts(rule), {*rule.propositions}
+    return tuple(
+        each
+        for each in (*_of_time(rule, known), *_of_operands(rule, known))
+        if each.formula != f.FALSE and read.issuperset(f.atoms(each.formula))
+    )
+
+
+def _of_time(rule: Formalized, known: Facts) -> Iterator[Situation]:
+    """Those that ask when something happens."""
+    passing = dict([*_of_scope(known), *_of_triggers(known), *of_demand(known)])
+    passing["scope-ends-open"] = _ends_open(known)
+    ending = dict(_of_the_end(known))
+    found, words = {**passing, **ending}, _words(rule, known)
+    for key, meaning in MEANINGS.items():
+        if key in found:
+            shown = meaning.format_map(words)
+            yield Situation(key, shown, found[key], at_end=key in ending)
+
+
+_Rows = Iterator[tuple[str, f.Formula]]
+
+
+def _of_scope(known: Facts) -> _Rows:
+    """How the interval comes, and comes again."""
+    inside, triggered = known.inside, known.triggered
+    scope, mode = known.whole.scope, known.whole.mode
+    match scope:
+        case None:
+            return
+        case s.ScopeKind.IN | s.ScopeKind.NOT_IN | s.ScopeKind.ONLY_IN:
+            ended_before = f.once(known.ended)
+            yield "first-interval", f.and_(triggered, f.not_(ended_before))
+            yield "second-interval", f.and_(triggered, ended_before)
+        case s.ScopeKind.BEFORE:
+            yield "mode-again", f.and_(f.previous(f.once(mode)), f.not_(mode))
+        case s.ScopeKind.AFTER:
+            yield "mode-again", f.and_(inside, mode)
+        case s.ScopeKind.ONLY_BEFORE:
+            yield "mode-again", f.and_(inside, f.not_(mode))
+        case s.ScopeKind.ONLY_AFTER:
+            yield "mode-again", f.and_(f.not_(inside), mode)
+        case _:
+            assert_never(scope)
+    if known.whole.condition is not None:
+        p = known.whole.trigger
+        yield "condition-outside", f.and_(p, f.not_(inside))
+        if not _begins_with_run(scope):
+            yield "condition-across-entry", f.and_(known.stage.left, p, f.previous(p))
+
+
+def _begins_with_run(scope: s.ScopeKind) -> bool:
+    """Whether its one interval begins at tick 0, or never."""
+    match scope:
+        case s.ScopeKind.BEFORE | s.ScopeKind.ONLY_AFTER:
+            return True
+        case s.ScopeKind.IN | s.ScopeKind.NOT_IN | s.ScopeKind.ONLY_IN:
+            return False
+        case s.ScopeKind.AFTER | s.ScopeKind.ONLY_BEFORE:
+            return False
+        case _:
+            assert_never(scope)
+
+
+def _of_triggers(known: Facts) -> _Rows:
+    """When a demand begins, and again."""
+    triggered = known.triggered
+    scope, each = known.whole.scope, known.whole.condition is None
+    if not (each and (scope is None or _begins_with_run(scope))):  # else each first one does
+        yield "triggered-at-start", f.and_(f.FIRST, triggered)
+    if each:
+        return
+    p = known.whole.trigger
+    yield "triggered-later", f.and_(triggered, f.not_(known.stage.left))
+    yield "triggered-while-open", f.and_(triggered, known.was_open)
+    yield "condition-stays", f.and_(known.inside, p, f.previous(triggered))
+    if not _lasts(known.demand.kind):
+        before = f.previous(f.once(triggered))
+        yield "triggered-again", f.and_(triggered, before, f.not_(known.was_open))
+
+
+def _lasts(kind: Kind) -> bool:
+    """Whether a demand is open as long as its interval, whatever is answered."""
+    match kind:
+        case Kind.FINALLY | Kind.ALWAYS:
+            return True
+        case Kind.IMMEDIATELY | Kind.NEXT | Kind.EVENTUALLY | Kind.WITHIN | Kind.FOR:
+            return False
+        case Kind.AFTER | Kind.NOT_AFTER | Kind.UNTIL | Kind.BEFORE:
+            return False
+        case _:
+            assert_never(kind)
+
+
+def _ends_open(known: Facts) -> f.Formula:
+    """The interval is over, and a demand was open that its end decides or voids."""
+    if Trait.LAST in TRAITS[known.demand.kind]:
+        return f.FALSE  # it says already which last ticks there are
+    return f.and_(known.ended, f.previous(known.open))
+
+
+def _of_the_end(known: Facts) -> _Rows:
+    """What the last tick of the whole run tells."""
+    if known.stage.left != f.FIRST:  # else the first tick lies in it
+        yield "never-enforced", f.not_(f.once(known.inside))
+    if known.whole.condition is not None:
+        silent = f.not_(f.once(known.triggered))
+        yield "never-triggered", f.and_(f.once(known.inside), silent)
+    if Trait.LAST in TRAITS[known.demand.kind]:
+        yield "run-ends-answered", f.and_(known.waiting, known.answer)
+        yield "run-ends-missed", f.and_(known.waiting, f.not_(known.answer))
+    elif not _lasts(known.demand.kind):
+        yield "run-ends-open", known.open
+
+
+# What decides -----------------------------------------------------------------------------------
+
+
+def _of_operands(rule: Formalized, known: Facts) -> Iterator[Situation]:
+    """Those of single operands, by their keys in the order of `MEANINGS`."""
+    found = [each for operand in operands(rule, known) for each in _of_operand(rule, operand)]
+    order = [*MEANINGS]
+    yield from sorted(found, key=lambda each: order.index(each.key.partition(":")[0]))
+
+
+def _of_operand(rule: Formalized, operand: Operand) -> Iterator[Situation]:
+    declared = rule.declarations.propositions if rule.declarations else {}
+    bound = declared.get(operand.atom or "")
+    stated = operand.expression if bound is None else bound.expression
+    shown = stated if isinstance(operand.expression, e.Comparison) else operand.expression
+    about = f"{operand.part.partition(' ')[0]}:{_short(shown)}"
+    texts = {"operand": expression(shown), "part": operand.part}
+
+    def situation(
+        key: str, formula: f.Formula, place: Place | None = None, unknown: str | None = None
+    ) -> Situation:
+        numbers = {} if place is None else _numbers(place)
+        words = MEANINGS[key].format(**texts, **numbers)
+        return Situation(f"{key}:{about}", words, formula, unknown=unknown, place=place)
+
+    if operand.decides == f.FALSE:
+        return
+    if not operand.alone:
+        yield situation("alone-true", f.and_(operand.decides, operand.whole))
+        yield situation("alone-false", f.and_(operand.decides, f.not_(operand.whole)))
+    for comparison, key, place in _places(stated):
+        found = situation(key, operand.decides, place)
+        several = "" if comparison == shown else f":{_short(comparison)}"
+        yield replace(found, key=f"{found.key}{several}")
+    if operand.atom is not None:
+        yield situation("unknown", operand.decides, unknown=operand.atom)
+
+
+def _numbers(place: Place) -> Mapping[str, str]:
+    return {"measured": expression(place.measured), "number": expression(place.number)}
+
+
+def _places(stated: e.Expression) -> Iterator[tuple[e.Comparison, str, Place]]:
+    """Those of each comparison in an operand, or in the proposition that it is."""
+    for part in dict.fromkeys(e.parts(stated)):
+        if isinstance(part, e.Comparison):
+            yield from ((part, f"threshold-{key}", place) for key, place in places(part))
+
+
+def _short(part: e.Expression) -> str:
+    return expression(part).replace(" ", "")
+
+
+# Words ------------------------------------------------------------------------------------------
+
+
+def _words(rule: Formalized, known: Facts) -> Mapping[str, str]:
+    """What stands in `MEANINGS` for the parts of a sentence."""
+    sentence = rule.written
+    stop, response = s.stop(sentence.timing), expression(sentence.response)
+    texts = {
+        "mode": expression(sentence.scope.mode) if sentence.scope else "",
+        "trigger": expression(sentence.condition.expression) if sentence.condition else "",
+        "stop": "" if stop is None else expression(stop),
+    }
+    given = (f"`{response}`", f"no `{response}`")
+    answer, none = reversed(given) if _is_negative(sentence, known.demand.kind) else given
+    quoted = {name: f"`{text}`" for name, text in texts.items()}
+    return {**quoted, "answer": answer, "none": none, "last": _last(sentence, known.demand.kind)}
+
+
+def _is_negative(sentence: s.Sentence, kind: Kind) -> bool:
+    """Whether the response is demanded to be false."""
+    never = s.SHAPES[type(sentence.timing)].quantifier is s.Quantifier.NONE
+    negates = sentence.scope is not None and sentence.scope.kind.negates
+    return never is not (negates and Trait.OPPOSITES not in TRAITS[kind])
+
+
+def _last(sentence: s.Sentence, kind: Kind) -> str:
+    """The last tick that a demand is about."""
+    bound = s.duration(sentence.timing)
+    span = "" if bound is None else duration_text(bound)
+    match kind:
+        case Kind.IMMEDIATELY:
+            return "the trigger"
+        case Kind.NEXT:
+            return "the tick after the trigger"
+        case Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
+            return "the last tick of the scope"
+        case Kind.WITHIN | Kind.FOR | Kind.NOT_AFTER:
+            return f"the last tick that counts ({span} after the trigger)"
+        case Kind.AFTER:
+            return f"the one tick that counts ({span} after the trigger, and one more)"
+        case Kind.UNTIL | Kind.BEFORE:
+            return "the last tick before the stop"
+        case _:
+            assert_never(kind)

@@ -1,0 +1,1 @@
+"""JavaScript: a monitor as an ES module."""

@@ -1,0 +1,194 @@
+"""`--emit js`: a monitor as an ES module that needs nothing else.
+
+Both rails are stepped at every tick, and an outcome has the verdict, what it rests on, and what
+each rail says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import ceil, floor, inf
+from pathlib import PurePosixPath
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.logic.identifiers import legal_names
+from compiler.program.lowering import program
+from compiler.targets.javascript.printer import Printer
+from compiler.targets.python.comparisons import TRUTH, Front, Spelling, Writer, front
+from compiler.targets.python.monitor import described, module, refusal, remark
+from compiler.targets.target import DEFAULT, Options, Target, stem
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.reading.recursion import deep
+from monitors.kernel.readings import Constant, Single, exact
+
+_NAMES = ("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "step", "truths", "judge")
+"""What a module exports."""
+
+
+def refuse(rule: Formalized) -> Diagnostic | None:
+    """F312 and F601, as the monitor in Python."""
+    return refusal(rule, "JavaScript")
+
+
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`<id>_monitor.mjs` for each rule, or one file."""
+    if options.one_file:
+        return (Artifact(PurePosixPath("monitors.mjs"), text(*rules)),)
+    return tuple(
+        Artifact(PurePosixPath(f"{module(stem(rule))}_monitor.mjs"), text(rule)) for rule in rules
+    )
+
+
+def text(*rules: Formalized) -> str:
+    """The module of one monitor for all of the rules.
+
+    Args:
+        rules: at least one, each with an id of its own, and all on one clock.
+    """
+    found = body(*rules)
+    return render(
+        "js/monitor.mjs.j2",
+        title=", ".join(rule.id for rule in rules),
+        version=__version__,
+        rules=[described(rule) for rule in rules],
+        tick=str(rules[0].clock) if rules[0].clock else "not declared",
+        body=found.text,
+        exports=found.exports,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """The code of a monitor, without what makes a module of it."""
+
+    text: str
+    exports: tuple[str, ...]
+    front: Front | None
+    """None: its variables are its propositions."""
+    propositions: tuple[str, ...]
+
+
+@deep
+def body(*rules: Formalized) -> Body:
+    """The code of one monitor for all of the rules; they are as those of `text`."""
+    propositions = tuple(dict.fromkeys(name for rule in rules for name in rule.watched))
+    compared = front(rules, propositions)
+    inputs = compared.inputs if compared else {}
+    names = legal_names((*propositions, *inputs), ())
+    made = program({rule.id: rule.watch for rule in rules})
+    printer = Printer.of(made, names)
+    lines = _Front.of(compared, propositions, names) if compared else None
+    written = render(
+        "js/body.js.j2",
+        rules=[described(rule) for rule in rules],
+        propositions=propositions,
+        variables=[
+            {"name": name, "variable": f"v_{names[name]}", "kind": each.kind, "words": each.words}
+            for name, each in inputs.items()
+        ]
+        or [{"name": name, "kind": TRUTH, "words": ()} for name in propositions],
+        cells=[
+            {"name": c.name, "comment": c.comment, "initial": printer.initial(c)}
+            for c in made.cells
+        ],
+        literals=[(n, propositions.index(p), positive) for n, p, positive in printer.literals()],
+        blocks=[
+            {"comment": block.comment, "lines": [*printer.lines(block)]}
+            for block in made.blocks
+            if block.instructions
+        ],
+        requirements=[
+            {"id": each.id, "signals": printer.signals(each), "renewed": each.renewed}
+            for each in made.requirements
+        ],
+        front=lines,
+        kernel=render("js/kernel.js.j2"),
+        readings=render("js/readings.js.j2"),
+    )
+    return Body(written, (*_NAMES, *(["float32"] if lines else [])), compared, propositions)
+
+
+@dataclass(frozen=True, slots=True)
+class _Front:
+    """The text that makes truth values of variables."""
+
+    constants: tuple[str, ...]
+    row: tuple[tuple[str, str], ...]
+    """Each proposition, and the text of its truth."""
+    earlier: tuple[tuple[str, str, str], ...]
+    """What is looked back at: the name of its value, what it was at first, and its present one."""
+
+    @classmethod
+    def of(cls, compared: Front, propositions: Sequence[str], names: Mapping[str, str]) -> _Front:
+        """By the names of its variables and propositions."""
+        constants = Constants()
+        variables = {name: f"v_{names[name]}" for name in compared.inputs}
+        writer = Writer(variables, constants.spelling)
+        texts = {name: writer.comparison(each) for name, each in compared.comparisons.items()}
+        row = tuple((name, texts.get(name) or variables[name]) for name in propositions)
+        earlier = tuple((name, *both) for both, name in writer.earlier.items())
+        return cls(constants.lines(), row, earlier)
+
+
+@dataclass(frozen=True, slots=True)
+class Constants:
+    """The numbers of sentences, each under a name."""
+
+    names: dict[Fraction, str] = field(default_factory=dict)
+
+    @property
+    def spelling(self) -> Spelling:
+        """How JavaScript writes constants; the numbers among them get names here."""
+        return Spelling(self._name, _scale, _truth)
+
+    def _name(self, value: Fraction) -> str:
+        return self.names.setdefault(value, f"number_{len(self.names) + 1}")
+
+    def lines(self) -> tuple[str, ...]:
+        """What says which numbers the names are."""
+        return tuple(f"const {name} = {_constant(value)};" for value, name in self.names.items())
+
+
+_WHOLE = 2**52
+"""From here on 64-bit floats hold whole numbers only."""
+
+
+def _constant(value: Fraction) -> str:
+    number: Constant = exact(str(value))
+    single = _float(number.single)
+    if isinstance(number.single, Single):
+        single = f"float32({single})"
+    parts = [_float(number.double), single]
+    if abs(value) >= _WHOLE:
+        parts += [f"{floor(value)}n", f"{ceil(value)}n"]
+    return f"constant({', '.join(parts)})"
+
+
+def _float(value: float) -> str:
+    if value in (inf, -inf):
+        return "Infinity" if value > 0 else "-Infinity"
+    return repr(float(value))
+
+
+def _scale(value: Fraction) -> str:
+    top, bottom = (_float(exact(str(part)).double) for part in value.as_integer_ratio())
+    return f"[{top}, {bottom}]"
+
+
+def _truth(value: bool | None) -> str:
+    return "null" if value is None else str(value).lower()
+
+
+TARGET = Target(
+    "js",
+    "a standalone runtime monitor in JavaScript",
+    emit,
+    refuse,
+    remark,
+    joins=True,
+)

@@ -1,0 +1,136 @@
+"""The program of a monitor as JavaScript: one function that takes a rail a tick further.
+
+Cells are properties of `rail`. A proposition `p` is `is_p`, its negation `not_p`; no other name
+begins so, and none of these is a keyword.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple, assert_never
+
+from compiler.program.instructions import (
+    Advance,
+    Assign,
+    Choose,
+    Count,
+    Instruction,
+    Shift,
+    Slide,
+)
+from compiler.program.program import Block, Cell, Counter, Flag, Program, Requirement, Window
+from compiler.program.values import Age, And, Constant, Literal, Not, Or, Value, Variable
+
+_OR, _AND, _COMPARED, _ATOMIC = range(4)
+"""How tight operators bind."""
+
+
+class _Text(NamedTuple):
+    text: str
+    rank: int = _ATOMIC
+
+    def at_least(self, loosest: int) -> str:
+        """In parentheses where the operator around it binds tighter."""
+        return self.text if self.rank >= loosest else f"({self.text})"
+
+
+@dataclass(frozen=True, slots=True)
+class Printer:
+    """JavaScript's words for what a program has."""
+
+    program: Program
+    names: Mapping[str, str]
+    """An identifier for each proposition."""
+    cells: Mapping[str, Cell]
+    """Of the program, by their names."""
+
+    @classmethod
+    def of(cls, program: Program, names: Mapping[str, str]) -> Printer:
+        """Of a program, with an identifier for each proposition."""
+        return cls(program, names, {cell.name: cell for cell in program.cells})
+
+    def literals(self) -> Iterator[tuple[str, str, bool]]:
+        """The name of each literal, its proposition, and its sign."""
+        for literal in self.program.literals:
+            yield self._literal(literal), literal.proposition, literal.positive
+
+    def initial(self, cell: Cell) -> str:
+        """The value of a cell before the first tick."""
+        match cell:
+            case Flag():
+                return str(cell.initial).lower()
+            case Counter():
+                return str(cell.initial)
+            case Window():
+                return "{ runs: [], first: 0 }"
+            case _:
+                assert_never(cell)
+
+    def signals(self, requirement: Requirement) -> dict[str, str]:
+        """The signals of a requirement."""
+        return {
+            name: self._value(each).text for name, each in requirement.signals._asdict().items()
+        }
+
+    def lines(self, block: Block) -> Iterator[str]:
+        """The statements of a block at one tick."""
+        for each in block.instructions:
+            yield from self._statement(each)
+
+    def _statement(self, instruction: Instruction) -> Iterator[str]:
+        match instruction:
+            case Assign(name, value):
+                yield self._assigned(name, self._value(value).text)
+            case Shift(name, cell, value):
+                yield self._assigned(name, f"rail.{cell}")
+                yield f"rail.{cell} = {self._value(value).text};"
+            case Count(counter, number):
+                yield f"rail.{counter} = {number};"
+            case Advance(counter, most):
+                yield f"rail.{counter} = rail.{counter} < {most} ? rail.{counter} + 1 : {most};"
+            case Slide(name, window, guard, witness, negated):
+                sides = f"{self._value(guard).text}, {self._value(witness).text}"
+                kept = self.cells[window]
+                assert isinstance(kept, Window)
+                held = f"slide(rail.{window}, tick, {kept.lo}, {kept.hi}, {sides})"
+                yield self._assigned(name, f"{'!' if negated else ''}{held}")
+            case Choose(branches, otherwise):
+                for condition, then in branches:
+                    (inner,) = self._statement(then)
+                    yield f"if ({self._value(condition).text}) {inner}"
+                    yield "else"
+                (last,) = self._statement(otherwise)
+                yield last
+            case _:
+                assert_never(instruction)
+
+    def _assigned(self, name: str, value: str) -> str:
+        place = self._place(name)
+        return f"{place} = {value};" if place != name else f"const {name} = {value};"
+
+    def _place(self, name: str) -> str:
+        return f"rail.{name}" if name in self.cells else name
+
+    def _literal(self, literal: Literal) -> str:
+        return f"{'is' if literal.positive else 'not'}_{self.names[literal.proposition]}"
+
+    def _value(self, value: Value) -> _Text:
+        match value:
+            case Constant(truth):
+                return _Text(str(truth).lower())
+            case Literal():
+                return _Text(self._literal(value))
+            case Variable(name):
+                return _Text(self._place(name))
+            case Age(counter, comparison, number):
+                return _Text(f"rail.{counter} {comparison.value} {number}", _COMPARED)
+            case Not(negated):
+                return _Text(f"!{self._value(negated).at_least(_ATOMIC)}")
+            case And(values):
+                texts = (self._value(each).at_least(_AND) for each in values)
+                return _Text(" && ".join(texts), _AND)
+            case Or(values):
+                return _Text(" || ".join(self._value(each).text for each in values), _OR)
+            case _:
+                assert_never(value)

@@ -1,0 +1,142 @@
+"""`fretc test`: few short runs that show whether a requirement is right, each with its verdict.
+
+`fretc.testing` makes them; this module reads the options, prints and writes.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.options import (
+    PATH,
+    format_option,
+    output_option,
+    path_option,
+    requirements_option,
+)
+from fretc.terminal.output import (
+    BAD,
+    INTERRUPTED,
+    NOT_SHOWN,
+    SHOWN,
+    coloured,
+    deliver,
+    say_briefly,
+    stop,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from compiler.formalization.formalized import Formalized
+    from fretc.analysis.text_output import Line
+    from fretc.testing.suite import Suite
+
+
+@click.command(short_help="Make tests from requirements.")
+@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
+@click.option(
+    "--component", metavar="NAME", help="Only the requirements of this component of the sentences."
+)
+@click.option("--show", metavar="ID", help="Print the tests of this requirement, tick by tick.")
+@click.option(
+    "--time",
+    "seconds",
+    type=click.FloatRange(min=0, min_open=True),
+    default=20,
+    show_default=True,
+    help="Seconds of a processor for each requirement.",
+)
+@requirements_option
+@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@format_option()
+@output_option(
+    default="build/tests/suite.json", show_default=True, help="Where the suite goes; `-` prints it."
+)
+def test(
+    files: tuple[str, ...],
+    component: str | None,
+    show: str | None,
+    seconds: float,
+    requirements: str,
+    bindings: str | None,
+    form: str,
+    output: str,
+) -> None:
+    """Make tests from requirements: few short runs, each with the verdict that it is to get.
+
+    FILE holds requirements, or is a folder of such files: in place of `--requirements`. Each
+    situation of a sentence is met by a shortest run that keeps it and by one that breaks it, and
+    each sentence that might have been meant in its place is told from it by some run. The other
+    requirements are kept by all of them.
+
+    Exit status: 0 all is met or proved impossible, 2 bad use or input, 3 not all was searched.
+    """
+    from compiler.files.records import plain
+    from compiler.files.templating import to_json
+    from compiler.project.paths import companions
+    from fretc.analysis.assumptions import assumptions
+    from fretc.commands.analyze import in_force, project_of
+
+    project, first = project_of(files, requirements, bindings)
+    rules = in_force(project, component)
+    if show is not None:
+        _check_shown(show, [rule.id for rule in rules])
+    assumed, remarks = assumptions(rules, project.declarations)
+    say_briefly(remarks, first)
+    if has_errors(remarks):
+        raise SystemExit(BAD)
+    suite, stopped = _made(rules, assumed, seconds)
+    text = f"{to_json(plain(suite))}\n"
+    if output == "-" or form == "json":
+        click.echo(text, nl=False)
+    else:
+        click.echo(coloured([*_lines(suite, rules, show)]), nl=False)
+    if output != "-":
+        sources = [requirement.wording.source.name for requirement in project.requirements]
+        deliver({Path(output): text}, [*sources, *companions(sources), *filter(None, [bindings])])
+    if stopped:
+        raise SystemExit(INTERRUPTED)
+    raise SystemExit(SHOWN if suite.is_complete else NOT_SHOWN)
+
+
+def _check_shown(id: str, known: Sequence[str]) -> None:
+    if id not in known:
+        near = suggestion(id, known)
+        hint = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
+        stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
+
+
+def _made(
+    rules: Sequence[Formalized], assumed: Sequence[Formalized], seconds: float
+) -> tuple[Suite, bool]:
+    """The suite, and whether Ctrl-C has stopped it."""
+    from fretc.analysis.worker import Stopped, findings
+    from fretc.terminal.progress import at_work
+    from fretc.testing.assembly import jobs, suite
+
+    found = []
+    stopped = False
+    try:
+        for each in findings(jobs(rules, assumed, seconds), at_work):
+            found.append(each)
+    except Stopped:
+        stopped = True
+    return suite(rules, assumed, found), stopped
+
+
+def _lines(suite: Suite, rules: Sequence[Formalized], show: str | None) -> Iterator[Line]:
+    from fretc.testing.bench import demands
+    from fretc.testing.text_output import lines, shown
+    from fretish.bindings.declarations import Role
+
+    if show is None:
+        yield from lines(suite)
+        return
+    rule = next(each for each in rules if each.id == show)
+    roles = {name: Role(own) for name, own in suite.roles.items()}
+    yield from shown(suite, show, [*rule.variables, *demands(rule).atoms], roles)

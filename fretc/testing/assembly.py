@@ -1,0 +1,82 @@
+"""The suite of a project: one job for each requirement, and all of their tests in one value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
+
+from compiler.files.edition import __version__
+from compiler.files.records import replace
+from compiler.formalization.formalized import Formalized
+from fretc.analysis.arena.roles import role
+from fretc.analysis.components import about, by_variables
+from fretc.analysis.games.job import Job
+from fretc.testing.generation import Batch, batch, lost
+from fretc.testing.suite import SCHEMA, Suite, unused
+from fretish.bindings.declarations import Role
+
+
+def jobs(
+    rules: Sequence[Formalized], assumptions: Sequence[Formalized], seconds: float
+) -> tuple[Job[Batch], ...]:
+    """The tests of each requirement, in the order of the files.
+
+    Args:
+        rules: the requirements.
+        assumptions: what the environment keeps.
+        seconds: of a processor, for each of them.
+    """
+    roles = {name: Role.OUTPUT for rule in (*rules, *assumptions) for name in rule.variables}
+    others: dict[str, list[Formalized]] = {}
+    for group in by_variables(rules, assumptions, roles):
+        near = about(group, assumptions, roles)
+        for rule in group:
+            others[rule.id] = [*(each for each in group if each is not rule), *near]
+    return tuple(_job(rule, others[rule.id], seconds) for rule in rules)
+
+
+def _job(rule: Formalized, others: Sequence[Formalized], seconds: float) -> Job[Batch]:
+    def ask(known: Sequence[Batch]) -> Iterator[Batch]:
+        yield batch(rule, others, seconds)
+
+    return Job(f"which runs show that {rule.id} is right?", ask, partial(lost, rule))
+
+
+def suite(
+    rules: Sequence[Formalized], assumptions: Sequence[Formalized], found: Iterable[Batch]
+) -> Suite:
+    """All tests as one value; their names become unique."""
+    made = tuple(_renamed(found))
+    names = dict.fromkeys(name for rule in (*rules, *assumptions) for name in rule.variables)
+    roles = {
+        name: str(own)
+        for name in sorted(names)
+        for own in [next(filter(None, (role(rule, name) for rule in rules)), None)]
+        if own is not None
+    }
+    clock = next((rule.clock for rule in rules if rule.clock is not None), None)
+    return Suite(
+        schema=SCHEMA,
+        fretc=__version__,
+        clock=str(clock) if clock is not None and clock.declared else "",
+        requirements=tuple(each.tested for each in made),
+        roles=roles,
+        tests=tuple(test for each in made for test in each.tests),
+        obligations=tuple(one for each in made for one in each.obligations),
+        mutants=tuple(one for each in made for one in each.mutants),
+    )
+
+
+def _renamed(found: Iterable[Batch]) -> Iterator[Batch]:
+    """The same with a number behind each name that is there already."""
+    seen: set[str] = set()
+    for each in found:
+        names: dict[str, str] = {}
+        for test in each.tests:
+            names[test.name] = unused(test.name, seen)
+        yield Batch(
+            each.tested,
+            tuple(replace(test, name=names[test.name]) for test in each.tests),
+            tuple(replace(o, tests=tuple(names[n] for n in o.tests)) for o in each.obligations),
+            tuple(replace(m, tests=tuple(names[n] for n in m.tests)) for m in each.mutants),
+        )

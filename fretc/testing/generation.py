@@ -1,0 +1,257 @@
+"""The tests of one requirement: each situation met by a shortest run, each mutant told apart."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from compiler.formalization.formalized import Formalized
+from compiler.situations.mutants import Mutant, mutants
+from compiler.situations.situations import Situation, situations
+from compiler.targets.python import monitor as emitted
+from fretc.analysis.arena.alphabet import BeyondError
+from fretc.testing.bench import Ids
+from fretc.testing.cover import cover
+from fretc.testing.runs import Absence, Answer, Need, Run, Runs
+from fretc.testing.suite import Fate, Met, Mutated, Obligation, Polarity, Test, Tested, unused
+from fretc.testing.words import Expected, expected, undecided
+from fretish.printer import sentence as printed
+from fretish.reading.recursion import deep
+from monitors.loading import load
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """What was made of one requirement."""
+
+    tested: Tested
+    tests: tuple[Test, ...]
+    obligations: tuple[Obligation, ...]
+    mutants: tuple[Mutated, ...]
+
+
+@deep
+def batch(rule: Formalized, others: Sequence[Formalized], seconds: float) -> Batch:
+    """The tests of a requirement.
+
+    Args:
+        rule: the requirement.
+        others: requirements and assumptions whose variables hang together with its own; its tests
+            keep them.
+        seconds: of a processor.
+    """
+    try:
+        return _Generation(Runs(rule, others, seconds)).batch()
+    except BeyondError as error:
+        return lost(rule, str(error))
+
+
+def lost(rule: Formalized, why: str) -> Batch:
+    """What stands there where nothing could be searched, for a reason."""
+    return Batch(
+        _tested(rule, (), ""),
+        (),
+        tuple(
+            _obligation(rule, each, polarity, Met.NOT_SEARCHED, why=why)
+            for each in situations(rule)
+            for polarity in _polarities(each)
+        ),
+        tuple(_mutated(rule, each, Fate.NOT_SEARCHED, why=why) for each in mutants(rule)),
+    )
+
+
+def _tested(rule: Formalized, kept: Ids, doubt: str) -> Tested:
+    return Tested(rule.id, printed(rule.written), rule.fingerprint, kept, doubt)
+
+
+def _obligation(
+    rule: Formalized,
+    situation: Situation,
+    polarity: Polarity,
+    outcome: Met,
+    *,
+    tests: Ids = (),
+    by: Ids = (),
+    why: str = "",
+) -> Obligation:
+    return Obligation(rule.id, situation.key, situation.words, polarity, outcome, tests, by, why)
+
+
+def _mutated(
+    rule: Formalized,
+    mutant: Mutant,
+    outcome: Fate,
+    *,
+    tests: Ids = (),
+    by: Ids = (),
+    why: str = "",
+) -> Mutated:
+    return Mutated(
+        rule.id, mutant.key, mutant.words, printed(mutant.rule.written), outcome, tests, by, why
+    )
+
+
+def _polarities(situation: Situation) -> tuple[Polarity, ...]:
+    """How a situation is to be shown."""
+    if situation.unknown is not None:
+        return (Polarity.UNKNOWN,)
+    return Polarity.KEPT, Polarity.BROKEN
+
+
+# Choices ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Purpose:
+    """What a run was chosen for."""
+
+    key: str
+    words: str
+
+
+class _Generation:
+    """What is made of the runs of one requirement."""
+
+    def __init__(self, runs: Runs) -> None:
+        self._runs, self._rule = runs, runs.rule
+        self._situations, self._wrong = runs.situations, runs.mutants
+        self._monitor = load(f"{self._rule.id}.py", emitted.text(self._rule))
+
+    def batch(self) -> Batch:
+        """All of it."""
+        met = {
+            (each.key, polarity): self._runs.meeting(each, polarity)
+            for each in self._situations
+            for polarity in _polarities(each)
+        }
+        runs = self._meeting_all(met)
+        told = self._telling(runs)
+        runs |= self._telling_apart(told, runs)
+        names: set[str] = set()
+        made = {run: self._test(run, purpose, names) for run, purpose in runs.items()}
+        return Batch(
+            _tested(self._rule, self._runs.bench.others, self._runs.bench.doubt),
+            tuple(made.values()),
+            tuple(self._obligations(met, made)),
+            tuple(self._mutants(told, made)),
+        )
+
+    # Choices
+
+    def _meeting_all(self, met: Mapping[Need, Answer]) -> dict[Run, _Purpose]:
+        """Runs as short as those that were found, one for several needs; and what each is for."""
+        found = {need: run for need, run in met.items() if isinstance(run, Run)}
+        shown = {
+            run: [need for need, shortest in found.items() if _serves(run, need, shortest)]
+            for run in found.values()
+        }
+        chosen = cover(shown, {run: run.rank for run in shown})
+        common = Counter(need for needs in shown.values() for need in needs)
+        special = {min(needs, key=common.__getitem__): run for run, needs in chosen.items()}
+        return {special[need]: self._purpose(*need) for need in met if need in special}
+
+    def _purpose(self, key: str, polarity: Polarity) -> _Purpose:
+        words = next(each.words for each in self._situations if each.key == key)
+        if polarity is Polarity.UNKNOWN:
+            return _Purpose(key, words)
+        return _Purpose(f"{key}-{polarity}", f"{words}; {self._rule.id} is {polarity}")
+
+    def _telling_apart(
+        self, told: Mapping[str, Answer], runs: Collection[Run]
+    ) -> dict[Run, _Purpose]:
+        """Runs for the mutants that those do not kill."""
+        alive = {each.key for each in self._wrong}.difference(*(run.kills for run in runs))
+        shown = {
+            run: [each.key for each in self._wrong if each.key in run.kills & alive]
+            for run in told.values()
+            if isinstance(run, Run)
+        }
+        chosen = cover(shown, {run: run.rank for run in shown})
+        words = {each.key: each.words for each in self._wrong}
+        return {
+            run: _Purpose(f"unlike-{key}", f"{self._rule.id} and not the same with {words[key]}")
+            for run, (key, *_) in chosen.items()
+        }
+
+    # Records
+
+    def _test(self, run: Run, purpose: _Purpose, names: set[str]) -> Test:
+        name = re.sub("[^a-z0-9]+", "-", f"{self._rule.id} {purpose.key}".lower()).strip("-")
+        says = self._expected(run)
+        return Test(
+            name=unused(name, names),
+            requirement=self._rule.id,
+            words=purpose.words,
+            rows=run.word.rows,
+            polarity=run.polarity,
+            verdict=says.verdict,
+            finite=says.finite,
+            decided=says.decided,
+            first_violation=says.first_violation,
+            because=says.because,
+            situations=tuple(each.key for each in self._situations if each.key in run.situations),
+            kills=tuple(each.key for each in self._wrong if each.key in run.kills),
+        )
+
+    def _expected(self, run: Run) -> Expected:
+        rule, monitor = self._rule, self._monitor
+        if run.polarity is Polarity.UNKNOWN:
+            atom = next(each.unknown for each in self._situations if each.key in run.situations)
+            assert atom is not None
+            return undecided(rule, monitor, run.word, atom)
+        found = expected(rule, monitor, run.word)
+        assert found.finite is (run.polarity is Polarity.KEPT)
+        return found
+
+    def _obligations(
+        self, met: Mapping[Need, Answer], made: Mapping[Run, Test]
+    ) -> Iterator[Obligation]:
+        for each in self._situations:
+            for polarity in _polarities(each):
+                found = met[each.key, polarity]
+                if isinstance(found, Run):
+                    runs = [run for run in made if run.polarity is polarity]
+                    tests = _names(made, [run for run in runs if each.key in run.situations])
+                    yield _obligation(self._rule, each, polarity, Met.MET, tests=tests)
+                else:
+                    outcome = found.outcome(Met.IMPOSSIBLE, Met.EXCLUDED, Met.NOT_SEARCHED)
+                    yield _obligation(
+                        self._rule, each, polarity, outcome, by=found.by, why=found.why
+                    )
+
+    def _mutants(self, told: Mapping[str, Answer], made: Mapping[Run, Test]) -> Iterator[Mutated]:
+        for each in self._wrong:
+            found = told.get(each.key)
+            if isinstance(found, Absence):
+                outcome = found.outcome(Fate.EQUIVALENT, Fate.EXCLUDED, Fate.NOT_SEARCHED)
+                yield _mutated(self._rule, each, outcome, by=found.by, why=found.why)
+            else:
+                tests = _names(made, [run for run in made if each.key in run.kills])
+                assert tests
+                yield _mutated(self._rule, each, Fate.KILLED, tests=tests)
+
+    def _telling(self, chosen: Iterable[Run]) -> dict[str, Answer]:
+        """Of each mutant that no chosen run kills: a shortest run that does, one for several."""
+        found: dict[str, Answer] = {}
+        runs = list(chosen)
+        for each in self._wrong:
+            if not any(each.key in run.kills for run in runs):
+                answer = found[each.key] = self._runs.telling(each)
+                if isinstance(answer, Run):
+                    runs.append(answer)
+        return found
+
+
+def _serves(run: Run, need: Need, shortest: Run) -> bool:
+    """Whether a run meets a need as well as the one that was found for it."""
+    key, polarity = need
+    met = run.early if key in shortest.early else run.situations
+    same = run.polarity is polarity and run.word.ticks == shortest.word.ticks
+    return same and key in met
+
+
+def _names(made: Mapping[Run, Test], runs: Iterable[Run]) -> Ids:
+    """Of the tests of some runs, the shortest first."""
+    return tuple(made[run].name for run in sorted(runs, key=lambda run: run.rank))

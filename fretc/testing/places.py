@@ -1,0 +1,100 @@
+"""Numbers at thresholds as atoms of letters: a situation asks for one at the tick that it is about.
+
+Such an atom belongs to a sentence that only carries it, formalized as any other: so names, units
+and signals are read as in requirements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.obligation import Uninterpreted, boolean
+from compiler.logic import formula as f
+from compiler.situations.situations import Situation
+from fretc.analysis.arena.alphabet import BeyondError
+from fretish import expressions as e
+from fretish import syntax as s
+from fretish.bindings.expressions import ticks_back
+from fretish.diagnostics.source import Source
+from fretish.printer import sentence as printed
+
+
+class Places:
+    """The thresholds of one requirement."""
+
+    def __init__(self, rule: Formalized) -> None:
+        self._rule = rule
+        self._found: dict[e.Expression, Formalized | None] = {}
+
+    @property
+    def carriers(self) -> Iterator[Formalized]:
+        """The sentences of all atoms that were asked for."""
+        return (each for each in self._found.values() if each is not None)
+
+    def formula(self, situation: Situation) -> f.Formula:
+        """What a situation asks for, its number included.
+
+        Raises:
+            BeyondError: the number cannot be said of signals.
+        """
+        place = situation.place
+        if place is None:
+            return situation.formula
+        read = {name.id for name in e.names(place.measured)}
+        agreements = [*self._agreements(read)]
+        return f.and_(situation.formula, self._carried(place.exact), *agreements)
+
+    def _agreements(self, signals: set[str]) -> Iterator[f.Formula]:
+        """What propositions over these signals are, where each tick has one sample."""
+        declared = self._rule.declarations
+        for name in self._rule.watched:
+            bound = declared.propositions.get(name) if declared else None
+            if bound is None or signals.isdisjoint(bound.signals):
+                continue
+            expression = bound.expression
+            if isinstance(expression, e.Persistence):  # true for a while: so it is true here
+                yield f.implies(f.Atom(name), self._carried(expression.arg))
+            elif any(isinstance(each, e.Persistence) for each in e.parts(expression)):
+                raise BeyondError(f"`{name}` looks at more than one tick")
+            else:
+                yield f.iff(f.Atom(name), self._carried(expression))
+
+    def _carried(self, expression: e.Expression) -> f.Formula:
+        """An expression over the atoms of a sentence that has it as its response."""
+        if expression not in self._found:
+            self._found[expression] = self._carrier(expression)
+        carrier = self._found[expression]
+        if carrier is None or ticks_back(expression):
+            raise BeyondError("its number can be said in no sentence")
+        return boolean(carrier.sentence.response, Uninterpreted().alone())
+
+    def _carrier(self, expression: e.Expression) -> Formalized | None:
+        written = replace(
+            self._rule.written,
+            scope=None,
+            condition=None,
+            probability=None,
+            timing=s.Always(),
+            response=_as_written(expression),
+        )
+        requirement = self._rule.requirement
+        source = Source(requirement.wording.source.name, printed(written))
+        found, _ = formalize(replace(requirement, wording=source.span()), self._rule.declarations)
+        return found
+
+
+_CALLS = {"abs": "absReal", "min": "minReal", "max": "maxReal"}
+"""What functions of bindings are called in sentences."""
+
+
+def _as_written(expression: e.Expression) -> e.Expression:
+    """An expression of bindings as a sentence has it."""
+    parts = [_as_written(each) for each in e.children(expression)]
+    if isinstance(expression, e.Call):
+        return replace(
+            expression, name=_CALLS.get(expression.name, expression.name), args=(*parts,)
+        )
+    return e.with_children(expression, parts) if parts else expression

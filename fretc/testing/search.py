@@ -1,0 +1,187 @@
+"""Shortest words of counters: by way of a tick where something holds, to a tick where it may end.
+
+Layers of states, backwards from the ends: those from which an end is one tick away, two ticks, and
+so on; then those from which the way leads through the goal. The first layer with the initial state
+has the length of the shortest word, so no shorter one exists; layers that grow no more without it
+prove that there is none. Source: Clarke, Emerson, Sistla, Automatic verification of finite-state
+concurrent systems, TOPLAS 8 (1986); Burch et al., Symbolic model checking, LICS 1990.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.budget import Budget
+from fretc.analysis.arena.transition import State, Transition
+
+Letter = Mapping[int, bool]
+"""A value of each variable of the alphabet."""
+
+
+@dataclass
+class Layers:
+    """States from which a word is 0, 1, 2 ... ticks long at least."""
+
+    fresh: list[Function] = field(default_factory=lambda: [bdd.false()])
+    """Those of each length that no shorter word has."""
+    found: Function = field(default_factory=bdd.false)
+    """Those of any length so far."""
+
+    def add(self, states: Function) -> None:
+        """The states with a word of the next length."""
+        self.fresh.append(states - self.found)
+        self.found = self.found | states
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether no longer word is a shortest one."""
+        return len(self.fresh) > 1 and self.fresh[-1] == bdd.false()
+
+
+class Endings:
+    """Shortest ways to an end, from any state; their layers are computed as they are needed."""
+
+    def __init__(self, words: Words, end: Function) -> None:
+        self._words, self.end = words, end
+        self._layers = Layers()
+        self._ways: list[Function] = []
+
+    def way(self, length: int) -> Function:
+        """Ticks, over a state and a letter, after which an end is so many ticks away at least.
+
+        It is itself the end where the length is 0. False where no way is that long.
+        """
+        while len(self._ways) <= length:
+            self._extend()
+        return self._ways[length]
+
+    def is_over(self, length: int) -> bool:
+        """Whether no way is so long, or longer."""
+        return self._layers.is_complete and length >= len(self._layers.fresh) - 1
+
+    def _extend(self) -> None:
+        layers = self._layers
+        if not self._ways:
+            self._ways.append(self.end)
+        elif layers.is_complete:
+            self._ways.append(bdd.false())
+            return
+        else:
+            self._ways.append(self._words.moved(layers.fresh[-1]))
+        layers.add(self._words.preceding(self._ways[-1]))
+
+
+class Words:
+    """The words of some counters that break nothing which is to be kept."""
+
+    def __init__(
+        self,
+        transition: Transition,
+        letters: Sequence[int],
+        quiet: Iterable[int],
+        safe: Function,
+        budget: Budget,
+    ) -> None:
+        """The words.
+
+        Args:
+            transition: of all bits that goals and ends are about.
+            letters: the variables of the alphabet.
+            quiet: those that are false where that can be; the others stay as they were.
+            safe: over a state and a letter, of each tick of a word.
+            budget: for all searches.
+        """
+        self.transition, self._budget = transition, budget
+        self._letters, self._cube = tuple(letters), bdd.cube(letters)
+        self._quiet, self._safe = dict.fromkeys(quiet, False), safe
+        self._start = bdd.point(transition.start)
+        self._moves = {bdd.true(): bdd.true(), bdd.false(): bdd.false()}
+
+    def preceding(self, ticks: Function) -> Function:
+        """The states from which one of these ticks can come."""
+        self._budget.check()
+        return bdd.some_of_both(self._safe, ticks, self._cube)
+
+    def moved(self, states: Function) -> Function:
+        """Over a state and a letter: whether the state after it is one of these.
+
+        As `Transition.moved`, node by node: layers are small, and share most of their nodes.
+        """
+        found = self._moves.get(states)
+        if found is None:
+            bit, high, low = bdd.branches(states)
+            after = self.transition.step(bit)
+            found = bdd.choice(after, self.moved(high), self.moved(low))
+            self._moves[states] = found
+        return found
+
+    def endings(self, end: Function) -> Endings:
+        """The ways to an end, for any number of goals."""
+        return Endings(self, end)
+
+    def shortest(self, goal: Function, endings: Endings) -> tuple[Letter, ...] | None:
+        """A shortest word from the initial state by a tick of the goal to an end; None: no word.
+
+        Args:
+            goal: over a state and a letter; the tick may be the end.
+            endings: where the word may end.
+
+        Raises:
+            OutOfTimeError: it takes too long.
+        """
+        layers = Layers()
+        while not self._begins(layers.fresh[-1]):
+            length = len(layers.fresh) - 1
+            if layers.is_complete and endings.is_over(length):
+                return None
+            onward = self.moved(layers.fresh[-1])
+            layers.add(self.preceding(onward | (goal & endings.way(length))))
+        return tuple(self._descent(layers, goal, endings))
+
+    def _begins(self, states: Function) -> bool:
+        return bool(bdd.at(states, self._start) == bdd.true())
+
+    def _descent(self, layers: Layers, goal: Function, endings: Endings) -> Iterator[Letter]:
+        """Letters from the initial state down to the end, each as near as can be to the last."""
+        transition = self.transition.needed(self._safe, goal, endings.end)
+        state: State = transition.start
+        letter: Letter = dict.fromkeys(self._letters, False)
+        is_past_goal = False
+        for left in range(len(layers.fresh) - 2, -1, -1):
+            self._budget.check()
+            known = bdd.point(state)
+            safe = bdd.at(self._safe, known)
+            by_end = safe & self._moved(endings, left, known)
+            if not is_past_goal:
+                by_goal = by_end & bdd.at(goal, known)
+                allowed = by_goal | (safe & transition.moved_from(layers.fresh[left], known))
+            else:
+                by_goal, allowed = bdd.false(), by_end
+            letter = nearest(allowed, {**letter, **self._quiet})
+            chosen = bdd.point(letter)
+            is_past_goal = is_past_goal or bdd.at(by_goal, chosen) == bdd.true()
+            yield letter
+            state = transition.next(bdd.point({**state, **letter}))
+
+    def _moved(self, endings: Endings, left: int, known: Function) -> Function:
+        return bdd.at(endings.way(left), known)
+
+
+def nearest(allowed: Function, wanted: Letter) -> Letter:
+    """Values that make a function true, as they are wanted where that can be.
+
+    Args:
+        allowed: over the variables of the letter; not false.
+        wanted: tried first, variable by variable in their order.
+    """
+    values = dict(wanted)
+    while allowed != bdd.true():
+        variable, high, low = bdd.branches(allowed)
+        value = wanted[variable]
+        if (high if value else low) == bdd.false():
+            value = not value
+        values[variable], allowed = value, high if value else low
+    return values

@@ -1,0 +1,167 @@
+"""A suite of tests as it is written and read back: runs with their verdicts, and what they show."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from itertools import chain, count
+from typing import Annotated, Any, ClassVar, Final, Literal
+
+from compiler.files.records import Count, Name, Ordinal, Record, Sha256, about, json_schema
+from fretc.analysis.arena.alphabet import Value
+from monitors.kernel.verdicts import Verdict
+
+SCHEMA: Final = "fretc-tests-1"
+Ids = tuple[Name, ...]
+
+
+class Repeat(Record, frozen=True):
+    """Equal ticks, one after the other."""
+
+    count: Annotated[Ordinal, about("how many ticks")]
+    values: Annotated[
+        dict[str, Value | None],
+        about(
+            "of each atom its truth, of each variable that is compared its number; null: unknown"
+        ),
+    ]
+
+
+class Polarity(StrEnum):
+    """Whether the run of a test keeps the requirement that it tests."""
+
+    KEPT = "kept"
+    BROKEN = "broken"
+    UNKNOWN = "unknown"
+    """What is unknown in the run decides."""
+
+
+class Test(Record, frozen=True):
+    """One run, and what a monitor of the requirement says of it."""
+
+    __test__: ClassVar[bool] = False  # or pytest takes the class for a test
+
+    name: Annotated[Name, about("unique in the suite")]
+    requirement: Name
+    words: Annotated[str, about("what the run shows, as one sentence")]
+    rows: Annotated[tuple[Repeat, ...], about("the ticks, from tick 0 on")]
+    polarity: Annotated[Polarity, about("whether the run keeps the requirement")]
+    verdict: Annotated[Verdict, about("of the monitor, where the run ends")]
+    finite: Annotated[bool | None, about("FRET's verdict on the finite run")]
+    decided: Annotated[
+        Count | None,
+        about(
+            "the first tick after which no continuation changes the verdict; null: there is none"
+        ),
+    ]
+    first_violation: Annotated[Count | None, about("the tick at which a demand is broken first")]
+    because: Annotated[str, about("the reason of the verdict, in words")]
+    situations: Annotated[tuple[Name, ...], about("the situations that the run comes by")]
+    kills: Annotated[tuple[Name, ...], about("the mutants that judge the run differently")]
+
+    @property
+    def ticks(self) -> int:
+        """How long it is."""
+        return sum(row.count for row in self.rows)
+
+
+class Met(StrEnum):
+    """What came of an obligation: a situation that a test is to show."""
+
+    MET = "met"
+    IMPOSSIBLE = "impossible"
+    """No run of the requirement comes by it so: proved."""
+    EXCLUDED = "excluded"
+    """No run that keeps the others does: proved."""
+    NOT_SEARCHED = "not searched"
+
+
+class Obligation(Record, frozen=True):
+    """A situation that tests show, on a run that keeps the requirement or on one that breaks it.
+
+    One in which something is unknown is shown on a run that may do either.
+    """
+
+    requirement: Name
+    situation: Name
+    words: str
+    polarity: Polarity
+    outcome: Met
+    tests: Annotated[tuple[Name, ...], about("the tests that meet it, the shortest first")] = ()
+    by: Annotated[Ids, about("a minimal set of requirements that exclude it")] = ()
+    why: Annotated[str, about("why it was not searched; empty: it was")] = ""
+
+
+class Fate(StrEnum):
+    """What became of a mutant."""
+
+    KILLED = "killed"
+    EQUIVALENT = "equivalent"
+    """It judges every finite run as the requirement does: proved."""
+    EXCLUDED = "excluded"
+    """It judges every finite run so that keeps the others: proved."""
+    NOT_SEARCHED = "not searched"
+
+
+class Mutated(Record, frozen=True):
+    """A sentence that somebody might have written in place of the requirement."""
+
+    requirement: Name
+    key: Name
+    words: str
+    sentence: str
+    outcome: Fate
+    tests: Annotated[tuple[Name, ...], about("the tests that tell it from the requirement")] = ()
+    by: Annotated[Ids, about("a minimal set of requirements that hide the difference")] = ()
+    why: Annotated[str, about("why it was not searched; empty: it was")] = ""
+
+
+class Tested(Record, frozen=True):
+    """A requirement of a suite, to the letter."""
+
+    id: Name
+    sentence: Name
+    fingerprint: Sha256
+    kept: Annotated[Ids, about("requirements and assumptions that its tests keep, too")]
+    doubt: Annotated[
+        str,
+        about(
+            "why nobody may be able to bring the values of its tests about; empty: they are real"
+        ),
+    ] = ""
+
+
+class Suite(Record, frozen=True):
+    """All tests of a project."""
+
+    schema: Literal["fretc-tests-1"]
+    fretc: Annotated[str, about("the version of fretc")]
+    clock: Annotated[str, about("what a tick is; empty: nothing says so")]
+    requirements: tuple[Tested, ...]
+    roles: Annotated[dict[str, str], about("input or output, of each variable that declares it")]
+    tests: tuple[Test, ...]
+    obligations: tuple[Obligation, ...]
+    mutants: tuple[Mutated, ...]
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether everything was searched."""
+        met = all(each.outcome is not Met.NOT_SEARCHED for each in self.obligations)
+        return met and all(each.outcome is not Fate.NOT_SEARCHED for each in self.mutants)
+
+
+def unused(name: str, names: set[str]) -> str:
+    """The name, with a number where it is taken; it is taken then."""
+    others = (f"{name}-{number}" for number in count(2))
+    found = next(each for each in chain([name], others) if each not in names)
+    names.add(found)
+    return found
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of a suite."""
+    return json_schema(
+        Suite,
+        SCHEMA,
+        "Tests from requirements, as `fretc test` writes them",
+        "Nothing depends on when or where it was made.",
+    )

@@ -1,0 +1,178 @@
+"""What `fretc test` prints: a row for each requirement, what no test shows, or tests as lanes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from fretc.analysis.reasons import listed
+from fretc.analysis.text_output import Line, drawn
+from fretc.testing.suite import Fate, Met, Mutated, Obligation, Suite, Test
+from fretish.bindings.declarations import Role
+from fretish.diagnostics import signs
+from monitors.kernel.verdicts import Verdict
+
+_SIGNS: Mapping[Verdict, signs.Sign] = {
+    Verdict.SATISFIED: signs.GOOD,
+    Verdict.VIOLATED: signs.BAD,
+    Verdict.PENDING: signs.OPEN,
+    Verdict.INCONCLUSIVE: signs.OPEN,
+    Verdict.VACUOUS: signs.EMPTY,
+    Verdict.NO_DATA: signs.UNKNOWN,
+}
+
+
+def lines(suite: Suite) -> Iterator[Line]:
+    """The summary."""
+    sign = signs.GOOD if suite.is_complete else signs.UNKNOWN
+    yield f"{sign.glyph} {_headline(suite)}", sign.colour
+    yield "", None
+    yield from ((row, None) for row in _table(suite))
+    remarks = [*_remarks(suite)]
+    if remarks:
+        yield "", None
+        yield from remarks
+
+
+def _headline(suite: Suite) -> str:
+    ticks = sum(test.ticks for test in suite.tests)
+    size = f"{_some(len(suite.tests), 'test')} of {_some(ticks, 'tick')} together"
+    for_all = f"{_some(len(suite.requirements), 'requirement')}: {size}"
+    if not suite.is_complete:
+        return f"{for_all}; not all was searched"
+    return f"{for_all}; each situation is met or cannot be, no mutant survives"
+
+
+def _some(count: int, what: str) -> str:
+    return f"{count:,} {what}{'' if count == 1 else 's'}".replace(",", " ")
+
+
+_HEAD = ("", "tests", "ticks", "situations", "mutants")
+
+
+def _table(suite: Suite) -> Iterator[str]:
+    rows = [_HEAD]
+    for each in suite.requirements:
+        own = [test for test in suite.tests if test.requirement == each.id]
+        obligations = [one for one in suite.obligations if one.requirement == each.id]
+        mutants = [one for one in suite.mutants if one.requirement == each.id]
+        rows.append(
+            (
+                each.id,
+                str(len(own)),
+                str(sum(test.ticks for test in own)),
+                _counts([one.outcome for one in obligations], Met),
+                _counts([one.outcome for one in mutants], Fate),
+            )
+        )
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for id, tests, ticks, met, killed in rows:
+        cells = (
+            id.ljust(widths[0]),
+            tests.rjust(widths[1]),
+            ticks.rjust(widths[2]),
+            met.ljust(widths[3]),
+            killed,
+        )
+        yield f"  {'  '.join(cells)}".rstrip()
+
+
+def _counts(outcomes: Sequence[str], kinds: type[Met] | type[Fate]) -> str:
+    """`14 met, 2 impossible`."""
+    found = ((sum(each == kind for each in outcomes), kind) for kind in kinds)
+    return ", ".join(f"{count} {kind}" for count, kind in found if count)
+
+
+# What no test shows -----------------------------------------------------------------------------
+
+
+def _remarks(suite: Suite) -> Iterator[Line]:
+    for situation in _by_situation(suite):
+        yield from _unmet(situation)
+    for mutant in suite.mutants:
+        yield from _surviving(mutant)
+    yield from _doubts(suite)
+
+
+def _doubts(suite: Suite) -> Iterator[Line]:
+    """Values that nobody may be able to bring about; one reason is enough here."""
+    doubted = [each for each in suite.requirements if each.doubt]
+    if doubted:
+        ids = listed([each.id for each in doubted])
+        text = f"some tests of {ids} may have values that cannot be: {doubted[0].doubt}"
+        yield f"{signs.SUSPECT.glyph} {text}", signs.SUSPECT.colour
+
+
+def _by_situation(suite: Suite) -> list[list[Obligation]]:
+    found: dict[tuple[str, str], list[Obligation]] = {}
+    for each in suite.obligations:
+        found.setdefault((each.requirement, each.situation), []).append(each)
+    return [*found.values()]
+
+
+def _unmet(both: Sequence[Obligation]) -> Iterator[Line]:
+    """Of a situation, kept and broken."""
+    if all(each.outcome is Met.IMPOSSIBLE for each in both):
+        text = f"{both[0].requirement}: no run shows this: {both[0].words}"
+        yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
+        return
+    for each in both:
+        head = f"{each.requirement} {each.polarity}: {each.words}"
+        if each.outcome is Met.EXCLUDED:
+            yield f"{signs.UNUSED.glyph} {head}: {_excluded(each.by)}", signs.UNUSED.colour
+        elif each.outcome is Met.NOT_SEARCHED:
+            yield f"{signs.UNKNOWN.glyph} {head}: not searched: {each.why}", signs.UNKNOWN.colour
+
+
+def _excluded(by: Sequence[str]) -> str:
+    return f"excluded by {listed(by)}"
+
+
+def _surviving(mutant: Mutated) -> Iterator[Line]:
+    head = f"{mutant.requirement}: {mutant.words}"
+    match mutant.outcome:
+        case Fate.KILLED:
+            return
+        case Fate.EQUIVALENT:
+            yield f"{signs.EMPTY.glyph} {head} says the same", signs.EMPTY.colour
+        case Fate.EXCLUDED:
+            text = f"{head} says the same as long as {listed(mutant.by)}"
+            verb = "is" if len(mutant.by) == 1 else "are"
+            yield f"{signs.EMPTY.glyph} {text} {verb} kept", signs.EMPTY.colour
+        case Fate.NOT_SEARCHED:
+            yield f"{signs.UNKNOWN.glyph} {head}: not searched: {mutant.why}", signs.UNKNOWN.colour
+
+
+# Tests of one requirement -----------------------------------------------------------------------
+
+
+def shown(suite: Suite, id: str, names: Sequence[str], roles: Mapping[str, Role]) -> Iterator[Line]:
+    """The tests of a requirement, tick by tick.
+
+    Args:
+        suite: all tests.
+        id: the requirement.
+        names: its atoms and variables: the lanes.
+        roles: of those that have one.
+    """
+    tested = next(each for each in suite.requirements if each.id == id)
+    yield f"{id}  {tested.sentence}", None
+    if tested.kept:
+        yield f"  its tests keep {listed(tested.kept)}, too", None
+    for test in suite.tests:
+        if test.requirement == id:
+            yield "", None
+            yield from _test(test, names, roles)
+
+
+def _test(test: Test, names: Sequence[str], roles: Mapping[str, Role]) -> Iterator[Line]:
+    sign = _SIGNS[test.verdict]
+    yield f"{sign.glyph} {test.name}: {test.verdict}", sign.colour
+    yield f"  {test.words}", None
+    play = [
+        {name: row.values[name] for name in names if name in row.values}
+        for row in test.rows
+        for _ in range(row.count)
+    ]
+    for row in drawn(play, roles):
+        yield f"    {row}", None
+    yield f"  {test.because}", None

@@ -1,0 +1,215 @@
+"""A word as columns of atoms, and what the definition, a monitor and reasons say of it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from itertools import groupby
+
+from compiler.explanation.reasons import why
+from compiler.formalization import reference
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.obligation import boolean
+from compiler.formalization.predicates import Past
+from compiler.formalization.reference import Letter as Parts
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic import formula as f
+from compiler.logic.evaluation import evaluate
+from fretc.analysis.arena.alphabet import Alphabet, Value
+from fretc.testing.search import Letter
+from fretc.testing.suite import Repeat
+from fretish import syntax as s
+from monitors.kernel import Column, Monitor
+from monitors.kernel.columns import truths
+from monitors.kernel.verdicts import PENDING, Truth, Verdict
+
+
+@dataclass(frozen=True)
+class Word:
+    """A run, stored by stretches of equal ticks."""
+
+    rows: tuple[Repeat, ...]
+    columns: Mapping[str, int]
+    """Each atom over time, bit i for tick i."""
+    ticks: int
+    unknown: Mapping[str, int] = field(default_factory=dict)
+    """Where atoms are unknown, whatever their columns say; of all others nothing is."""
+
+
+def word(
+    letters: Sequence[Letter], alphabet: Alphabet, atoms: Iterable[str], shown: Collection[str]
+) -> Word:
+    """The word of some letters.
+
+    Args:
+        letters: tick by tick.
+        alphabet: of the letters.
+        atoms: whose columns it has.
+        shown: those of them that its rows have, beside numbers that make comparisons so.
+    """
+    functions = {name: alphabet.atom(name) for name in atoms}
+    columns = dict.fromkeys(functions, 0)
+    rows: list[Repeat] = []
+    ticks = 0
+    for letter, equal in groupby(letters):
+        count = sum(1 for _ in equal)
+        known = bdd.point(letter)
+        values: dict[str, Value | None] = {
+            name: value for name, value in alphabet.values(letter).items() if name not in functions
+        }
+        for name, function in functions.items():
+            truth = bdd.at(function, known) == bdd.true()
+            if truth:
+                columns[name] |= ((1 << count) - 1) << ticks
+            if name in shown:
+                values[name] = truth
+        rows.append(Repeat(count, {name: values[name] for name in sorted(values)}))
+        ticks += count
+    return Word(tuple(rows), columns, ticks)
+
+
+def blotted(word: Word, tick: int, names: Collection[str]) -> Word:
+    """The word with some values unknown at one tick, which has a row of its own."""
+    rows: list[Repeat] = []
+    start = 0
+    for row in word.rows:
+        if start == tick:
+            values = {name: None if name in names else v for name, v in row.values.items()}
+            row = Repeat(row.count, values)
+        rows.append(row)
+        start += row.count
+    unknown = {name: 1 << tick for name in word.columns if name in names}
+    return replace(word, rows=tuple(rows), unknown=unknown)
+
+
+# By the signals of monitors ---------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """What the signals of a sentence say of a word, tick by tick."""
+
+    breach: int
+    """A demand is broken, at this tick or before."""
+    accepted: int
+    """FRET's verdict, were the word to end here."""
+
+
+def judged(rule: Formalized, word: Word) -> Judged:
+    """By the formulas of the monitor, as columns."""
+    every = (1 << word.ticks) - 1
+    first = evaluate(rule.watch.breach, word.columns, word.ticks)
+    breach = every & -(first & -first) if first else 0
+    fails = evaluate(rule.watch.fails, word.columns, word.ticks)
+    return Judged(breach, every & ~(breach | fails))
+
+
+def is_killed(own: Judged, mutant: Judged, ticks: int) -> bool:
+    """Whether a test of the word tells a mutant from the requirement.
+
+    Either they disagree on the whole word, or one is broken at a tick where the other accepts.
+    """
+    apart = (own.accepted ^ mutant.accepted) & (own.breach ^ mutant.breach)
+    first = (own.breach | mutant.breach) & -(own.breach | mutant.breach)
+    return bool((own.accepted ^ mutant.accepted) >> (ticks - 1) or apart & first)
+
+
+# By the definition ------------------------------------------------------------------------------
+
+
+def letters(rule: Formalized, word: Word) -> tuple[Parts, ...]:
+    """Mode, condition, response and stop condition of a sentence at each tick of a word."""
+    sentence = rule.sentence
+    scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
+    mode = boolean(scope.mode, Past().alone()) if scope else f.TRUE
+    read = partial(boolean, expand=Past().inside(scope.kind if scope else None, mode))
+    parts = (
+        mode if scope else f.FALSE,
+        read(condition.expression) if condition else f.FALSE,
+        read(sentence.response),
+        read(stop) if stop else f.FALSE,
+    )
+    columns = (evaluate(part, word.columns, word.ticks) for part in parts)
+    m, p, q, stopped = (map(bool, truths(Column(column, 0), word.ticks)) for column in columns)
+    return tuple(zip(m, p, q, stopped, strict=True))
+
+
+@dataclass(frozen=True, slots=True)
+class Expected:
+    """What a word is to get."""
+
+    finite: bool | None
+    verdict: Verdict
+    decided: int | None
+    first_violation: int | None
+    because: str
+
+
+def expected(rule: Formalized, monitor: Monitor, word: Word) -> Expected:
+    """The verdict of a word in which all is known: definition, monitor and reasons agree on it.
+
+    Args:
+        rule: the sentence.
+        monitor: what is emitted of it, and of nothing else.
+        word: a run of all its atoms.
+    """
+    parts = letters(rule, word)
+    broken, finite = defined(rule, parts)
+    because = why(rule, parts, ends=True, satisfied=finite)
+    found = _monitored(monitor, word, because)
+    assert found.finite is finite, (rule.id, word)
+    sooner = found.decided is not None and broken is not None and found.decided <= broken
+    assert broken is None or sooner, (rule.id, word)
+    return found
+
+
+def undecided(rule: Formalized, monitor: Monitor, word: Word, atom: str) -> Expected:
+    """The verdict of a word in which an atom is unknown at one tick, where both values differ."""
+    at, own = word.unknown[atom], word.columns[atom]
+    finite: dict[bool, bool] = {}
+    for value, column in {True: own | at, False: own & ~at}.items():
+        known = replace(word, columns={**word.columns, atom: column})
+        finite[value] = defined(rule, letters(rule, known))[1]
+    assert finite[True] is not finite[False], (rule.id, word)
+    says = {True: "kept", False: "broken"}
+    because = (
+        f"`{atom}` is unknown at tick {at.bit_length() - 1}: {rule.id} is {says[finite[True]]} if "
+        f"it is true there, and {says[finite[False]]} if it is false"
+    )
+    found = _monitored(monitor, word, because)
+    assert found.finite is None, (rule.id, word)
+    return found
+
+
+def _monitored(monitor: Monitor, word: Word, because: str) -> Expected:
+    decided = None
+    monitor.reset()
+    for tick in range(word.ticks):
+        monitor.advance([_row(monitor, word, tick)])
+        if decided is None and monitor.verdicts()[0] != PENDING:
+            decided = tick
+    (standing,) = monitor.standings()
+    verdict = Verdict(str(standing.verdict))
+    return Expected(standing.finite, verdict, decided, standing.first_violation, because)
+
+
+def _row(monitor: Monitor, word: Word, tick: int) -> tuple[Truth, ...]:
+    columns = (
+        Column(word.columns[name] & ~doubt, doubt)
+        for name in monitor.PROPOSITIONS
+        for doubt in [word.unknown.get(name, 0)]
+    )
+    return tuple(column.at(tick) for column in columns)
+
+
+def defined(rule: Formalized, parts: Sequence[Parts]) -> tuple[int | None, bool]:
+    """By the reference automaton: the tick at which a demand is broken, and FRET's verdict."""
+    template = reference.template(rule.sentence, rule.ticks or 0)
+    state = reference.initial(template)
+    for tick, letter in enumerate(parts):
+        after = reference.step(template, state, *letter)
+        if after is None:
+            return tick, False
+        state = after
+    return None, reference.accepts(template, state)

@@ -1,0 +1,326 @@
+"""The situations of a template once more, from intervals and triggers that are lists of ticks.
+
+Written from the words of the situations and from `tests.meaning`; no formula, no automaton. What it
+says of a tick holds where nothing has been broken before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from tests import meaning
+from tests.strategies import Template
+
+Columns = Mapping[str, Sequence[bool]]
+
+DUALS = {
+    "eventually": "always",
+    "null": "always",
+    "always": "eventually",
+    "never": "eventually",
+    "within": "for",
+    "for": "within",
+    "after": "not after",
+    "until": "before",
+    "before": "until",
+}
+"""What `only` scopes demand outside of themselves; the others are their own duals."""
+ONE_INTERVAL = ("before", "after", "onlyBefore", "onlyAfter")
+
+
+def kind(drawn: Template) -> str:
+    """The timing as it is demanded."""
+    if drawn.scope.startswith("only"):
+        return DUALS.get(drawn.timing, drawn.timing)
+    return {"null": "eventually", "never": "always"}.get(drawn.timing, drawn.timing)
+
+
+def answers(drawn: Template, q: Sequence[bool]) -> list[bool]:
+    """Whether the response is as it is demanded."""
+    only = drawn.scope.startswith("only") and drawn.timing != "after"
+    return [value is not (only != (drawn.timing == "never")) for value in q]
+
+
+@dataclass(frozen=True)
+class At:
+    """One tick of a trace."""
+
+    drawn: Template
+    columns: Columns
+    at: int
+
+    @property
+    def q(self) -> list[bool]:
+        return answers(self.drawn, self.columns["q"])
+
+    @property
+    def intervals(self) -> list[tuple[int, int]]:
+        """Those that have begun."""
+        found = meaning.intervals(self.drawn.scope, self.columns["m"])
+        return [each for each in found if each[0] <= self.at]
+
+    @property
+    def left(self) -> int | None:
+        """The first tick of the interval that this tick lies in."""
+        return next((left for left, right in self.intervals if left <= self.at <= right), None)
+
+    @property
+    def triggers(self) -> list[int]:
+        """Those of this interval, up to this tick."""
+        if self.left is None:
+            return []
+        p = self.columns["p"]
+        return [*meaning.triggers(self.drawn.condition, p, self.left, self.at)]
+
+    @property
+    def before(self) -> list[int]:
+        """All triggers before this tick."""
+        found: list[int] = []
+        for left, right in self.intervals:
+            last = min(right, self.at - 1)
+            found += meaning.triggers(self.drawn.condition, self.columns["p"], left, last)
+        return found
+
+    @property
+    def previous(self) -> At:
+        return At(self.drawn, self.columns, self.at - 1)
+
+    @property
+    def ended(self) -> bool:
+        """The tick before was the last of an interval."""
+        return any(right == self.at - 1 for _, right in self.intervals)
+
+    @property
+    def open_triggers(self) -> list[int]:
+        """Those before this tick whose demands this tick may still decide."""
+        return [t for t in self.triggers if t < self.at and self._is_open(t, self.at - 1)]
+
+    @property
+    def is_left_open(self) -> bool:
+        """After this tick a demand is open."""
+        return any(self._is_open(t, self.at) for t in self.triggers)
+
+    def _is_open(self, trigger: int, last: int) -> bool:
+        """Whether the demand of a trigger is open after the tick `last`."""
+        n, passed = self.drawn.n, last - trigger
+        silent = not any(self.q[trigger : last + 1])
+        match kind(self.drawn):
+            case "immediately":
+                return False
+            case "next":
+                return passed == 0
+            case "finally" | "always":
+                return True
+            case "eventually" | "within" | "after" | "before":
+                return silent
+            case "for":
+                return passed < n
+            case "not after":
+                return silent and passed <= n
+            case "until":
+                return not any(self.columns["s"][trigger : last + 1])
+            case other:
+                raise AssertionError(other)
+
+    # Keys ---------------------------------------------------------------------------------------
+
+    def keys(self) -> Iterator[str]:
+        """The situations of this tick, those of the end of a run left out."""
+        yield from self._of_scope()
+        yield from self._of_triggers()
+        yield from self._of_answers()
+        yield from self._after_a_miss()
+        if self.ended and kind(self.drawn) != "finally" and self.previous.is_left_open:
+            yield "scope-ends-open"
+
+    def at_end(self) -> Iterator[str]:
+        """The situations of a run that ends with this tick."""
+        if not self.intervals:
+            yield "never-enforced"
+        elif not self.before and not self.triggers:
+            yield "never-triggered"
+        if kind(self.drawn) == "finally" and self.triggers:
+            yield "run-ends-answered" if self.q[self.at] else "run-ends-missed"
+        elif kind(self.drawn) != "always" and self.is_left_open:
+            yield "run-ends-open"
+
+    def _of_scope(self) -> Iterator[str]:
+        at, p, m = self.at, self.columns["p"], self.columns["m"]
+        if self.drawn.scope == "null":
+            return
+        if at in self.triggers and self.drawn.scope not in ONE_INTERVAL:
+            yield "first-interval" if len(self.intervals) == 1 else "second-interval"
+        if self.drawn.condition != "null":
+            if self.left is None and p[at]:
+                yield "condition-outside"
+            if self.left == at and at > 0 and p[at] and p[at - 1]:
+                yield "condition-across-entry"
+        if self.drawn.scope in ONE_INTERVAL and at > 0:
+            lasts = self.drawn.scope in ("after", "onlyBefore")
+            begins_by = self.drawn.scope in ("after", "onlyAfter")
+            lasting = self.left is not None and at > self.left
+            over = self.left is None and True in m[:at]
+            if m[at] is begins_by and (lasting if lasts else over):
+                yield "mode-again"
+
+    def _of_triggers(self) -> Iterator[str]:
+        at, drawn = self.at, self.drawn
+        conditional = drawn.condition != "null"
+        if at in self.triggers:
+            if at == 0 and (conditional or drawn.scope not in ("null", "before", "onlyAfter")):
+                yield "triggered-at-start"
+            if at != self.left:
+                yield "triggered-later"
+            if self.open_triggers:
+                yield "triggered-while-open"
+            elif conditional and self.before and kind(drawn) not in ("always", "finally"):
+                yield "triggered-again"
+        if conditional and self.columns["p"][at] and at - 1 in self.triggers:
+            yield "condition-stays"
+
+    def _of_answers(self) -> Iterator[str]:
+        at, n, q = self.at, self.drawn.n, self.q
+        here, fresh = at in self.triggers, at in self.triggers and not self.open_triggers
+        stop = "s" in self.drawn.columns and self.columns["s"][at]
+        oldest = at - min(self.open_triggers) if self.open_triggers else None
+        match kind(self.drawn):
+            case "immediately":
+                if here:
+                    yield "answered-at-once" if q[at] else "missed-by-one"
+            case "next":
+                if at - 1 in self.triggers:
+                    yield "answered-at-last-tick" if q[at] else "missed-by-one"
+                    if q[at - 1] and not q[at]:
+                        yield "answered-too-early"
+            case "finally":
+                yield from self._at_the_end()
+            case "eventually":
+                if fresh and q[at]:
+                    yield "answered-at-once"
+                if oldest is not None and q[at]:
+                    yield "answered-later"
+                yield from self._at_the_end()
+            case "always":
+                if fresh:
+                    yield "answered-at-once" if q[at] else "missed-at-once"
+                if oldest is not None and not q[at]:
+                    yield "missed-later"
+            case "within":
+                if fresh and q[at]:
+                    yield "answered-at-once"
+                if oldest is not None and q[at]:
+                    yield "answered-later" if oldest < n else "answered-at-last-tick"
+                if (oldest == n or (fresh and n == 0)) and not q[at]:
+                    yield "missed-by-one"
+            case "for":
+                yield from self._for(fresh=fresh)
+            case "after":
+                if fresh and q[at]:
+                    yield "answered-at-once"
+                if n and oldest == n and q[at]:
+                    yield "answered-too-early"
+                if oldest == n + 1:
+                    yield "answered-at-last-tick" if q[at] else "missed-by-one"
+            case "not after":
+                first = self._first_unanswered()
+                if here and first == at and q[at]:
+                    yield "answered-at-once"
+                if self.open_triggers and first is not None and 0 < at - first < n and q[at]:
+                    yield "answered-later"
+                if n and first == at - n and q[at]:
+                    yield "answered-at-last-tick"
+                if first == at - n - 1:
+                    yield "one-tick-late" if q[at] else "never-answered"
+            case "until" | "before" as name:
+                yield from self._up_to(name, fresh=fresh, stop=stop, waits=oldest is not None)
+
+    def _after_a_miss(self) -> Iterator[str]:
+        """What the tick before, at which something was missed, has made of this one."""
+        if self.at == 0:
+            return
+        before, name = self.previous, kind(self.drawn)
+        missed = {*before._of_answers()}
+        same = self.left is not None and before.left == self.left
+        one_tick = name in ("immediately", "next", "within", "after")
+        if one_tick and same and self.q[self.at] and "missed-by-one" in missed:
+            yield "one-tick-late"
+        if name == "until" and same and "missed-later" in missed and self.columns["s"][self.at]:
+            yield "missed-by-one"
+        if name == "always" and self.ended and "missed-later" in missed:
+            yield "missed-by-one"
+
+    def _first_unanswered(self) -> int | None:
+        """The first trigger of the interval without an answer from it to the tick before."""
+        unanswered = [t for t in self.triggers if not any(self.q[t : self.at])]
+        return min(unanswered, default=None)
+
+    def _at_the_end(self) -> Iterator[str]:
+        if not self.ended or not self.previous.triggers:
+            return
+        q, last, late = self.q, self.at - 1, self.q[self.at]
+        if kind(self.drawn) == "finally":
+            if q[last]:
+                yield "answered-at-last-tick"
+                return
+            yield "missed-by-one"
+            if late:
+                yield "one-tick-late"
+            if last > 0 and q[last - 1] and self.previous.open_triggers:
+                yield "answered-too-early"
+            return
+        if self.previous.is_left_open:
+            yield "missed-by-one"
+            if late:
+                yield "one-tick-late"
+        elif q[last] and self.previous.open_triggers:
+            yield "answered-at-last-tick"
+
+    def _for(self, *, fresh: bool) -> Iterator[str]:
+        at, n, q = self.at, self.drawn.n, self.q
+        if not self.triggers:
+            return
+        newest = max(self.triggers)
+        if newest == at and q[at]:
+            yield "answered-at-once"
+        if fresh and n and not q[at]:
+            yield "missed-at-once"
+        if 0 < at - newest < n and not q[at]:
+            yield "missed-later"
+        if all(q[newest:at]):
+            if at - newest == n:
+                if not q[at]:
+                    yield "missed-by-one"
+                elif n:
+                    yield "answered-at-last-tick"
+            if at - newest == n + 1 and not q[at]:
+                yield "given-up-after"
+
+    def _up_to(self, name: str, *, fresh: bool, stop: bool, waits: bool) -> Iterator[str]:
+        q, at = self.q, self.at
+        if fresh:
+            if stop:
+                yield "stopped-at-once"
+            elif q[at]:
+                yield "answered-at-once"
+            elif name == "until":
+                yield "missed-at-once"
+        if not waits:
+            if name == "before" and stop and self._answered_before_stop():
+                yield "answered-at-last-tick"
+            return
+        if name == "until":
+            if stop:
+                yield "stopped-later" if q[at] else "stopped-unanswered"
+            elif not q[at]:
+                yield "missed-later"
+        elif stop:
+            yield "one-tick-late" if q[at] else "stopped-unanswered"
+        elif q[at]:
+            yield "answered-later"
+
+    def _answered_before_stop(self) -> bool:
+        """The first answer came at the tick before, in this interval, and after its trigger."""
+        before = self.previous
+        same = self.at > 0 and self.left is not None and before.left == self.left
+        return same and bool(before.open_triggers) and before.q[before.at]

@@ -1,0 +1,174 @@
+"""Situations: what their formulas say, which sentence has which, and that runs can come by them."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator, Sequence
+
+import pytest
+
+from compiler.formalization import reference
+from compiler.formalization.formalized import Formalized
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic import formula as f
+from compiler.logic.evaluation import evaluate
+from compiler.situations.demands import of_demand
+from compiler.situations.facts import facts
+from compiler.situations.situations import MEANINGS, Situation, situations
+from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Memory, Past
+from fretc.analysis.arena.transition import Transition
+from tests import meaning
+from tests.compiler.situations.by_index import At, kind
+from tests.emitting import rule
+from tests.strategies import Template, templates
+
+MISSED = {"one-tick-late", "missed-by-one"}
+"""What a run may show when a demand has been broken at the tick before."""
+
+KEPT = {"answered-at-last-tick", "missed-by-one", "given-up-after"}
+"""Of `for`: what was asked for since the trigger, whatever came before."""
+
+
+def of(scope: str) -> Iterator[Template]:
+    return (drawn for drawn in templates() if drawn.scope == scope)
+
+
+def timed(made: Formalized) -> list[Situation]:
+    """Those that are not about single operands."""
+    return [each for each in situations(made) if ":" not in each.key]
+
+
+def words(drawn: Template, lengths: Sequence[int]) -> Iterator[dict[str, list[bool]]]:
+    choose = random.Random(repr(drawn))
+    for length in lengths:
+        for likely in (0.2, 0.5, 0.8):
+            odds = {"m": choose.choice((0.3, 0.7)), "p": 0.4, "q": likely, "s": 0.2}
+            yield {name: [choose.random() < odds[name] for _ in range(length)] for name in odds}
+
+
+def first_breach(drawn: Template, columns: dict[str, list[bool]]) -> int:
+    """The first tick at which a demand is broken for good, or the length of the trace."""
+    made = rule(drawn.sentence)
+    counted = reference.template(made.sentence, made.ticks or 0)
+    state: reference.State | None = reference.initial(counted)
+    length = len(columns["q"])
+    for tick in range(length):
+        assert state is not None
+        state = reference.step(counted, state, *(columns[name][tick] for name in "mpqs"))
+        if state is None:
+            return tick
+    return length
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scope", meaning.SCOPES)
+def test_a_formula_says_what_its_words_say(scope: str) -> None:
+    for drawn in of(scope):
+        made = rule(drawn.sentence)
+        listed = timed(made)
+        if drawn.scope != "null" and "m" not in made.propositions:
+            assert drawn == Template("onlyAfter", "null", "immediately", 0)
+            continue  # it is about tick 0 alone: nothing reads the mode
+        for columns in words(drawn, (5, 10)):
+            length = len(columns["q"])
+            bits = {n: sum(v << t for t, v in enumerate(c)) for n, c in columns.items()}
+            shown = {each.key: evaluate(each.formula, bits, length) for each in listed}
+            breach = first_breach(drawn, columns)
+            for at in range(length):
+                looked_at = {*MEANINGS} if at <= breach else MISSED if at == breach + 1 else set()
+                looked_at = looked_at | KEPT if kind(drawn) == "for" else looked_at
+                tick = At(drawn, columns, at)
+                for ends, expected in ((False, {*tick.keys()}), (True, {*tick.at_end()})):
+                    keys = {each.key for each in listed if each.at_end is ends}
+                    found = {key for key in keys if shown[key] >> at & 1}
+                    assert found & looked_at == expected & looked_at, (drawn, columns, at)
+
+
+# Which runs come by them ------------------------------------------------------------------------
+
+
+class Search:
+    """All runs of the atoms m, p, q and s, and what a formula of the past says of them."""
+
+    def __init__(self, formula: f.Formula) -> None:
+        fresh = iter(range(10_000))
+        letters = {name: next(fresh) for name in "mpqs"}
+        self.memory = Memory(fresh, {})
+        self.goal = Past(lambda name: bdd.variable(letters[name]), self.memory).value(formula)
+        self.letters = bdd.cube(letters.values())
+
+    @property
+    def bits(self) -> int:
+        return len(self.memory.needed([self.goal]))
+
+    def is_reached(self) -> bool:
+        """Whether a run comes by a tick at which the formula holds: backwards from there."""
+        bits = self.memory.needed([self.goal])
+        steps = tuple(self.memory.steps[bit] for bit in bits)
+        true = bdd.true()
+        transition = Transition([Counter("", bits, steps, true, None, (), true, true)])
+        found, states = bdd.false(), bdd.some(self.goal, self.letters)
+        while states != found:
+            if (transition.initial & states) != bdd.false():
+                return True
+            found = states
+            states = states | bdd.some(transition.moved(states), self.letters)
+        return False
+
+
+def impossible(drawn: Template) -> set[str]:
+    """What no run can show, by hand."""
+    found: set[str] = set()
+    if drawn.scope == "after":
+        found.add("triggered-at-start")  # the mode comes first, and has to end
+    short = {"next": True, "for": drawn.n == 1, "not after": drawn.n == 0}
+    if drawn.condition == "regular" and short.get(kind(drawn), False):
+        found.add("triggered-while-open")  # after a trigger the condition has to be false first
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("scope", meaning.SCOPES)
+def test_each_situation_is_come_by_or_cannot_be(scope: str) -> None:
+    for drawn in of(scope):
+        listed = situations(rule(drawn.sentence))
+        missing = {each.key for each in listed if not Search(each.formula).is_reached()}
+        assert missing == impossible(drawn), drawn
+
+
+@pytest.mark.slow
+def test_no_key_is_given_twice() -> None:
+    for drawn in templates((0, 2)):
+        keys = [key for key, _ in of_demand(facts(rule(drawn.sentence)))]
+        assert len({*keys}) == len(keys), drawn
+
+
+def test_what_a_sentence_does_not_read_is_in_none_of_its_situations() -> None:
+    made = rule("only after m mode the sw shall immediately satisfy q")
+    assert [each.key for each in situations(made)] == [
+        "answered-at-once",
+        "missed-by-one",
+        "unknown:response:q",
+    ]
+
+
+def test_a_sentence_that_looks_ahead_has_none() -> None:
+    assert situations(rule("whenever p the sw shall always satisfy occurs(2, q)")) == ()
+
+
+def test_a_predicate_that_looks_back_is_read_as_it_is() -> None:
+    """The condition holds from tick 2 on, where p has held for three ticks."""
+    made = rule("whenever persisted(2, p) the sw shall within 1 tick satisfy q")
+    listed = {each.key: each.formula for each in situations(made)}
+    at_last_tick = evaluate(listed["answered-at-last-tick"], {"p": 0b1111, "q": 0b1000}, 4)
+    assert at_last_tick == 0b1000
+    assert evaluate(listed["unknown:response:q"], {"p": 0b1111, "q": 0}, 4) == 0b1100
+
+
+@pytest.mark.parametrize("condition", ["", "upon p", "whenever p"])
+@pytest.mark.parametrize("timing", ["within", "for", "after"])
+@pytest.mark.parametrize("scope", ["", "in m mode", "only in m mode"])
+def test_a_long_bound_costs_bits_and_not_ticks(scope: str, timing: str, condition: str) -> None:
+    made = rule(f"{scope} {condition} the sw shall {timing} 10000 ticks satisfy q")
+    assert max(Search(each.formula).bits for each in situations(made)) <= 3 * 14 + 10
