@@ -37,7 +37,7 @@ def verdict(setting: Stage, budget: Budget) -> tuple[Component, Stage]:
     """
     answer, why = _answer(setting, budget)
     there = setting
-    while answer is Verdict.NOT_CHECKED:
+    while answer is Verdict.NOT_CHECKED and _has_room(budget):
         try:
             finer = there.finer(budget)
         except (BeyondError, OutOfTimeError):
@@ -50,6 +50,11 @@ def verdict(setting: Stage, budget: Budget) -> tuple[Component, Stage]:
             answer, why, setting = found, because_, there
     spent = round(budget.spent, 3)
     return component(setting.rules, setting.roles, answer, why, spent), setting
+
+
+def _has_room(budget: Budget) -> bool:
+    """Whether there is time to remember more: each time takes several times as long."""
+    return budget.spent < budget.seconds / 8
 
 
 def _answer(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
@@ -166,7 +171,7 @@ def conflicts(setting: Stage, budget: Budget) -> Iterator[Conflict | Completenes
                     shown.add(core)
                     yield _conflict(now.sure(core), core, budget)
             found = now
-            there = there.finer(budget) if found.is_open else None
+            there = there.finer(budget) if found.is_open and _has_room(budget) else None
         for core in found.larger:
             yield _perhaps_larger(_conflict(found.generous, core, budget))
     except OutOfTimeError as error:

@@ -49,7 +49,7 @@ def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
     assert "    run (output)   0  0  1\n" in run.out
 
 
-def test_a_conflict_of_propositions_about_one_number_has_no_lanes(
+def test_a_conflict_of_propositions_about_one_number_has_their_lanes(
     fretc: Fretc, tmp_path: Path
 ) -> None:
     sentences = (
@@ -64,7 +64,7 @@ def test_a_conflict_of_propositions_about_one_number_has_no_lanes(
     run = fretc("analyze", str(written(tmp_path, sentences, {}, more)))
     assert run.status == 1
     assert "  at tick 2 R1 demands `fast`, and R2 forbids it\n  R1  the line" in run.out
-    assert "tick  " not in run.out
+    assert "    fast (output)     0  1\n" in run.out
     assert fretc("report", "--requirements", str(tmp_path), "-o", "r.html").status == 0
 
 
