@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 _MODULES: Mapping[str, str] = {
     "ltl": "ltl",
     "monitor": "python.monitor",
+    "c": "c.monitor",
     "js": "javascript.monitor",
     "ajpf": "ajpf.properties",
     "ajpf-bundle": "ajpf.bundle",

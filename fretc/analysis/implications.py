@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from operator import attrgetter
 
 from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
@@ -14,14 +15,12 @@ from fretc.analysis.arena.counters import Counter
 from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vacuity
 from fretc.analysis.games.cores import minimal
 from fretc.analysis.reasons import listed
-from fretc.analysis.stage import Stage, interleaved
+from fretc.analysis.stage import Stage
 
 MOST_TRIPLES = 500
 """Of requirements that hang together; of more none is looked at."""
 _FEW = 3
 """So many requirements are looked at by themselves."""
-_LONG = 6
-"""Bits of a count that is worth an order of its own beside another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,12 +50,13 @@ def consistency(setting: Stage, budget: Budget) -> Iterator[Consistency | OpenQu
     """Whether any run keeps all requirements."""
     ids = tuple(rule.id for rule in setting.rules)
     question = f"whether any run keeps {listed(ids)}"
-    counters = setting.arena.counters
     doubt = setting.left_out or setting.of_inputs or setting.of_outputs
     try:
-        is_possible = setting.runs(counters, budget).is_possible()
+        there = setting.close(ids, budget)
+        counters = there.counters(ids)
+        is_possible = there.runs(counters, budget).is_possible()
         if is_possible and setting.left_out is None and doubt is not None:
-            is_certain = setting.runs(counters, budget, certain=True).is_possible()
+            is_certain = there.runs(counters, budget, certain=True).is_possible()
             doubt = None if is_certain else doubt
     except OutOfTimeError as error:
         yield Consistency(ids, None)
@@ -130,7 +130,10 @@ def _is_implied(
     setting: Stage, counter: Counter, others: Sequence[Counter], budget: Budget
 ) -> bool:
     """Whether there are runs that keep the others, and none of them breaks the counter."""
-    runs = setting.runs(others, budget, watched=(counter,))
+    setting = setting.close((each.id for each in (counter, *others)), budget)
+    (counter,) = setting.counters([counter.id])
+    kept = setting.counters(each.id for each in others)
+    runs = setting.runs(kept, budget, watched=(counter,))
     lasting = runs.lasting()
     if (runs.transition.initial & lasting) == bdd.false():
         return False  # of no run anything is true
@@ -154,19 +157,23 @@ def vacuities(setting: Stage, budget: Budget) -> Iterator[Vacuity | OpenQuestion
 def _vacuity(
     setting: Stage, rule: Formalized, counter: Counter, others: Sequence[str], budget: Budget
 ) -> Vacuity | None:
-    def excluded(ids: Sequence[str], ticks: Function) -> bool:
-        runs = setting.runs(setting.counters(ids), budget, watched=(counter,))
+    def excluded(ids: Sequence[str], ticks: Callable[[Counter], Function]) -> bool:
+        there = setting.close([*ids, counter.id], budget)
+        (watched,) = there.counters([counter.id])
+        runs = there.runs(there.counters(ids), budget, watched=(watched,))
         lasting = runs.lasting()
         if (runs.transition.initial & lasting) == bdd.false():
             return False
-        return not runs.can_reach(ticks, lasting)
+        return not runs.can_reach(ticks(watched), lasting)
 
-    if rule.sentence.scope is not None and excluded(others, counter.enforced):
-        by = minimal(others, lambda ids: excluded(ids, counter.enforced))
-        return Vacuity(counter.id, tuple(sorted(by)), "scope")
-    if rule.sentence.condition is not None and excluded(others, counter.triggered):
-        by = minimal(others, lambda ids: excluded(ids, counter.triggered))
-        return Vacuity(counter.id, tuple(sorted(by)), "trigger")
+    def by(ticks: Callable[[Counter], Function]) -> tuple[str, ...]:
+        return tuple(sorted(minimal(others, lambda ids: excluded(ids, ticks))))
+
+    in_scope, begun = attrgetter("enforced"), attrgetter("triggered")
+    if rule.sentence.scope is not None and excluded(others, in_scope):
+        return Vacuity(counter.id, by(in_scope), "scope")
+    if rule.sentence.condition is not None and excluded(others, begun):
+        return Vacuity(counter.id, by(begun), "trigger")
     return None
 
 
@@ -226,9 +233,9 @@ def _inconsistency(
     setting: Stage, members: Sequence[Counter], alone: Mapping[str, Function], budget: Budget
 ) -> Inconsistency | None:
     ids = sorted(each.id for each in members)
-    if len(members) <= _FEW and sum(each.longest >= _LONG for each in members) > 1:
-        setting = interleaved(setting, ids)
-        members = setting.arena.counters
+    there = setting.close(ids, budget)
+    if there is not setting:
+        setting, members = there, there.counters(ids)
         alone = {each.id: setting.runs((each,), budget).lasting() for each in members}
     runs = setting.runs(members, budget)
     each_alone = bdd.true()
@@ -240,4 +247,4 @@ def _inconsistency(
     letters = runs.path(clash, each_alone)
     if letters is None:
         return None
-    return Inconsistency(tuple(ids), setting.ticks(ids, letters))
+    return Inconsistency(tuple(ids), setting.ticks(ids, [(letter, 1) for letter in letters]))

@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import chain, repeat
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.letters import atoms_of, comparisons
+from compiler.formalization.letters import comparisons
 from compiler.formalization.resolution import candidates
+from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, numbers
+from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers, Tick, numbers
 from fretc.analysis.arena.budget import ENDLESS, Budget
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.counters import Counter, counter
 from fretc.analysis.arena.memory import side_by_side
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about
 from fretc.analysis.games.game import Game, upheld
-from fretc.analysis.games.plays import Letter
+from fretc.analysis.games.plays import Run
 from fretc.analysis.games.replay import remembering
 from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
+
+_FEW = 5
+"""So many requirements and assumptions are looked at by themselves."""
+_LONG = 10
+"""Bits of a count that is worth an order of its own beside another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +45,9 @@ class Stage:
     unknown, what was before the first tick. Whoever loses even so loses."""
     steps: int = 0
     """How many ticks before a bound of a number it is remembered whether that is within reach."""
+    fresh: Numbers = field(default_factory=numbers, compare=False, repr=False)
+    """Variables that nothing of the stage has."""
+    _close: dict[frozenset[str], Stage] = field(default_factory=dict, compare=False, repr=False)
     _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
     """What each game of the stage needs of the assumptions, once it has been computed."""
 
@@ -45,6 +55,35 @@ class Stage:
         """Those of some requirements, in the order of the files."""
         wanted = set(ids)
         return tuple(each for each in self.arena.counters if each.id in wanted)
+
+    def close(self, ids: Iterable[str], budget: Budget) -> Stage:
+        """Where some of the requirements are best looked at: by themselves, if they count far.
+
+        What is remembered of numbers depends on all requirements; there it is the stage itself.
+
+        Raises:
+            OutOfTimeError: it takes longer than the budget to sort out their comparisons.
+        """
+        wanted = frozenset(ids)
+        members = (*self.counters(wanted), *self.arena.assumptions)
+        long = [each for each in members if each.longest >= _LONG]
+        remembers = bool(self._memory) or self.arena.alphabet.is_refinable
+        if len(members) > _FEW or len(long) < 2 or remembers:
+            return self
+        if wanted not in self._close:
+            self._close[wanted] = self._apart(wanted, budget)
+        return self._close[wanted]
+
+    def _apart(self, ids: frozenset[str], budget: Budget) -> Stage:
+        """Some of the requirements by themselves; the stage itself, if less is known of them so."""
+        try:
+            found = interleaved(self, ids, budget)
+        except BeyondError:
+            return self
+        counted = [{each.id for each in there.counters(ids)} for there in (self, found)]
+        mine, its = self.arena.alphabet, found.arena.alphabet
+        is_known = all(its.doubtful(role) <= mine.doubtful(role) for role in (Role.INPUT, Role.OUTPUT))
+        return found if is_known and counted[0] == counted[1] else self
 
     def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
         """The game of some counters, under all assumptions."""
@@ -74,6 +113,25 @@ class Stage:
             steps=self.steps,
         )
 
+    def assuming(self, more: Sequence[Formalized]) -> Stage:
+        """The same under further assumptions, whose bits come last in the order.
+
+        Raises:
+            BeyondError: they say something that the stage has no letters for.
+        """
+        alphabet, found = self.arena.alphabet, list(self.arena.assumptions)
+        for rule in more:
+            made = counter(rule, alphabet, self.fresh, {})
+            known = {*alphabet.inputs, *alphabet.outputs, *(bit.now for bit in made.bits)}
+            read = (bdd.support(each) for each in (made.safe, made.triggered, *made.steps))
+            if not known.issuperset(chain.from_iterable(read)):
+                raise BeyondError(f"{rule.id} is about other atoms")
+            found.append(made)
+        arena = replace(self.arena, assumptions=tuple(found))
+        return replace(
+            self, assumptions=(*self.assumptions, *more), arena=arena, _close={}, _upheld=[]
+        )
+
     def finer(self, budget: Budget) -> Stage | None:
         """The same with twice as much remembered of numbers; None: that tells nothing more."""
         if not self.arena.alphabet.is_refinable or self.steps >= _MOST_STEPS:
@@ -99,22 +157,30 @@ class Stage:
         return Runs(self.arena.alphabet, counters, budget, watched, certain=certain)
 
     def ticks(
-        self, ids: Iterable[str], letters: Iterable[Letter], numbers: Sequence[Tick] = ()
+        self, ids: Iterable[str], runs: Iterable[Run], numbers: Sequence[Tick] = ()
     ) -> tuple[Tick, ...]:
         """Letters as values of the variables of some requirements and of the assumptions.
 
         Args:
             ids: of the requirements.
-            letters: from the first tick on.
-            numbers: for each of them, where they depend on those of the tick before.
+            runs: letters from the first tick on.
+            numbers: of each tick, where they depend on those of the tick before.
         """
         wanted = set(ids)
         rules = [*(rule for rule in self.rules if rule.id in wanted), *self.assumptions]
-        names = {name for rule in rules for name in (*rule.variables, *atoms_of(rule.sentence))}
+        names = {name for rule in rules for name in (*rule.variables, *rule.propositions)}
+
+        def shown(tick: Tick) -> Tick:
+            return {name: tick[name] for name in sorted(tick) if name in names}
+
         alphabet = self.arena.alphabet
-        each = [alphabet.values(letter) for letter in remembering(alphabet, letters)]
-        each = [tick | more for tick, more in zip(each, numbers, strict=True)] if numbers else each
-        return tuple({name: tick[name] for name in sorted(tick) if name in names} for tick in each)
+        ticks = chain.from_iterable(
+            repeat(shown(alphabet.values(letter)), count)
+            for letter, count in remembering(alphabet, runs)
+        )
+        if not numbers:
+            return tuple(ticks)
+        return tuple(shown(tick | more) for tick, more in zip(ticks, numbers, strict=True))
 
     @property
     def certain(self) -> tuple[Counter, ...]:
@@ -162,7 +228,7 @@ def stage(
     return _built(rules, near, roles, numbers(), budget, as_fret=as_fret)
 
 
-def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
+def interleaved(setting: Stage, ids: Iterable[str], budget: Budget) -> Stage:
     """The stage of a few of the requirements, with bits of the same weight side by side.
 
     So one count stays easy to compare with another one; counters one after the other need as many
@@ -171,11 +237,24 @@ def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
     wanted = set(ids)
     rules = [rule for rule in setting.rules if rule.id in wanted]
     near = about(rules, setting.assumptions, setting.roles)
+
+    def built(fresh: Numbers) -> Stage:
+        return _built(
+            rules,
+            near,
+            setting.roles,
+            fresh,
+            budget,
+            as_fret=setting.as_fret,
+            favoured=setting.favoured,
+            steps=setting.steps,
+        )
+
     used = numbers()
-    first = _built(rules, near, setting.roles, used, ENDLESS, as_fret=setting.as_fret)
+    first = built(used)
     counters = (*first.arena.counters, *first.arena.assumptions)
     fresh = side_by_side([word for each in counters for word in each.words], next(used))
-    return _built(rules, near, setting.roles, fresh, ENDLESS, as_fret=setting.as_fret)
+    return built(fresh)
 
 
 def _built(
@@ -191,7 +270,15 @@ def _built(
 ) -> Stage:
     alphabet = alphabet_of([*rules, *near], roles, fresh, favoured, budget, steps)
     built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
-    return Stage(tuple(rules), tuple(near), built, roles, as_fret, favoured, steps)
+    return Stage(tuple(rules), tuple(near), built, roles, as_fret, favoured, steps, fresh)
+
+
+def _has_numbers(rule: Formalized) -> bool:
+    """Whether it compares any, as far as its letters tell."""
+    declared = rule.declarations
+    if declared is None:
+        return bool(comparisons(rule))
+    return bool(rule.stated) or not declared.propositions.keys().isdisjoint(rule.variables)
 
 
 _MOST_STEPS = 8
@@ -221,7 +308,7 @@ def alphabet_of(
         steps: how many ticks before a bound it is remembered whether that is within reach.
         of_moments: whether propositions over several samples are true or false at will.
     """
-    if not any(comparisons(rule) or rule.declarations for rule in rules):
+    if not any(map(_has_numbers, rules)):
         return Propositions(rules, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 

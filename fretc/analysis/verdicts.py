@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from compiler.files.records import replace as altered
@@ -18,6 +18,7 @@ from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
 from fretc.analysis.games.cores import Members, cores, minimal
 from fretc.analysis.games.plays import Counterstrategy, NoPlayError
 from fretc.analysis.games.replay import broken
+from fretc.analysis.games.switches import switched
 from fretc.analysis.reasons import because, listed
 from fretc.analysis.stage import Stage, stage
 from fretish.bindings.declarations import Role
@@ -76,7 +77,7 @@ def component(
 def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
     """The verdict, and how it is known, or why it is not."""
     _check_assumptions(setting, budget)
-    if setting.game(setting.arena.counters, budget).solution().is_realizable:
+    if not _is_lost(setting, [each.id for each in setting.arena.counters], budget):
         doubt = setting.left_out or setting.of_outputs
         if doubt is None:
             return Verdict.REALIZABLE, "the system has a strategy"
@@ -113,8 +114,9 @@ def _unrolled(setting: Stage, budget: Budget) -> tuple[Verdict, str] | None:
     return Verdict.REALIZABLE, f"there are no inputs, and {run} keeps all of them"
 
 
-def _is_lost(there: Stage, ids: Iterable[str], budget: Budget) -> bool:
+def _is_lost(setting: Stage, ids: Sequence[str], budget: Budget) -> bool:
     """Whether the environment wins against some requirements."""
+    there = setting.close(ids, budget)
     return not there.game(there.counters(ids), budget).solution().is_realizable
 
 
@@ -250,6 +252,10 @@ def _minimal(there: Stage, ids: Sequence[str], budget: Budget) -> Iterator[tuple
     def near(i: int, j: int) -> bool:
         return bool(read[ids[i]] & read[ids[j]])
 
+    if there.arena.alphabet.memory() is None:
+        at_once = switched(there.game(there.counters(ids), budget), there.fresh)
+        if at_once is not None:
+            return map(chosen, at_once.cores(budget))
     found = cores(len(ids), lambda members: _is_lost(there, chosen(members), budget), near)
     return map(chosen, found)
 
@@ -285,9 +291,14 @@ def _hint(setting: Stage, budget: Budget) -> str:
         return ""
 
 
-def _conflict(setting: Stage, ids: Sequence[str], budget: Budget) -> Conflict:
+_LONGEST = 200_000
+"""Ticks of a play that is written down."""
+
+
+def _conflict(whole: Stage, members: Sequence[str], budget: Budget) -> Conflict:
     """A minimal conflict, with a play that the formulas of its monitors confirm."""
-    ids, counters = sorted(ids), setting.counters(ids)
+    ids, setting = sorted(members), whole.close(members, budget)
+    counters = setting.counters(ids)
     game = setting.game(counters, budget)
     try:
         play = Counterstrategy(game, game.solution(traps=True), budget).play()
@@ -298,9 +309,7 @@ def _conflict(setting: Stage, ids: Sequence[str], budget: Budget) -> Conflict:
     lost = broken(rules, alphabet, play, as_fret=setting.as_fret)
     assert lost, f"the play of {', '.join(ids)} breaks none of them"
     assert not broken(setting.assumptions, alphabet, play), "the environment keeps its word"
-    return Conflict(
-        tuple(ids),
-        setting.ticks(ids, play.letters, play.numbers),
-        because(rules, counters, game, play),
-        play.loop,
-    )
+    why = because(rules, counters, game, play)
+    if play.ticks > _LONGEST:
+        return Conflict(tuple(ids), (), why)
+    return Conflict(tuple(ids), setting.ticks(ids, play.runs, play.numbers), why, play.loop)

@@ -231,7 +231,8 @@ class Cells:
         if not bits:
             return None
         steps = tuple(self._kept.steps[bit] for bit in bits)
-        return Counter("", bits, steps, agrees, None, (), bdd.true(), bdd.true())
+        words = tuple(self._kept.words)
+        return Counter("", bits, steps, agrees, None, words, bdd.true(), bdd.true())
 
     def _agreement(self, pairs: Sequence[Remembered]) -> Function:
         """Whether numbers of the tick before are as they were, where they have a pattern at all.
