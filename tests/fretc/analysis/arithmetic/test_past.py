@@ -1,6 +1,7 @@
 """Numbers of the tick before: what is certain of them, and what is left open."""
 
 import random
+from itertools import pairwise
 from typing import Any
 
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from compiler.targets.python import monitor as target
 from fretc.analysis.analysis import Options, analyze
 from fretc.analysis.findings import Verdict
+from fretc.analysis.games import plays, squaring
 from monitors.loading import load
 from tests.requirement_sets import analyzed, conflicts, roles, rule, rules
 
@@ -48,6 +50,24 @@ def test_a_bound_is_reached_step_by_step() -> None:
         assert found.verdict is answer, found.why
         assert found.complete
         assert conflicts(found) == ([] if answer is Verdict.REALIZABLE else [("R1", "R2")])
+
+
+def test_a_play_with_numbers_of_before_has_each_of_its_ticks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Leaps begin at once; but no number of the tick before is known after one."""
+    monkeypatch.setattr(squaring.Leaps, "is_due", lambda self: True)
+    monkeypatch.setattr(plays, "_LONG", 0)
+    low = "the sw shall for 6 ticks satisfy v <= 0"
+    high = "upon a the sw shall within 7 ticks satisfy v >= 2"
+    found = analyzed(RATE, low, high, roles=NAMED)
+    (conflict,) = found.conflicts
+    assert conflict.requirements == ("R1", "R2", "R3")
+    values = [0.0, *(float(tick["v"]) for tick in conflict.play)]
+    assert len(values) == 9
+    assert all(v <= 0 for v in values[:-1])
+    assert all(abs(v - before) <= 1 for before, v in pairwise(values[:-1]))
+    assert values[-1] < 2 or values[-1] - values[-2] > 1
 
 
 @pytest.mark.slow
