@@ -6,7 +6,7 @@ from enum import StrEnum
 from typing import Annotated, Final, Literal
 
 from compiler.files.records import Count, Name, Ordinal, Record, about
-from fretc.testing.suite import Polarity, Repeat
+from fretc.testing.suite import Repeat
 
 SCHEMA: Final = "fretc-conformance-1"
 
@@ -29,7 +29,7 @@ class Situated(Record, frozen=True):
     situation: Name
     words: str
     outcome: Outcome
-    why: Annotated[str, about("why it was not searched; empty: it was")] = ""
+    why: Annotated[str, about("why it was not reached or not searched, if that is known")] = ""
 
 
 class Failure(Record, frozen=True):
@@ -39,8 +39,7 @@ class Failure(Record, frozen=True):
     sentence: Name
     because: Annotated[str, about("the reason, in words")]
     rows: Annotated[tuple[Repeat, ...], about("inputs and outputs; the last tick violates it")]
-    situation: Annotated[Name, about("what the run was to show")]
-    polarity: Polarity
+    situation: Annotated[str, about("what the run was to show; empty: its inputs had no aim")]
     ticks: Annotated[Ordinal, about("of the run on which it was found")]
     tries: Annotated[Count, about("runs by which that one was made shorter")]
     again: Annotated[bool, about("whether the program did the same with the same inputs")]
