@@ -178,7 +178,7 @@ def _files(suite: Suite, rules: Sequence[Formalized], emitted: str, output: str)
     for why in dict.fromkeys(left.values()):
         names = [name for name in left if left[name] == why]
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-        say_line(visible(f"not written for FRET: {names[0]}{more}: {why}"))
+        say_line(visible(f"not written: {names[0]}{more}: {why}"))
     if output == "-":
         return {Path("-"): "".join(each.text for each in artifacts)}
     return {Path(output) / emitted / each.path: each.text for each in artifacts}

@@ -38,8 +38,8 @@ def made(*sentences: str) -> tuple[Suite, tuple[Formalized, ...]]:
 def written(folder: Path, form: Form, *sentences: str) -> tuple[Suite, tuple[Formalized, ...]]:
     found, every = made(*sentences)
     artifacts, _ = files(found, every, form)
-    for each in artifacts:
-        (folder / each.path).write_text(each.text)
+    for artifact in artifacts:
+        (folder / artifact.path).write_text(artifact.text)
     return found, every
 
 
@@ -49,15 +49,16 @@ def functions(folder: Path, name: str) -> list[str]:
     text = path.read_text().replace("Path(__file__)", f"Path({str(path)!r})")
     module = executed(text, name)
     failed = []
-    for each in dir(module):
-        if each.startswith("test_"):
+    for function in dir(module):
+        if function.startswith("test_"):
             try:
-                getattr(module, each)()
+                getattr(module, function)()
             except AssertionError:
-                failed.append(each)
+                failed.append(function)
     return failed
 
 
+@pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_emitted_tests_pass(sentence: str, tmp_path: Path) -> None:
     found, _ = written(tmp_path, Form.PYTEST, sentence)
@@ -66,6 +67,7 @@ def test_emitted_tests_pass(sentence: str, tmp_path: Path) -> None:
     assert functions(tmp_path, "test_r1.py") == []
 
 
+@pytest.mark.slow
 def test_long_bounds_stay_short(tmp_path: Path) -> None:
     found, _ = written(tmp_path, Form.PYTEST, SENTENCES[3])
     assert max(test.ticks for test in found.tests) > 600
@@ -119,6 +121,7 @@ def judgements(text: str) -> list[object]:
     return found
 
 
+@pytest.mark.slow
 def test_a_wrong_monitor_fails(tmp_path: Path) -> None:
     written(tmp_path, Form.PYTEST, SENTENCES[0])
     path = tmp_path / "r1_monitor.py"
@@ -145,18 +148,18 @@ def test_tables_are_read_by_the_monitor(sentence: str, tmp_path: Path) -> None:
         ran = subprocess.run(
             [*command, *names], cwd=tmp_path, capture_output=True, text=True, check=False
         )
-        said = [json.loads(line) for line in ran.stdout.splitlines()]
-        assert [each["verdict"] for each in said] == [row["verdict"] for row in own], ran.stderr
-        assert [str(each["ticks"]) for each in said] == [row["ticks"] for row in own]
+        found = [json.loads(line) for line in ran.stdout.splitlines()]
+        assert [row["verdict"] for row in found] == [row["verdict"] for row in own], ran.stderr
+        assert [str(row["ticks"]) for row in found] == [row["ticks"] for row in own]
 
 
 def test_traces_of_the_simulator_have_its_form(tmp_path: Path) -> None:
     found, _ = written(tmp_path, Form.FRET, *SENTENCES[:3])
     traces = json.loads((tmp_path / "ltlsim.json").read_text())
     shown = [test for test in found.tests if test.polarity is not Polarity.UNKNOWN]
-    assert [each["traceID"] for each in traces] == [test.name for test in shown]
-    for each, test in zip(traces, shown, strict=True):
-        trace = each["theTrace"]
+    assert [known["traceID"] for known in traces] == [test.name for test in shown]
+    for known, test in zip(traces, shown, strict=True):
+        trace = known["theTrace"]
         size = len(trace["keys"])
         assert trace["traceLength"] == max(4, test.ticks)
         assert len(trace["values"]) == size * trace["traceLength"]
