@@ -1,7 +1,8 @@
 """FRET's assignments: Lustre ↔ the expressions of FRETish.
 
-Only what certainly means the same is translated; the rest of Lustre (`pre`, `->`, `if`, `div`)
-stays the text that it is. Source: Lustre V6 reference manual, expressions and their precedences.
+Only what certainly means the same is translated; the rest of Lustre (`if`, `div`, `pre` without a
+first value) stays the text that it is. `0.0 -> pre x`, with a literal that says the type, is
+`preReal(0.0, x)`. Source: Lustre V6 reference manual, expressions and their precedences.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ from fretish.reading.recursion import deep
 
 _LEXEME = re.compile(
     r"\s*(?:(?P<word>[A-Za-z_]\w*)|(?P<number>\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)"
-    r"|(?P<sign><>|<=|>=|=>|[-+*/<>=(),]))"
+    r"|(?P<sign><>|<=|>=|=>|->|[-+*/<>=(),]))"
 )
 _WORDS = {"and": "&", "or": "|", "not": "!", "xor": "xor", "mod": "mod", "true": "true",
           "false": "false"}  # fmt: skip
 _FOREIGN = frozenset(
-    "pre current when merge fby if then else with div nor int real bool let tel node const "
+    "current when merge fby if then else with div nor int real bool let tel node const "
     "returns var at of the is".split()
 )
 """Words that Lustre has for itself, or FRETish."""
@@ -31,14 +32,15 @@ _ENDS_NEGATION = frozenset({")", ",", "and", "or", "=>", "xor", ""})
 """What follows a name that `not` stands before: whether it binds closer than `=` is disputed."""
 _MOST = 20_000
 """Characters of an assignment that is read."""
+_MOST_DELAYS = 50
 
 
 def fretish(text: str) -> e.Expression | None:
     """What an assignment means in FRETish; None where that is not certain."""
     if len(text) > _MOST:
         return None
-    lexemes = _lexemes(text)
-    if not lexemes or not _is_clear(lexemes):
+    lexemes = _delayed(_lexemes(text) or [])
+    if not lexemes or {"->", "pre"} & {*lexemes} or not _is_clear(lexemes):
         return None
     words = " ".join(_WORDS.get(word, _SIGNS.get(word, word)) for word in lexemes)
     tree = parse_value(Source("assignment", words).span())
@@ -56,6 +58,57 @@ def _lexemes(text: str) -> list[str] | None:
         found.append(match[0].strip())
         place = match.end()
     return found
+
+
+def _delayed(lexemes: list[str]) -> list[str]:
+    """With `preReal(0.0, x)` for `0.0 -> pre x`, where it stands alone or in parentheses."""
+    found = lexemes if lexemes.count("->") <= _MOST_DELAYS else []
+    for arrow in reversed([i for i, word in enumerate(found) if word == "->"]):
+        first, after = _literal(found[:arrow]), _after_pre(found, arrow)
+        begin = arrow - len(first)
+        alone = found[begin - 1 : begin] in ([], ["("]) and found[after : after + 1] in ([], [")"])
+        if not first or not after or not alone or _is_called(found, begin - 1):
+            return []
+        inner = found[arrow + 2 : after]
+        found = [*found[:begin], _function(first), "(", *first, ",", *inner, ")", *found[after:]]
+    return found
+
+
+def _literal(before: list[str]) -> list[str]:
+    """The literal at the end; none where something else is there."""
+    last = before[-1:]
+    if last and (last[0] in ("true", "false") or last[0][0].isdigit()):
+        negative = before[-2:-1] == ["-"] and last[0][0].isdigit()
+        return before[-2:] if negative else last
+    return []
+
+
+def _after_pre(lexemes: list[str], arrow: int) -> int:
+    """The place after `pre x` or `pre (...)` that follows; 0 where none does."""
+    if lexemes[arrow + 1 : arrow + 2] != ["pre"] or len(lexemes) < arrow + 3:
+        return 0
+    start, level = arrow + 2, 0
+    if lexemes[start] != "(":
+        is_name = re.fullmatch(r"[A-Za-z_]\w*", lexemes[start]) and lexemes[start] not in _WORDS
+        return start + 1 if is_name and lexemes[start + 1 : start + 2] != ["("] else 0
+    for place in range(start, len(lexemes)):
+        level += {"(": 1, ")": -1}.get(lexemes[place], 0)
+        if level == 0:
+            return place + 1
+    return 0
+
+
+def _is_called(lexemes: list[str], opening: int) -> bool:
+    """Whether the parenthesis holds the arguments of a function."""
+    before = lexemes[opening - 1 : opening] if opening > 0 else []
+    return bool(before) and before[0] not in (*_WORDS, "pre") and before[0][0].isalpha()
+
+
+def _function(first: list[str]) -> str:
+    """What takes a value of the type of the literal."""
+    if first[-1] in ("true", "false"):
+        return "preBool"
+    return "preReal" if "." in first[-1] or "e" in first[-1].lower() else "preInt"
 
 
 def _is_clear(lexemes: list[str]) -> bool:

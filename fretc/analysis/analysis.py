@@ -36,6 +36,8 @@ from fretc.analysis.implications import Consistency, Constant, Removable
 from fretc.analysis.repairs import repairs
 from fretc.analysis.stage import Stage, stage
 from fretc.analysis.verdicts import Completeness, component, conflicts, strategy, verdict
+from fretish.bindings.declarations import Role
+from fretish.checking import NUMBERS_BACK, calls, conditions
 from fretish.printer import sentence as printed
 from fretish.reading.recursion import deep
 
@@ -98,7 +100,6 @@ def analyze(
 
 Question = Callable[[Stage, float], Iterator[Finding]]
 _OF_GROUPS: Mapping[str, Question] = {
-    "can any run keep {}?": of_runs.consistency,
     "does each of {} say anything?": of_runs.constants,
     "is each of {} ever triggered?": of_runs.vacuities,
     "do some of {} imply others?": of_runs.redundancies,
@@ -125,6 +126,7 @@ def jobs(
         *([_promises(assumptions, roles, options)] if assumptions else []),
         *(setting.verdict() for setting in components),
         *(setting.conflicts() for setting in components),
+        *(setting.consistency() for setting in groups),
         *(
             setting.job(title, question)
             for title, question in _OF_GROUPS.items()
@@ -198,6 +200,33 @@ class _Setting:
                 yield not_checked(str(error))
 
         return Job(f"can {self._name} be kept together?", ask, not_checked)
+
+    def consistency(self) -> Job:
+        """Whether any run keeps a group; where a system keeps all of it, one does.
+
+        Where a system that chooses everything cannot keep a part of it, none does.
+        """
+        title = f"can any run keep {self._name}?"
+
+        def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            kept, lost = (
+                {
+                    id
+                    for each in known
+                    if isinstance(each, Component) and each.verdict is verdict
+                    for id in each.requirements
+                }
+                for verdict in (Verdict.REALIZABLE, Verdict.UNREALIZABLE)
+            )
+            chosen = (self._roles[name] for rule in self._rules for name in rule.variables)
+            if not self._assumptions and kept.issuperset(self._ids):
+                yield Consistency(self._ids, True)
+            elif not self._assumptions and lost & {*self._ids} and Role.INPUT not in chosen:
+                yield Consistency(self._ids, False)
+            else:
+                yield from self._answers(title, of_runs.consistency)
+
+        return Job(title, ask, partial(OpenQuestion, title))
 
     def conflicts(self) -> Job:
         """Which of a component fight, where it cannot be kept, or nobody knows."""
@@ -300,13 +329,19 @@ def assembled(
             for each in assumptions
         ),
         roles={name: roles[name] for name in sorted(roles)},
-        terms=tuple(_terms(rules, options)),
+        terms=tuple(_terms([*rules, *assumptions], bool(assumptions), options)),
         open=open_,
     )
 
 
 def _of(kind: type[F], found: Sequence[Finding]) -> tuple[F, ...]:
     return tuple(each for each in found if isinstance(each, kind))
+
+
+def _looks_back(rule: Formalized) -> bool:
+    if temporal_predicate(rule.sentence):
+        return True
+    return any(NUMBERS_BACK & {*calls(each)} for each in conditions(rule.sentence))
 
 
 def _verdict(components: Sequence[Component], missing: Sequence[str]) -> tuple[Verdict, str]:
@@ -339,8 +374,14 @@ def _consistent(rules: Sequence[Formalized], found: Sequence[Consistency]) -> bo
     return True if known.issuperset(rule.id for rule in rules) else None
 
 
-def _terms(rules: Sequence[Formalized], options: Options) -> Iterator[str]:
-    """What the findings rest on."""
+def _terms(rules: Sequence[Formalized], assumes: bool, options: Options) -> Iterator[str]:
+    """What the findings rest on.
+
+    Args:
+        rules: the requirements and the assumptions.
+        assumes: whether there are assumptions.
+        options: of the analysis.
+    """
     yield (
         "at each tick the environment sets all inputs, then the system all outputs, which may "
         "depend on them (Mealy)"
@@ -352,7 +393,12 @@ def _terms(rules: Sequence[Formalized], options: Options) -> Iterator[str]:
         )
     else:
         yield "`eventually` may take as long as it likes, but not for ever"
-    if any(temporal_predicate(rule.sentence) for rule in rules):
-        yield "before the first tick nothing was true; `preBool` states its own first value"
+    if assumes:
+        yield "what is said of runs is said of those that keep all assumptions"
+    if any(_looks_back(rule) for rule in rules):
+        yield (
+            "before the first tick nothing was true; `preBool`, `preInt` and `preReal` state their "
+            "own first value"
+        )
     if any(comparisons(rule) for rule in rules):
         yield "numbers are exact: whole or real, without bounds; floats round, which is not seen"

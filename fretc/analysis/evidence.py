@@ -74,11 +74,11 @@ def document(
     as_fret: bool,
 ) -> Document:
     """The evidence of an analysis of these."""
-    members = _members(rules), _members(assumptions)
-    return Document(SCHEMA, __version__, as_fret, *members, analysis)
+    return Document(SCHEMA, __version__, as_fret, members(rules), members(assumptions), analysis)
 
 
-def _members(rules: Sequence[Formalized]) -> dict[str, Member]:
+def members(rules: Sequence[Formalized]) -> dict[str, Member]:
+    """Requirements, or assumptions, as they are now, by their ids."""
     return {rule.id: Member(printed(rule.written), _digest(rule)) for rule in rules}
 
 
@@ -111,8 +111,15 @@ def suspicions(
     """
     if known.as_fret:
         yield "it answers FRET's question, in which `eventually` means at once"
-    yield from _changes(known.requirements, _members(rules), "")
-    yield from _changes(known.assumptions, _members(assumptions), "assumption ")
+    yield from changes(known, rules, assumptions)
+
+
+def changes(
+    known: Document, rules: Sequence[Formalized], assumptions: Sequence[Formalized]
+) -> Iterator[str]:
+    """What was added, was taken out, or has changed since an analysis."""
+    yield from _changes(known.requirements, members(rules), "")
+    yield from _changes(known.assumptions, members(assumptions), "assumption ")
 
 
 def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -> Iterator[str]:
@@ -121,7 +128,7 @@ def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -
             yield f"{what}{id} was part of the set, and is not any more"
         elif id not in then:
             yield f"{what}{id} was no part of the set"
-        elif then[id].sha256 != now[id].sha256:
+        elif then[id] != now[id]:
             yield f"{what}{id} has changed since"
 
 
@@ -185,6 +192,12 @@ def read(path: str) -> AnalyzedSet | Diagnostic:
     if mistake:
         return _wrong(source, f"contradicts itself: {mistake}")
     return AnalyzedSet(source.name, sha256(source.text), found)
+
+
+def known(path: str | None) -> AnalyzedSet | Diagnostic | None:
+    """The file; None: that at its usual place, where there is one."""
+    place = path or written()
+    return read(place) if place is not None else None
 
 
 def written() -> str | None:

@@ -95,6 +95,11 @@ class Assumption(Record, frozen=True):
     text: Annotated[str, about("in natural language; it may be empty")]
     sentence: Annotated[str, about("in FRETish")]
 
+    @property
+    def in_words(self) -> str:
+        """`A1: the operator shall never satisfy start & stop (one button)`."""
+        return f"{self.id}: {self.sentence}{f' ({self.text})' if self.text else ''}"
+
 
 class OpenQuestion(Record, frozen=True):
     """A question without an answer."""

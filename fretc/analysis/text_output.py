@@ -115,9 +115,9 @@ def _inconsistency(clash: Inconsistency, analysis: Analysis) -> Iterator[Line]:
 
 def drawn(play: Sequence[Mapping[str, object]], roles: Mapping[str, Role]) -> Iterator[str]:
     """A lane for each variable, inputs first; equal ticks in one column."""
-    if not play:
-        return
     names = lanes(play, roles)
+    if not names:  # no tick, or no variable: all that is compared are outputs
+        return
     found = columns(play, names)
     width = max(len("tick"), *(len(_lane(name, roles)) for name in names))
     for start in range(0, len(found), _WIDEST):
@@ -169,6 +169,8 @@ def _row(head: str, cells: Iterable[str], width: int, widths: Sequence[int]) -> 
 
 
 def _value(value: object) -> str:
+    if value is None:
+        return "?"
     return str(int(value)) if isinstance(value, bool) else str(value)
 
 
@@ -202,7 +204,7 @@ def _rest(analysis: Analysis) -> Iterator[Line]:
         text = f"{signs.UNKNOWN.glyph} open: {each.question}: {each.why}"
         yield text, signs.UNKNOWN.colour
     for assumption in analysis.assumptions:
-        yield f"assumed {assumption.id}: {assumption.text or assumption.sentence}", None
+        yield f"assumed {assumption.in_words}", None
     for role in (Role.INPUT, Role.OUTPUT):
         names = [name for name, own in analysis.roles.items() if own is role]
         yield f"{role}s: {', '.join(names) or 'none'}", None

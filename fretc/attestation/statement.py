@@ -20,6 +20,7 @@ from compiler.files.edition import __version__, edition
 from compiler.files.records import UNSET
 from compiler.files.shell_quoting import is_sha256
 from compiler.logic.claims import Proof
+from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.evidence.basis import KINDS
 from fretc.audit.evidence.briefs import Brief, EvidenceSource
 from fretc.report.traceability.lock import Review
@@ -27,12 +28,13 @@ from fretc.report.traceability.waivers import Waiver
 from fretc.verification.reader import Proofs
 
 TYPE = "https://in-toto.io/Statement/v1"
-EVIDENCE, LOG, PROOFS, REVIEW, WAIVER, REPORT = (
-    "evidence", "log", "proofs", "review", "waiver", "report",
+EVIDENCE, LOG, PROOFS, ANALYSIS, REVIEW, WAIVER, REPORT = (
+    "evidence", "log", "proofs", "analysis", "review", "waiver", "report",
 )  # fmt: skip
 _KINDS = {
     EVIDENCE: (EVIDENCE, LOG, PROOFS),
     PROOFS: (PROOFS,),
+    ANALYSIS: (ANALYSIS,),
     REVIEW: (REVIEW,),
     WAIVER: (WAIVER,),
     REPORT: (REPORT,),
@@ -168,6 +170,18 @@ def _requirements(results: Sequence[Brief]) -> list[dict[str, Any]]:
 def proofs(file: Proofs) -> Statement:
     """Of what was proved."""
     return Statement(PROOFS, (_proofs(file),), {"proofs": _proved(file.proofs)})
+
+
+def analysis(file: AnalyzedSet) -> Statement:
+    """Of whether requirements can be kept together."""
+    found = file.document.analysis
+    says = {
+        "requirements": {id: each.sha256 for id, each in file.document.requirements.items()},
+        "verdict": found.verdict,
+        "conflicts": [list(each.requirements) for each in found.conflicts],
+        "assumptions": {each.id: each.sentence for each in found.assumptions},
+    }
+    return Statement(ANALYSIS, (Subject(ANALYSIS, Path(file.file).name, file.sha256),), says)
 
 
 def _proofs(file: Proofs) -> Subject:

@@ -10,6 +10,7 @@ import click
 
 from fretc.terminal.options import (
     PATH,
+    analysis_option,
     bindings_option,
     evidence_option,
     format_option,
@@ -24,6 +25,7 @@ from fretish.diagnostics.rendering import as_json, visible
 
 if TYPE_CHECKING:
     from compiler.project.folder import Project
+    from fretc.analysis.evidence import AnalyzedSet
 
 
 @click.command(short_help="Say what is wrong or missing in a project, before any run.")
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
 @hazards_option
 @evidence_option
 @verification_option
+@analysis_option
 @click.option(
     "--analyze",
     is_flag=True,
@@ -48,6 +51,7 @@ def check(
     hazards: str | None,
     evidence: str,
     verification: str | None,
+    analysis: str | None,
     analyze: bool,
     fix: bool,
     form: str,
@@ -66,6 +70,7 @@ def check(
     from compiler.project.folder import whole
     from compiler.project.paths import beside
     from compiler.project.stated_numbers import first_unit
+    from fretc.analysis.evidence import known as known_analysis
     from fretc.audit.evidence.briefs import Briefs
     from fretc.audit.refusals import refusals
     from fretc.audit.store.anywhere import source as read_evidence
@@ -92,6 +97,10 @@ def check(
     if isinstance(proofs, Diagnostic):
         diagnostics.append(proofs)
         proofs = ()
+    analyzed = known_analysis(analysis)
+    if isinstance(analyzed, Diagnostic):
+        diagnostics.append(analyzed)
+        analyzed = None
     results = None if isinstance(audited, Diagnostic) else audited
     briefs = Briefs.of(results) if results else None
     lock, path = None, beside(requirements, "fretc.lock")
@@ -104,7 +113,7 @@ def check(
         found, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
         waivers = {id: waiver for id, waiver in found.items() if waiver.covers(today())}
         diagnostics.extend(wrong)
-    assessed = assessments(project, briefs, lock, waivers, proofs)
+    assessed = assessments(project, briefs, lock, waivers, proofs, analyzed)
     standings = [assessment.standing for assessment in assessed]
     if path is not None:
         chains = [standing.chain for standing in standings]
@@ -115,18 +124,18 @@ def check(
     flawed = has_errors(diagnostics)
     diagnostics.extend(reason for _, why in refusals(project) for reason in why)
     if analyze and not flawed:
-        diagnostics.extend(_together(project))
+        diagnostics.extend(_together(project, analyzed))
     if not flawed:
         diagnostics.extend(warnings(project, standings, lock, results))
     _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), form)
 
 
-def _together(project: Project) -> Iterator[Diagnostic]:
+def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnostic]:
     """F561 for each conflict, F562 where there is no answer."""
     from fretc.analysis.analysis import DEFAULT
     from fretc.analysis.arena.roles import roles
     from fretc.analysis.assumptions import assumptions
-    from fretc.analysis.evidence import AnalyzedSet, read, remarks, suspicions, written
+    from fretc.analysis.evidence import remarks, suspicions
     from fretc.commands.analyze import asked
 
     rules = tuple(rule for rule in project.rules if rule.requirement.status != "retired")
@@ -136,9 +145,7 @@ def _together(project: Project) -> Iterator[Diagnostic]:
     if isinstance(chosen, tuple):
         yield from chosen
     elif rules and not has_errors(said):
-        path = written()
-        known = read(path) if path is not None else None
-        if isinstance(known, AnalyzedSet) and not [*suspicions(known.document, rules, assumed)]:
+        if known is not None and not [*suspicions(known.document, rules, assumed)]:
             analysis = known.document.analysis
         else:
             analysis, _ = asked(rules, assumed, chosen, DEFAULT)

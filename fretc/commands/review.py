@@ -10,6 +10,7 @@ import click
 
 from fretc.terminal.options import (
     PATH,
+    analysis_option,
     evidence_option,
     format_option,
     path_option,
@@ -44,9 +45,10 @@ if TYPE_CHECKING:
 @requirements_option
 @evidence_option
 @verification_option
+@analysis_option
 @path_option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
 @path_option("--key", help="Your private key, to sign the reviews with: ~/.ssh/id_ed25519.")
-@click.option("--accept-violations", is_flag=True, help="Also where a run violates a requirement.")
+@click.option("--accept-violations", is_flag=True, help="Also what a run violates, and conflicts.")
 @format_option()
 def lock(
     ids: tuple[str, ...],
@@ -57,6 +59,7 @@ def lock(
     requirements: str,
     evidence: str,
     verification: str | None,
+    analysis: str | None,
     path: str | None,
     key: str | None,
     accept_violations: bool,
@@ -67,7 +70,8 @@ def lock(
     Fingerprints of the sentence, its parents, parameters, bindings and artefacts, and of each
     audited run with its verdict, go into `fretc.lock`. Any later change makes the links downstream
     of it suspect. Without an ID all requirements are accepted; of the others the reviews stay.
-    What the runs say of each is named; a violation is accepted only with `--accept-violations`.
+    What the runs say of each is named, and whether it can be kept with the others; a violation or
+    a conflict is accepted only with `--accept-violations`, and stays what it is.
     Evidence of something else than what is here now is not accepted. A review of a requirement
     that is not there any more stays until its ID is given, or none.
     """
@@ -94,7 +98,7 @@ def lock(
     if is_to_come(day):
         message = f"`{day}` is still to come, and nobody can have reviewed then"
         stop(Diagnostic(Code.BAD_USAGE, message, help="leave `--date` out: then it is today"))
-    project, chains = _chains(requirements, evidence, verification)
+    project, chains = _chains(requirements, evidence, verification, analysis)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     where = path or _beside(requirements)
@@ -138,9 +142,15 @@ def _signatures(
 @requirements_option
 @evidence_option
 @verification_option
+@analysis_option
 @format_option()
 def diff(
-    baseline: str | None, requirements: str, evidence: str, verification: str | None, form: str
+    baseline: str | None,
+    requirements: str,
+    evidence: str,
+    verification: str | None,
+    analysis: str | None,
+    form: str,
 ) -> None:
     """Say what has changed since a review, verdicts included.
 
@@ -151,7 +161,7 @@ def diff(
     from fretc.report.traceability.comparison import as_record, differences, text
     from fretc.report.traceability.lock import standings
 
-    project, chains = _chains(requirements, evidence, verification)
+    project, chains = _chains(requirements, evidence, verification, analysis)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     base = _read(baseline or _beside(requirements), must=True)
@@ -166,9 +176,10 @@ def diff(
 
 
 def _chains(
-    requirements: str, evidence: str, verification: str | None
+    requirements: str, evidence: str, verification: str | None, analysis: str | None
 ) -> tuple[Project, Sequence[Chain]]:
     from compiler.project.folder import whole
+    from fretc.analysis.evidence import known as known_analysis
     from fretc.audit.evidence.briefs import Briefs
     from fretc.audit.store.anywhere import source as read
     from fretc.report.traceability.chain import chains
@@ -180,14 +191,17 @@ def _chains(
     proofs = known(verification)
     if isinstance(proofs, Diagnostic):
         stop(proofs)
+    analyzed = known_analysis(analysis)
+    if isinstance(analyzed, Diagnostic):
+        stop(analyzed)
     audited = read(evidence)
     if isinstance(audited, Diagnostic):
         say_briefly([*project.diagnostics, audited], requirements)
         if audited.is_error:
             raise SystemExit(BAD)
-        return project, chains(project, None, proofs=proofs)
+        return project, chains(project, None, proofs=proofs, analyzed=analyzed)
     say_briefly(project.diagnostics, requirements)
-    return project, chains(project, Briefs.of(audited), proofs=proofs)
+    return project, chains(project, Briefs.of(audited), proofs=proofs, analyzed=analyzed)
 
 
 def _chosen(

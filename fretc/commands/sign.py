@@ -42,7 +42,7 @@ class Signable:
     lines: tuple[str, ...]
 
 
-@click.command(short_help="Sign evidence, proofs, reviews, waivers or a report with your key.")
+@click.command(short_help="Sign evidence, proofs, an analysis, reviews or a report with your key.")
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @path_option("--key", required=True, metavar="FILE", help="Your private key: ~/.ssh/id_ed25519.")
 @click.option(
@@ -56,12 +56,12 @@ class Signable:
     "and none is given.",
 )
 def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: str | None) -> None:
-    """Sign evidence, proofs, reviews, waivers or a report with your key.
+    """Sign evidence, proofs, an analysis, reviews, waivers or a report with your key.
 
-    FILE is `build/evidence.json`, `build/verification.json`, `fretc.lock`, `waivers.toml` or a
-    report. What is signed is told before your passphrase is asked for (or taken from
-    FRETC_PASSPHRASE). The signature is a line of `FILE.intoto.jsonl`: an envelope (DSSE) with a
-    statement (in-toto). Signatures of others stay.
+    FILE is `build/evidence.json`, `build/verification.json`, `build/analysis.json`, `fretc.lock`,
+    `waivers.toml` or a report. What is signed is told before your passphrase is asked for (or
+    taken from FRETC_PASSPHRASE). The signature is a line of `FILE.intoto.jsonl`: an envelope (DSSE)
+    with a statement (in-toto). Signatures of others stay.
     """
     _installed()
     signables = [_signable(path, key, reviewer, verification) for path in dict.fromkeys(files)]
@@ -169,9 +169,10 @@ def _usage(what: str, mend: str) -> Diagnostic:
 
 
 def _json(path: str, verification: str | None) -> Signable:
-    """Evidence, proofs, or a report: they say which."""
+    """Evidence, proofs, an analysis, or a report: they say which."""
     from compiler.files.text_files import read as read_text
     from compiler.logic import claims as proved
+    from fretc.analysis import evidence as analyzed
     from fretc.audit.store.anywhere import read
     from fretc.report.model.views import SCHEMA
     from fretc.verification.reader import written
@@ -183,6 +184,8 @@ def _json(path: str, verification: str | None) -> Signable:
         schema = _schema(source)
         if schema == proved.SCHEMA:
             return _proved(path)
+        if schema == analyzed.SCHEMA:
+            return _analyzed(path)
         if schema == SCHEMA:
             return _report(path)
     audited = read(path)
@@ -205,7 +208,7 @@ def _schema(source: Source) -> object:
                 Code.BAD_EVIDENCE,
                 f"`{source.name}` is nothing that fretc signs: {error}",
                 Source(source.name, "").span(),
-                help="name what `fretc audit`, `fretc verify` or `fretc report` has written",
+                help="name what `fretc audit`, `verify`, `analyze` or `report` has written",
             )
         )
 
@@ -265,6 +268,24 @@ def _proved(path: str) -> Signable:
     proofs = _proofs(path)
     statement = attestation.proofs(proofs)
     return Signable(path, statement, statement.main, tuple(_summary_of_proofs(proofs)))
+
+
+def _analyzed(path: str) -> Signable:
+    from fretc.analysis.evidence import read
+    from fretc.attestation import statement as attestation
+
+    known = read(path)
+    if isinstance(known, Diagnostic):
+        stop(known)
+    _same_bytes(path, known.sha256)
+    found = known.document.analysis
+    lines = (
+        f"analysis {path}: {found.verdict}",
+        *(f"  conflict of {', '.join(each.requirements)}" for each in found.conflicts),
+        *(f"  assumed {each.id}: {each.sentence}" for each in found.assumptions),
+    )
+    statement = attestation.analysis(known)
+    return Signable(path, statement, statement.main, lines)
 
 
 def _summary_of_proofs(proofs: Proofs) -> Iterator[str]:
@@ -405,7 +426,8 @@ def demand(evidence: EvidenceSource, by: str, others: Mapping[str, str | None]) 
     Args:
         evidence: as it was read.
         by: path of the public key, or of a list of signers, that the user trusts.
-        others: kind of other files (`report`, `proofs`) → path, where they must be signed, too.
+        others: kind of other files (`report`, `proofs`, `analysis`) → path, where they must be
+            signed, too.
     """
     from compiler.files.text_files import file_sha256
     from fretc.attestation.signatures import book

@@ -11,6 +11,7 @@ import click
 from fretc.commands.sign import demand
 from fretc.terminal.options import (
     PATH,
+    analysis_option,
     bindings_option,
     evidence_place,
     format_option,
@@ -21,7 +22,17 @@ from fretc.terminal.options import (
     requirements_option,
     verification_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, coloured, say, say_briefly, stop
+from fretc.terminal.output import (
+    BAD,
+    INTERRUPTED,
+    NOT_SHOWN,
+    SHOWN,
+    VIOLATION,
+    coloured,
+    say,
+    say_briefly,
+    stop,
+)
 from fretish.diagnostics.diagnostic import (
     Code,
     Diagnostic,
@@ -35,6 +46,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from compiler.project.folder import Project
+    from fretc.analysis.evidence import AnalyzedSet
     from fretc.audit.evidence.schema import Document
     from fretc.audit.plan import Plan
     from fretc.report.traceability.lock import Lock
@@ -69,13 +81,15 @@ if TYPE_CHECKING:
 )
 @path_option("--report", help="An HTML report: it is made again from FILE, and compared.")
 @verification_option
+@analysis_option
 @path_option(
     "--signed-by",
     metavar="KEY",
     help="A public key (id_ed25519.pub), or a list of signers: one of them must have signed FILE, "
-    "and what --report and --verification name.",
+    "and what --report, --verification and --analysis name.",
 )
 @click.option("--no-proofs", is_flag=True, help="Prove nothing again: proofs are not checked.")
+@click.option("--no-analysis", is_flag=True, help="Do not analyze again: that is not checked.")
 @label_option
 @limit_option
 @jobs_option
@@ -90,8 +104,10 @@ def verify_evidence(
     only: str | None,
     report: str | None,
     verification: str | None,
+    analysis: str | None,
     signed_by: str | None,
     no_proofs: bool,
+    no_analysis: bool,
     labels: tuple[str, ...],
     limit: int,
     jobs: int,
@@ -101,10 +117,12 @@ def verify_evidence(
 
     FILE must have a result of every requirement in force in each run, every run that the lock
     beside the requirements names, and every log of the manifest. Of every log the SHA-256 is taken
-    again, every requirement is audited again, and every proof is made again; what comes out is
-    compared with what is written. Exit status: 0 it stands, 1 something differs or is missing, 3
-    something was not checked, 2 bad use or bad input.
+    again, every requirement is audited again, every proof is made again, and whether all can be
+    kept together is asked again; what comes out is compared with what is written. Exit status: 0
+    it stands, 1 something differs or is missing, 3 something was not checked, 2 bad use or bad
+    input.
     """
+    from fretc.analysis.evidence import written as analyzed
     from fretc.audit.store.anywhere import required
     from fretc.verification.reader import written
 
@@ -114,16 +132,21 @@ def verify_evidence(
         stop(evidence)
     whole = evidence.document
     if signed_by is not None:
-        demand(evidence, signed_by, {"report": report, "proofs": verification})
+        others = {"report": report, "proofs": verification, "analysis": analysis}
+        demand(evidence, signed_by, others)
     project, plan = _plan(requirements, bindings, labels)
     scope = _scope(plan, only, requirements)
     verification = verification or written()
     proofs = _proofs(verification)
+    analysis = analysis or analyzed()
+    known = _analyzed(analysis)
     log_hashes = _manifest(manifest)
     places = _places(_runs(whole), places_named, offline=offline)
     results = [*_rechecked(whole, plan, places, scope, log_hashes, jobs)]
     results += _reproved(project, proofs, scope, limit, skip=no_proofs)
-    sources = (file, verification, requirements)
+    if known is not None:
+        results += _asked_again(project, known, scope, skip=no_analysis)
+    sources = (file, verification, analysis, requirements)
     same = _report(project, report, *sources) if report is not None else None
     against = _against(scope, requirements, manifest)
     if form == "json":
@@ -250,6 +273,15 @@ def _proofs(path: str | None) -> Proofs | None:
     return proofs
 
 
+def _analyzed(path: str | None) -> AnalyzedSet | None:
+    from fretc.analysis.evidence import read
+
+    known = read(path) if path is not None else None
+    if isinstance(known, Diagnostic):
+        stop(known)
+    return known
+
+
 def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
     """What was asked, in words: nothing that was not asked is said to stand."""
     count = len(scope.claimed)
@@ -300,13 +332,50 @@ def _reproved(
     return (*results, *missing)
 
 
+def _asked_again(
+    project: Project, known: AnalyzedSet, scope: Scope, *, skip: bool
+) -> Sequence[Recheck]:
+    """Whether the requirements of an analysis can be kept together, asked again."""
+    from fretc.analysis.analysis import Options
+    from fretc.analysis.arena.roles import roles
+    from fretc.analysis.assumptions import assumptions
+    from fretc.analysis.evidence import changes
+    from fretc.commands.analyze import asked
+    from fretc.reproduction.outcome import TOGETHER, differs, unknown
+    from fretc.reproduction.sets import compared
+
+    if skip or scope.part:
+        why = f"nothing was analyzed again: `{'--no-analysis' if skip else '--only'}`"
+        return (unknown(TOGETHER, "", why),)
+    document = known.document
+    in_force = [rule for rule in project.rules if rule.requirement.status != "retired"]
+    rules = [rule for rule in in_force if rule.id in document.requirements]
+    assumed, remarks = assumptions(in_force, project.declarations)
+    chosen = roles([*rules, *assumed])
+    if has_errors(remarks):
+        stop(*remarks)
+    if isinstance(chosen, tuple):
+        stop(*chosen)
+    now, stopped = asked(rules, assumed, chosen, Options(as_fret=document.as_fret))
+    if stopped:
+        raise SystemExit(INTERRUPTED)
+    old = [differs(TOGETHER, "", why) for why in changes(document, rules, assumed)]
+    others = (rule.id for rule in in_force if rule not in rules)  # of another `--component`, or new
+    new = [unknown(TOGETHER, id, "it was no part of the set") for id in others]
+    return (*old, *new, *compared(document, now))
+
+
 def _report(
-    project: Project, path: str, evidence: str, verification: str | None, requirements: str
+    project: Project,
+    path: str,
+    evidence: str,
+    verification: str | None,
+    analysis: str | None,
+    requirements: str,
 ) -> bool:
     """Whether the report that is made now is the one in the file, byte for byte."""
     from compiler.files.text_files import read
     from compiler.project.paths import beside
-    from fretc.analysis.evidence import written
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.make import make
 
@@ -321,7 +390,7 @@ def _report(
         waivers=names[1],
         verification=verification,
         signers=names[2],
-        analysis=written(),
+        analysis=analysis,
     )
     return current.html == source.text
 

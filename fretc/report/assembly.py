@@ -47,6 +47,7 @@ from fretc.report.sections.results import is_bounded
 from fretc.report.sections.runs import Run, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
+from fretc.report.situations import situations
 from fretc.report.traceability.acceptances import warnings
 from fretc.report.traceability.artefacts import shared_products
 from fretc.report.traceability.lock import Lock, withdrawn_requirements
@@ -85,11 +86,12 @@ def report(
     runs_by_key = runs(briefs)
     all_runs = tuple(runs_by_key.values())
     all_proofs = merged(proofs.proofs if proofs else (), ajpf)
-    assessed = assessments(project, briefs, lock, waivers, all_proofs)
+    assessed = assessments(project, briefs, lock, waivers, all_proofs, together)
     chains = [assessment.standing.chain for assessment in assessed]
     withdrawn = withdrawn_requirements(project.requirements, chains, lock)
     anchors = {assessment.id: assessment.anchor for assessment in reversed(assessed)}
     shared = shared_products(project.declarations) if all_proofs else ()
+    exercised = situations(assessed, evidence)
     sections = tuple(
         section(
             assessment,
@@ -100,6 +102,7 @@ def report(
             all_proofs,
             shared,
             book,
+            exercised.get(assessment.id),
         )
         for assessment in assessed
     )
@@ -112,7 +115,7 @@ def report(
     changes = reviews.changes(assessed, project)
     groups = reviews.change_groups(assessed, changes)
     changed = tuple(reviews.change_sentences(changes, groups))
-    signature_list = signatures(book, assessed, evidence, proofs)
+    signature_list = signatures(book, assessed, evidence, proofs, together)
     overall_result = overall(
         project, assessed, sections, all_runs, reservations, withdrawn, signature_list, changed
     )

@@ -94,7 +94,8 @@ def make(
     reviews = read_lock(lock) if lock is not None else None
     if isinstance(reviews, Diagnostic):
         return ReportBuild(None, (reviews,))
-    signed_files = [path for path in (evidence, verification, lock, waivers) if path is not None]
+    signed = (evidence, verification, analysis, lock, waivers)
+    signed_files = [path for path in signed if path is not None]
     signatures = read_signatures(signed_files, signers)
     if isinstance(signatures, Diagnostic):
         return ReportBuild(None, (signatures,))

@@ -10,7 +10,7 @@ from enum import StrEnum
 from fretish.diagnostics import signs
 from fretish.diagnostics.signs import Sign
 
-FILE, ALL_RUNS, PROOFS = "the file", "all runs", "proofs"
+FILE, ALL_RUNS, PROOFS, TOGETHER = "the file", "all runs", "proofs", "all together"
 """In the place of a run."""
 
 

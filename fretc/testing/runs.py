@@ -21,7 +21,7 @@ from fretc.testing.bench import Bench, Ids, demands
 from fretc.testing.places import Places
 from fretc.testing.search import Letter
 from fretc.testing.suite import Polarity
-from fretc.testing.words import Word, blotted, is_killed, judged, word
+from fretc.testing.words import Naming, Word, blotted, is_killed, judged, word
 from fretish import expressions as e
 
 T = TypeVar("T")
@@ -65,6 +65,8 @@ Answer = Run | Absence
 Find = Callable[[Ids], F | None]
 """What is found among the runs that keep some others."""
 Need = tuple[str, Polarity]
+_LONG = 64
+"""Ticks of a bound that is worth an order of variables of its own."""
 
 
 class Runs:
@@ -85,10 +87,15 @@ class Runs:
             except BeyondError as error:
                 self._formulas[each.key] = Absence(why=str(error))
         more = [*(each.rule for each in self.mutants), *places.carriers]
-        self.bench = Bench(rule, others, more, Budget(seconds))
-        self._shown = _atoms([rule, *others])
-        self._atoms = _atoms([rule, *others, *more])
+        budget = Budget(seconds)
+        self.bench = Bench(rule, others, more, budget)
+        every = [rule, *others]
+        signals = {name: read for name, read in _read(every).items() if name not in read}
+        self._naming = Naming(_atoms([*every, *more]), _atoms(every), signals, places.pinned)
         self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
+        if (rule.ticks or 0) >= _LONG:
+            self.bench = Bench(rule, others, more, budget, self.bench.order())
+            self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
         self._found: dict[tuple[int, ...], Run] = {}
 
     def _goal(self, formula: Formula | Absence) -> Function | Absence:
@@ -152,7 +159,7 @@ class Runs:
         Raises:
             BeyondError: it breaks another requirement, which has no counter.
         """
-        made = word(letters, self.bench.alphabet, self._atoms, self._shown)
+        made = word(letters, self.bench.alphabet, self._naming)
         key = (made.ticks, *made.columns.values())
         if key not in self._found:
             self._check_others(made)
@@ -194,7 +201,7 @@ class Runs:
         self, situation: Situation, atom: str, letters: Sequence[Letter], tick: int
     ) -> Run:
         """The run in which an atom is unknown at a tick, as is all that reads the same."""
-        made = word(letters, self.bench.alphabet, self._atoms, self._shown)
+        made = word(letters, self.bench.alphabet, self._naming)
         self._check_others(made)
         blank = blotted(made, tick, {atom, *self._linked(atom)})
         met = frozenset({situation.key})
@@ -202,15 +209,20 @@ class Runs:
 
     def _linked(self, atom: str) -> set[str]:
         """What an atom reads, and the other atoms that read some of it."""
-        readers: dict[str, frozenset[str]] = {}
-        for each in (self.rule, *self.others):
-            declared = each.declarations.propositions if each.declarations else {}
-            for name, part in candidates(each.sentence):
-                bound = declared.get(name)
-                signals = bound.signals if bound else (each.id for each in e.names(part))
-                readers[name] = frozenset(signals)
+        readers = _read([self.rule, *self.others])
         read = readers.get(atom, frozenset())
         return {*read, *(name for name, theirs in readers.items() if theirs & read)}
+
+
+def _read(rules: Iterable[Formalized]) -> dict[str, frozenset[str]]:
+    """The signals or variables that each atom reads."""
+    found: dict[str, frozenset[str]] = {}
+    for each in rules:
+        declared = each.declarations.propositions if each.declarations else {}
+        for name, part in candidates(each.sentence):
+            bound = declared.get(name)
+            found[name] = frozenset(bound.signals if bound else (n.id for n in e.names(part)))
+    return found
 
 
 def _atoms(rules: Iterable[Formalized]) -> tuple[str, ...]:

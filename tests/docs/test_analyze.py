@@ -4,27 +4,49 @@ import re
 
 import pytest
 
+from compiler.project.folder import whole
+from fretc.analysis.analysis import analyze
+from fretc.analysis.arena.roles import roles
+from fretc.analysis.assumptions import assumptions
 from fretc.analysis.text_output import lines
-from tests.docs.pages import is_current
-from tests.requirement_sets import analyzed, roles
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.printer import sentence
+from tests import requirement_sets
+from tests.docs.pages import FOLDER, is_current
 
 
 def printed(subject: str) -> str:
     """`start, stop -> run; SENTENCE; SENTENCE`, and what is printed of these."""
     named, *sentences = subject.split("; ")
     inputs, outputs = (part.split(", ") for part in named.split(" -> "))
-    found = analyzed(*sentences, roles=roles(inputs, outputs), repairs=True)
+    chosen = requirement_sets.roles(inputs, outputs)
+    found = requirement_sets.analyzed(*sentences, roles=chosen, repairs=True)
     written = {f"R{i}": sentence for i, sentence in enumerate(sentences, 1)}
     return "\n".join(f"    {line}".rstrip() for line, _ in lines(found, written))
 
 
-def test_the_example_is_what_is_printed(request: pytest.FixtureRequest) -> None:
-    is_current("analyze.md", {"analysis": printed}, request)
+def of_project(folder: str) -> str:
+    """What is printed of the requirements of a folder of this repository."""
+    project = whole(folder)
+    assert not isinstance(project, Diagnostic)
+    assumed, _ = assumptions(project.rules, project.declarations)
+    named = roles([*project.rules, *assumed])
+    assert not isinstance(named, tuple)
+    found = analyze(project.rules, named, assumed)
+    written = {rule.id: sentence(rule.written) for rule in project.rules}
+    return "\n".join(f"    {line}".rstrip() for line, _ in lines(found, written))
+
+
+@pytest.mark.slow
+def test_the_examples_are_what_is_printed(
+    request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(FOLDER.parent)
+    is_current("analyze.md", {"analysis": printed, "project": of_project}, request)
 
 
 def test_every_key_of_the_json_is_told() -> None:
     from fretc.analysis.findings import Analysis
-    from tests.docs.pages import FOLDER
 
     page = (FOLDER / "analyze.md").read_text("utf-8")
     told = set(re.findall(r"`(\w+)`", page.partition("## As JSON")[2]))

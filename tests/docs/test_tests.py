@@ -5,16 +5,32 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
+from compiler.files.records import replace
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import Demand, Kind, dual
 from compiler.logic import formula as f
+from compiler.project.folder import load
+from compiler.project.paths import requirement_files
 from compiler.situations.facts import facts
 from compiler.situations.mutants import OPERATORS
 from compiler.situations.situations import MEANINGS, situations
+from fretc.analysis.text_output import Line
+from fretc.testing.assembly import jobs, suite
+from fretc.testing.conformance.text_output import lines as lines_of
+from fretc.testing.exports.files import Form, files
+from fretc.testing.suite import Suite
+from fretc.testing.text_output import lines, shown
+from fretish.bindings.declarations import Role
+from fretish.diagnostics.diagnostic import Diagnostic
 from tests.docs.pages import is_current
 from tests.emitting import rule
+from tests.fretc.testing.controllers import INPUTS, OUTPUTS, program, seen_of
+from tests.requirement_sets import roles
 from tests.strategies import templates
 
 WORDS = {
@@ -138,7 +154,56 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join([lines[0], "|--" * len(head) + "|", *lines[1:]])
 
 
+def summary(folder: str) -> str:
+    """What `fretc test` prints of a folder."""
+    paths = requirement_files(str(Path(__file__).parents[2] / folder))
+    assert not isinstance(paths, Diagnostic)
+    rules = tuple(load(paths, None).rules)
+    return _printed(f"fretc test {folder}", lines(_suite(rules)))
+
+
+def drawn(sentence: str) -> str:
+    """What `--show` prints of one sentence."""
+    subject = rule(sentence)
+    roles = {"start": Role.INPUT, "run": Role.OUTPUT}
+    return _printed("fretc test --show R1", shown(_suite([subject]), "R1", subject.watched, roles))
+
+
+def _suite(rules: Sequence[Formalized]) -> Suite:
+    return suite(rules, (), [batch for job in jobs(rules, (), 60) for batch in job.ask(())])
+
+
+def _printed(command: str, found: Iterable[Line]) -> str:
+    text = [f"$ {command}", *(line for line, _ in found)]
+    return "\n".join(f"    {line}".rstrip() for line in text)
+
+
+def emitted(sentence: str) -> str:
+    """The test of a sentence, in pytest, that takes the most ticks."""
+    rules = (rule("R1", sentence),)
+    found = _suite(rules)
+    longest = max(found.tests, key=lambda test: test.ticks)
+    artifacts, _ = files(found, rules, Form.PYTEST)
+    name = longest.name.replace("-", "_")
+    _, start, rest = artifacts[-1].text.partition(f"def test_{name}()")
+    return f"```python\n{start}{rest.partition('def ')[0].strip()}\n```"
+
+
+def conformance(fault: str) -> str:
+    """What is printed of a program with a fault."""
+    with TemporaryDirectory() as folder:
+        found = seen_of(Path(folder), program(fault))
+    shown = replace(found, command=("python3", "line.py"))
+    return _printed(
+        'fretc test --against "python3 line.py"', lines_of(shown, roles(INPUTS, OUTPUTS))
+    )
+
+
 MAKERS = {
+    "suite": summary,
+    "emitted": emitted,
+    "conformance": conformance,
+    "tests": drawn,
     "situations": table_of_situations,
     "duals": table_of_duals,
     "mutants": table_of_mutants,

@@ -79,7 +79,11 @@ def _no_role(rule: Formalized, name: str, rules: Iterable[Formalized]) -> Diagno
     likely = Role.OUTPUT if answered else Role.INPUT
     why = "stands in a response" if answered else "stands in no response"
     variable = rule.glossary.get(name)
-    if variable is not None and variable.role == Role.MODE:
+    unread = str(variable.fret.get("assignment", "")) if variable is not None else ""
+    if unread:
+        shown = " ".join(unread.split())[:_SHOWN]
+        message = f"`{name}` stands for `{shown}`, which is not read, and has no role"
+    elif variable is not None and variable.role == Role.MODE:
         message = f"`{name}` is a mode, and nothing says whether the system chooses it"
     else:
         message = f"nothing says who chooses `{name}`: the environment or the system"
@@ -92,6 +96,10 @@ def _no_role(rule: Formalized, name: str, rules: Iterable[Formalized]) -> Diagno
         f"`[{table}.{as_key(name)}]` of bindings.toml; `{name}` {why}",
         paste=f"[{table}.{as_key(name)}]\n{line}",
     )
+
+
+_SHOWN = 60
+"""Characters of an assignment that a message shows."""
 
 
 def _answers(rule: Formalized) -> frozenset[str]:

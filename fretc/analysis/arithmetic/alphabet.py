@@ -75,6 +75,16 @@ class Cells:
         return self._plain.atom(name) if group is None else group.atom(name)
 
     @property
+    def numbers(self) -> Atoms:
+        """The comparisons, as formulas of z3."""
+        return self._atoms
+
+    @property
+    def formulas(self) -> Mapping[int, Term]:
+        """Each bit that stands for a comparison, and its formula."""
+        return {bit: formula for each in self._used for bit, formula in each.formulas()}
+
+    @property
     def inputs(self) -> Sequence[int]:
         """Bits of atoms and of cells."""
         return [*self._plain.inputs, *(bit for each in self._used for bit in each.inputs)]
@@ -258,6 +268,10 @@ class _Group:
         for pattern in known:
             found = found | bdd.point({bit: pattern[n] for n, bit in self._bits.items()})
         return found
+
+    def formulas(self) -> Iterator[tuple[int, Term]]:
+        """Each bit of a formula, and that."""
+        return ((bit, self._choice.formulas[number]) for number, bit in self._bits.items())
 
     def labels(self) -> Iterator[tuple[int, str]]:
         """Each bit of a formula, and an atom that has it."""

@@ -11,6 +11,7 @@ from compiler.formalization.formalized import Formalized, plain
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
+from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.bases import bases
 from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.verdicts import (
@@ -165,6 +166,7 @@ def assessments(
     lock: Lock | None = None,
     waivers: Mapping[str, Waiver] = MappingProxyType({}),
     proofs: Sequence[Proof] = (),
+    analyzed: AnalyzedSet | None = None,
 ) -> tuple[Assessment, ...]:
     """Every requirement of the project, in its order.
 
@@ -174,13 +176,15 @@ def assessments(
         lock: None where nothing has been reviewed.
         waivers: those that count today, by the requirement.
         proofs: the results of verification.
+        analyzed: whether all can be kept together; None: nobody has asked.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     diagnostics = {id(each.requirement): each.diagnostic for each in project.failed}
     results = briefs.by_requirement if briefs else {}
     products_of = {id: products(rule) for id, rule in rules.items()}
     basis_of = bases(project, monitors=_monitors(products_of))
-    standing_of_each = standings(chains(project, briefs, products_of, proofs, basis_of), lock)
+    all_chains = chains(project, briefs, products_of, proofs, basis_of, analyzed)
+    standing_of_each = standings(all_chains, lock)
     audited_by = briefs.source.fretc if briefs else ""
     anchors: list[str] = []
     assessed: list[Assessment] = []

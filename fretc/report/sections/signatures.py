@@ -1,9 +1,10 @@
-"""The signatures of the evidence, the proofs, each review and each waiver."""
+"""The signatures of the evidence, the proofs, the analysis, each review and each waiver."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from fretc.analysis.evidence import AnalyzedSet
 from fretc.attestation import statement as attestation
 from fretc.attestation.signatures import SignatureBook, Signing, State
 from fretc.attestation.statement import Subject
@@ -49,13 +50,18 @@ def signatures(
     assessments: Sequence[Assessment],
     evidence: EvidenceSource | None,
     proofs: Proofs | None,
+    together: AnalyzedSet | None,
 ) -> Signatures:
     """The table of signatures; those that do not verify come first."""
     signers = book.signers.signers if book.signers else ()
     return Signatures(
         file=phrases.place(book.signers.file) if book.signers else "",
         signers=tuple(f"{', '.join(one.principals)}: {one.key.text}" for one in signers),
-        signed=(*_broken(book), *_files(book, evidence, proofs), *_people(book, assessments)),
+        signed=(
+            *_broken(book),
+            *_files(book, evidence, proofs, together),
+            *_people(book, assessments),
+        ),
     )
 
 
@@ -69,13 +75,19 @@ def _broken(book: SignatureBook) -> Iterator[Signed]:
 
 
 def _files(
-    book: SignatureBook, evidence: EvidenceSource | None, proofs: Proofs | None
+    book: SignatureBook,
+    evidence: EvidenceSource | None,
+    proofs: Proofs | None,
+    together: AnalyzedSet | None,
 ) -> Iterator[Signed]:
     if evidence is not None:
         subject = Subject(attestation.EVIDENCE, phrases.place(evidence.file), evidence.sha256)
         yield _file(book, subject)
     if proofs is not None:
         yield _file(book, Subject(attestation.PROOFS, phrases.place(proofs.file), proofs.sha256))
+    if together is not None:
+        subject = Subject(attestation.ANALYSIS, phrases.place(together.file), together.sha256)
+        yield _file(book, subject)
 
 
 def _file(book: SignatureBook, subject: Subject) -> Signed:

@@ -77,9 +77,7 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
             for each in analysis.inconsistent
         ),
         remarks=tuple(text.strip() for text, _ in remarks(analysis)),
-        assumptions=tuple(
-            f"{each.id}: {each.text or each.sentence}" for each in analysis.assumptions
-        ),
+        assumptions=tuple(each.in_words for each in analysis.assumptions),
         inputs=_of_role(analysis, Role.INPUT),
         outputs=_of_role(analysis, Role.OUTPUT),
         terms=analysis.terms,

@@ -51,7 +51,7 @@ class DrawnPlay:
 
 
 def drawing(play: Play, id: str, title: str, *, breaks: bool) -> DrawnPlay | None:
-    """The layout of a play; None where it has no tick.
+    """The layout of a play; None where it has no tick, or no variable.
 
     Args:
         play: a run.
@@ -60,7 +60,7 @@ def drawing(play: Play, id: str, title: str, *, breaks: bool) -> DrawnPlay | Non
         breaks: whether a requirement is broken, at its end or for ever.
     """
     count = len(play.ticks)
-    if not count:
+    if not count or not play.lanes:
         return None
     left = 16 + _LETTER * max(len(_label(lane)) for lane in play.lanes)
     shown = (

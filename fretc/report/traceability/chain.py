@@ -20,11 +20,13 @@ from compiler.logic.claims import Proof
 from compiler.project.acceptances import TOPIC, Acceptance
 from compiler.project.folder import Project
 from compiler.project.hazards import Hazard
+from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.bases import audited_topics, bases
 from fretc.audit.evidence import basis
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.briefs import Brief, Briefs, Recorded
 from fretc.report.traceability import texts
+from fretc.report.traceability.analyses import Answer, answers
 from fretc.report.traceability.artefacts import Product, shared_products
 from fretc.report.traceability.artefacts import products as products_of
 from fretc.report.traceability.texts import Texts
@@ -36,9 +38,10 @@ TEXT, WORDS, FORMULAS, ARTEFACT = "text", "words", "formulas", "artefact"
 ACCEPTANCE = "acceptance"
 LOG, VERDICT, REVIEW = "log", "verdict", "review"
 PROOF, SHARED = "proof", "shared"
-DERIVED = (FORMULAS, ARTEFACT, VERDICT, PROOF)
+ANALYSIS, MEMBER = "analysis", "member"
+DERIVED = (FORMULAS, ARTEFACT, VERDICT, PROOF, ANALYSIS)
 """Kinds of nodes that are made of those upstream; of any other the fingerprint is its own."""
-ADDED = (LOG, VERDICT, PROOF, SHARED, PLAN, ARTEFACT, basis.TOPICS)
+ADDED = (LOG, VERDICT, PROOF, ANALYSIS, SHARED, PLAN, ARTEFACT, basis.TOPICS)
 """Kinds of nodes that may come after a review without a change of what was reviewed."""
 _READINGS = ("ltl", "json")
 """Targets that only print formulas, which have fingerprints of their own."""
@@ -81,9 +84,11 @@ class Chain:
     differences: Mapping[Recorded, tuple[Node, ...]] = field(default_factory=dict)
     """What a verdict may rest on that is out of date → the nodes that differ."""
     outdated_proofs: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)
-    """Each proof that is out of date → the nodes that differ."""
+    """Each proof or analysis that is out of date → the nodes that differ."""
     texts: Texts | None = None
     """What the fingerprints are taken of, as it is written."""
+    answer: Answer | None = None
+    """What is known of it and the others together; None: nobody has asked."""
 
     @property
     def prints(self) -> Mapping[Node, str]:
@@ -113,7 +118,7 @@ class Chain:
 
     @property
     def outdated(self) -> Mapping[Node, tuple[Node, ...]]:
-        """Each verdict and proof that is out of date → the nodes that differ."""
+        """Each verdict, proof or analysis that is out of date → the nodes that differ."""
         if not self.differences:
             return self.outdated_proofs
         pairs = ((_verdict(each), self.differences.get(each.rests_on)) for each in self.results)
@@ -135,6 +140,7 @@ def chains(
     artefacts: Mapping[int, Sequence[Product]] | None = None,
     proofs: Sequence[Proof] = (),
     known: Mapping[int, Basis] | None = None,
+    analyzed: AnalyzedSet | None = None,
 ) -> tuple[Chain, ...]:
     """The chain of each requirement, in the order of the project.
 
@@ -144,10 +150,11 @@ def chains(
         artefacts: the products of each requirement, by its `id()`; None: `products` makes them.
         proofs: the results of verification.
         known: what a verdict on each requirement rests on now; None: `bases` makes it.
+        analyzed: whether all can be kept together; None: nobody has asked.
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     results = briefs.by_requirement if briefs else {}
-    common = _common(project, briefs, proofs, known)
+    common = _common(project, briefs, proofs, known, analyzed)
     return tuple(
         _ChainBuilder(common, requirement).build(
             requirement,
@@ -179,6 +186,8 @@ class _Common:
     """Those that an audit of the project reads."""
     written: Mapping[str, Any]
     """The tables of the bindings."""
+    answers: Mapping[str, Answer]
+    """What is known of all requirements together, by id."""
 
 
 def _common(
@@ -186,6 +195,7 @@ def _common(
     briefs: Briefs | None,
     proofs: Sequence[Proof],
     known: Mapping[int, Basis] | None,
+    analyzed: AnalyzedSet | None,
 ) -> _Common:
     shared = shared_products(project.declarations) if proofs else ()
     topics = audited_topics(project)
@@ -198,6 +208,7 @@ def _common(
         {product.file: product.sha256 for product in shared},
         topics,
         texts.written_tables(project.declarations),
+        answers(analyzed, project),
     )
 
 
@@ -241,8 +252,11 @@ class _ChainBuilder:
         nodes = self._add_artefacts(rule, sentence, artefacts) if rule is not None else {}
         sources = self._add_sources(nodes.get("monitor"), audited=bool(results))
         of_verdicts = self._sources_of_verdicts(sources) if results else ()
+        answer = self._common.answers.get(requirement.id)
         if rule is not None:
             self._add_proofs(rule, proofs)
+        if answer is not None:
+            self._add_answer(answer)
         review = Node(REVIEW, requirement.id)
         followed = {*of_verdicts, *(link.source for link in self._links)}
         for node in [node for node in self._prints if node not in followed]:
@@ -255,7 +269,8 @@ class _ChainBuilder:
             of_verdicts,
             self._differences(results, sources),
             self._outdated_proofs,
-            self._texts(requirement, rule, proofs, audited=bool(results)),
+            self._texts(requirement, rule, proofs, answer, audited=bool(results)),
+            answer,
         )
 
     def _texts(
@@ -263,6 +278,7 @@ class _ChainBuilder:
         requirement: Requirement,
         rule: Formalized | None,
         proofs: Sequence[Proof],
+        answer: Answer | None,
         *,
         audited: bool,
     ) -> Texts:
@@ -288,6 +304,7 @@ class _ChainBuilder:
             if rule
             else {},
             loop=texts.loop(written) if proofs and declarations else {},
+            analysis=answer.texts if answer else (),
             fretc=__version__ if rule else "",
         )
 
@@ -412,6 +429,14 @@ class _ChainBuilder:
                     before = self._outdated_proofs.get(node, ())
                     self._outdated_proofs[node] = (*before, source)
 
+    def _add_answer(self, answer: Answer) -> None:
+        """Add what is known of it and the others together, with those that it is not about."""
+        node = Node(ANALYSIS, self._id)
+        self._add(node, print_of_proof(answer.verdict, answer.findings))
+        self._link(Node(FORMULAS, self._id), node)
+        if answer.differing:
+            self._outdated_proofs[node] = tuple(Node(MEMBER, id) for id in answer.differing)
+
     def _add(self, node: Node, fingerprint: str) -> None:
         self._prints[node] = fingerprint
 
@@ -472,7 +497,7 @@ def print_of_words(value: Any) -> str:
 
 
 def print_of_proof(result: str, assumptions: Iterable[str]) -> str:
-    """What was proved of a claim, and under which assumptions."""
+    """What was proved of a claim, or analyzed, and under which assumptions."""
     return digest([result, sorted(assumptions)])
 
 

@@ -12,11 +12,13 @@ from fretc.report.traceability import word_diff
 from fretc.report.traceability.chain import (
     ACCEPTANCE,
     ADDED,
+    ANALYSIS,
     ARTEFACT,
     DERIVED,
     FORMULAS,
     HAZARD,
     LOG,
+    MEMBER,
     PARENT,
     PLAN,
     PROOF,
@@ -56,6 +58,8 @@ class Change:
     def text(self) -> str:
         """`speed: vx <= 0.40 m/s → 0.35 m/s`: only what differs, where that is one word."""
         if self.is_of_evidence:
+            if self.node.kind == MEMBER:
+                return f"the analysis is not about {self.node.name} as it is now"
             known = self.node.kind in (*basis.KINDS, basis.FRETC)
             about = f"what was audited or proved is about another {self.what}"
             return basis.why(self.node.kind) if known else about
@@ -230,7 +234,10 @@ class _Comparison:
 
     def of_causes(self, causes: Collection[Node], found: Collection[Change]) -> Iterator[Change]:
         """Of what makes links suspect that which no other change names."""
+        own = Node(MEMBER, self._chain.requirement)
         for cause in causes:
+            if cause == own and found:
+                continue
             if cause not in self._nodes:
                 yield Change(cause, thing(cause), None, None, is_of_evidence=True)
             elif not found:
@@ -324,7 +331,7 @@ def _change(what: str, then: Leaf | None, now: Leaf | None, *, is_table: bool = 
 _SENTENCE, _WORDING = ("", "", "sentence"), ("", "", "wording")
 _FACE = {
     "proposition": "expr", "signal": "path", "variable": "value", HAZARD: "title", PARENT: "title",
-    TEXT: "title", PROOF: "result", "params": "", ACCEPTANCE: "",
+    TEXT: "title", PROOF: "result", ANALYSIS: "verdict", "params": "", ACCEPTANCE: "",
 }  # fmt: skip
 """The field that stands for a table that came or went."""
 

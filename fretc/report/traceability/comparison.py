@@ -10,7 +10,7 @@ from typing import Any
 from compiler.project.folder import Project
 from compiler.project.stated_numbers import drifted
 from fretc.audit.evidence.verdicts import VERDICTS, severity
-from fretc.report.traceability.chain import VERDICT, Suspect
+from fretc.report.traceability.chain import ANALYSIS, VERDICT, Suspect
 from fretc.report.traceability.changes import Change
 from fretc.report.traceability.lock import Lock, Review, Standing
 from fretish.diagnostics.diagnostic import Code
@@ -40,6 +40,8 @@ class Difference:
     suspects: tuple[Suspect, ...]
     has_other_texts: bool = False
     """The texts of the review are not those of its fingerprints."""
+    has_old_analysis: bool = False
+    """Whether the analysis is about what one of its requirements or assumptions was before."""
 
     @property
     def consequences(self) -> tuple[str, ...]:
@@ -54,6 +56,10 @@ class Difference:
         if self.outdated:
             verb = "is" if self.outdated == 1 else "are"
             lines.append(f"{_verdicts(self.outdated)} {verb} of before the change: audit again")
+        if self.has_old_analysis:
+            lines.append(
+                "whether it can be kept with others is of before the change: analyze again"
+            )
         return tuple(lines)
 
     @property
@@ -131,6 +137,7 @@ def difference(standing: Standing, project: Project | None = None) -> Difference
         sum(node.kind == VERDICT for node in chain.outdated) if standing.changes else 0,
         standing.suspects,
         standing.has_other_texts,
+        any(node.kind == ANALYSIS for node in chain.outdated),
     )
 
 
@@ -232,7 +239,7 @@ def _likeness(difference: Difference) -> object:
     by = (difference.review.date, difference.review.reviewer)
     changes = tuple(change.text for change in difference.changes)
     others = (difference.contradictions, difference.outdated, difference.has_other_texts)
-    return (by, changes, *others)
+    return (by, changes, difference.has_old_analysis, *others)
 
 
 def _text(group: Sequence[Difference]) -> Iterator[str]:

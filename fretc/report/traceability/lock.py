@@ -7,6 +7,7 @@ by `fretc lock` only; waivers stand in `waivers.toml` (`fretc.report.traceabilit
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -15,8 +16,10 @@ import tomli_w
 
 from compiler.files.dates import is_date, is_to_come
 from compiler.files.text_files import read as read_text
+from fretc.analysis.findings import Verdict
 from fretc.audit.evidence.basis import SENTENCE
 from fretc.audit.evidence.reader import VERDICTS
+from fretc.report.traceability.analyses import Answer
 from fretc.report.traceability.chain import (
     ACCEPTANCE,
     IN_FORCE,
@@ -76,8 +79,9 @@ class Review:
 
     @property
     def verdict_summary(self) -> str:
-        """The verdicts that were accepted, in words."""
-        return _in_words(self.verdicts)
+        """The verdicts that were accepted, in words, and the answer for all together."""
+        together = self.texts.analysis if self.texts else ()
+        return "; ".join(filter(None, (_in_words(self.verdicts), _together(together))))
 
     @property
     def seal(self) -> str:
@@ -105,7 +109,17 @@ def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) ->
 
 def verdicts_of(chain: Chain) -> str:
     """The verdicts that a review would accept, in words, the worst first."""
-    return _in_words(chain.verdicts)
+    together = chain.answer.texts if chain.answer else ()
+    return "; ".join(filter(None, (_in_words(chain.verdicts), _together(together))))
+
+
+def _together(texts: Sequence[str]) -> str:
+    """The verdict of an analysis with its findings; empty where nobody has asked."""
+    if not texts:
+        return ""
+    verdict, *findings = texts
+    more = f" ({'; '.join(findings)})" if findings else ""
+    return f"{verdict} with the others{more}"
 
 
 def warnings_of(chain: Chain) -> str:
@@ -132,7 +146,7 @@ _NAMED = 3
 
 
 def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tuple[Diagnostic, ...]:
-    """F529 for each requirement to accept though runs show that it does not hold.
+    """F529 for each requirement to accept that runs break, or that fights with others.
 
     Args:
         chosen: the chains to accept.
@@ -142,6 +156,11 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
         c.requirement: verdicts_of(c) for c in chosen if kernel.VIOLATED in c.verdicts.values()
     }
     violations |= {c.requirement: "refuted by all runs" for c in chosen if c.requirement in refuted}
+    violations = {
+        c.requirement: _together(c.answer.texts)
+        for c in chosen
+        if c.answer is not None and c.answer.verdict is Verdict.UNREALIZABLE
+    } | violations
     return tuple(
         Diagnostic(
             Code.UNREVIEWED_VIOLATION,
@@ -162,6 +181,8 @@ class Acceptance:
     """Those that some run violates, or that all runs together refute."""
     not_shown: tuple[str, ...]
     """Of the others those that were not audited, or are not satisfied in each run."""
+    answers: Mapping[str, Answer]
+    """What is known of each and the others together; what nobody has asked is not there."""
 
     @classmethod
     def of(cls, subjects: Sequence[Chain], refuted: Collection[str]) -> Acceptance:
@@ -172,15 +193,22 @@ class Acceptance:
         ]
         good = [id for id, runs in verdicts.items() if {*runs.values()} == {kernel.SATISFIED}]
         unshown = [id for id in verdicts if id not in violated and id not in good]
-        return cls(verdicts, tuple(violated), tuple(unshown))
+        answers = {each.requirement: each.answer for each in subjects if each.answer is not None}
+        return cls(verdicts, tuple(violated), tuple(unshown), answers)
 
     @property
     def text(self) -> str:
         """One line, with the number of each kind."""
         count = len(self.verdicts)
+        together = Counter(each.verdict for each in self.answers.values())
+        with_others = (
+            f", {together[word]} {word} with the others"
+            for word in (Verdict.UNREALIZABLE, Verdict.NOT_CHECKED)
+            if together[word]
+        )
         return (
             f"accepted {count} requirement{'' if count == 1 else 's'}: "
-            f"{len(self.violated)} violated, {len(self.not_shown)} not shown"
+            f"{len(self.violated)} violated, {len(self.not_shown)} not shown{''.join(with_others)}"
         )
 
     @property
@@ -190,6 +218,7 @@ class Acceptance:
             "accepted": {id: dict(runs) for id, runs in self.verdicts.items()},
             "violated": list(self.violated),
             "not_shown": list(self.not_shown),
+            "together": {id: list(each.texts) for id, each in self.answers.items()},
         }
 
 
@@ -205,7 +234,7 @@ def outdated_results(chosen: Sequence[Chain]) -> tuple[Diagnostic, ...]:
                     Code.OUTDATED_RESULT,
                     f"what was shown of {chain.requirement} is about something else than what is "
                     f"here now: {what}",
-                    help="audit again, and verify again what was proved; then lock",
+                    help="make it again (`fretc audit`, `verify` or `analyze`), then lock",
                 )
             )
         if chain.unhashed:

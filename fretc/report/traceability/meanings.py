@@ -16,6 +16,7 @@ from compiler.project.hazards import Hazard
 from fretc.audit.evidence import basis
 from fretc.report.traceability.chain import (
     ACCEPTANCE,
+    ANALYSIS,
     ARTEFACT,
     FORMULAS,
     HAZARD,
@@ -134,6 +135,11 @@ def _of_audit(id: str, texts: Texts) -> Iterator[tuple[Key, Leaf]]:
         text = "; ".join(assumptions)
         leaf = Leaf(node, f"assumptions of the proof of {claim}", text, under, owner)
         yield (PROOF, claim, "assumptions"), leaf
+    if texts.analysis:
+        (verdict, *findings), node = texts.analysis, Node(ANALYSIS, id)
+        yield (ANALYSIS, "", "verdict"), Leaf(node, "analysis", verdict, verdict, ANALYSIS)
+        leaf = Leaf(node, "findings of the analysis", "; ".join(findings), {*findings}, ANALYSIS)
+        yield (ANALYSIS, "", "findings"), leaf
     for table, fields in texts.loop.items():
         for name, value in fields.items():
             text = _in_toml(value)
@@ -284,7 +290,7 @@ _VERSION = Node(basis.FRETC, "version")
 _COVERED = (
     basis.SENTENCE, basis.PARAMS, basis.CLOCK, basis.TOPICS, basis.BINDINGS, basis.FRETC,
     TEXT, HAZARD, PARENT, STATUS, PLAN, ACCEPTANCE, WORDS,
-    PROOF,
+    PROOF, ANALYSIS,
 )  # fmt: skip
 """The kinds of things that have texts; formulas and artefacts follow from them."""
 
@@ -309,6 +315,8 @@ def _fingerprints(id: str, texts: Texts) -> Iterator[tuple[Node, str]]:
         yield Node(PARENT, parent), print_of_words([other.title, other.text])
     for claim, (result, *assumptions) in texts.proofs.items():
         yield Node(PROOF, f"{id} {claim}"), print_of_proof(result, assumptions)
+    if texts.analysis:
+        yield Node(ANALYSIS, id), print_of_proof(texts.analysis[0], texts.analysis[1:])
     if texts.topics is not None:
         yield Node(basis.TOPICS, "audited"), _of(sorted(set(texts.topics)))
     if texts.fretc:

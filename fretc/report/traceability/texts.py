@@ -86,6 +86,8 @@ class Texts(Record, frozen=True, omit_defaults=True):
     """Each claim that was examined → its result, then its assumptions."""
     loop: dict[str, Table] = field(default_factory=dict)
     """`[interceptor]` and `[assume]`, where something was proved."""
+    analysis: tuple[str, ...] = ()
+    """Whether it can be kept with the others: the verdict, then conflicts and assumptions."""
     fretc: str = ""
     """The version that took the fingerprints."""
 

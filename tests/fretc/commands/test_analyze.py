@@ -48,6 +48,25 @@ def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
     assert "    run (output)   0  0  1\n" in run.out
 
 
+def test_a_conflict_of_propositions_about_one_number_has_no_lanes(
+    fretc: Fretc, tmp_path: Path
+) -> None:
+    sentences = (
+        "the line shall within 2 ticks satisfy fast",
+        "the line shall never satisfy fast",
+        "the line shall always satisfy slow",
+    )
+    more = '[clock]\ntick = "100 ms"\n[signal.v]\npath = "/v.data"\nrole = "output"\n' + "".join(
+        f'[proposition.{name}]\nexpr = "{expr}"\n'
+        for name, expr in (("fast", "v > 2"), ("slow", "v < 3"))
+    )
+    run = fretc("analyze", str(written(tmp_path, sentences, {}, more)))
+    assert run.status == 1
+    assert "  at tick 2 R1 demands `fast`, and R2 forbids it\n  R1  the line" in run.out
+    assert "tick  " not in run.out
+    assert fretc("report", "--requirements", str(tmp_path), "-o", "r.html").status == 0
+
+
 def test_what_would_settle_a_conflict_is_suggested(fretc: Fretc, tmp_path: Path) -> None:
     fight = (
         "upon start the line shall immediately satisfy run",
@@ -83,7 +102,7 @@ def test_an_assumption_makes_it_realizable(fretc: Fretc, tmp_path: Path) -> None
     run = fretc("analyze", str(written(tmp_path, FIGHT, more=assumed)))
     assert run.status == 0, run.out
     assert run.out.startswith("✔ realizable: a system can keep all requirements, while the assump")
-    assert "assumed A1: one button\nassumed A2: whenever start the man shall" in run.out
+    assert " satisfy !start (one button)\nassumed A2: whenever start the man shall" in run.out
 
 
 @pytest.mark.parametrize(

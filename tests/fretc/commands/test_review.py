@@ -264,6 +264,7 @@ def test_what_is_accepted_though_it_is_not_shown_is_counted(
         "accepted": {"R1": {f"{name}.mcap": verdict for name, verdict in verdicts.items()}},
         "violated": violated,
         "not_shown": not_shown,
+        "together": {},
         "left_out": [],
     }
     run = fretc("lock", *BY, *ON, "--accept-violations")

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+
+from compiler.formalization.formalized import Formalized
+from fretc.testing.conformance.campaign import Campaign
+from fretc.testing.conformance.findings import Conformance
+from fretc.testing.conformance.program import Program
+from tests.requirement_sets import roles, rule, rules
 
 SENTENCES = (
     "upon start the line shall within 3 ticks satisfy run",
@@ -12,6 +21,8 @@ SENTENCES = (
 INPUTS, OUTPUTS = ("start", "stop"), ("alarm", "run")
 PROMISE = "whenever start the plant shall for 3 ticks satisfy !stop"
 """Without it the first two fight."""
+ASSUMED = rule("A1", PROMISE)
+RULES: Mapping[str, Formalized] = {each.id: each for each in rules(*SENTENCES)}
 RIGHT = """\
 import sys
 
@@ -64,3 +75,14 @@ def program(fault: str | None = None) -> str:
     was, wrong = FAULTS[fault]
     assert RIGHT.count(was) == 1, fault
     return RIGHT.replace(was, wrong)
+
+
+def seen_of(folder: Path, text: str) -> Conformance:
+    """What is seen of a program."""
+    path = folder / "program.py"
+    path.write_text(text)
+    command = [sys.executable, "-ISE", str(path)]
+    campaign = Campaign([*RULES.values()], [ASSUMED], roles(INPUTS, OUTPUTS), 60)
+    columns = campaign.referee.inputs, campaign.referee.outputs
+    campaign.run(partial(Program, command, *columns, seconds=60), lambda words: None)
+    return campaign.findings(command)

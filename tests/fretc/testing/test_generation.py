@@ -253,10 +253,10 @@ def test_a_mutant_that_others_hide_is_excluded() -> None:
 
 
 def test_a_long_bound_is_stored_by_stretches() -> None:
-    found = made("upon a the sw shall within 300 ticks satisfy x")
+    found = made("upon a the sw shall within 40 ticks satisfy x")
     (name, *_) = outcomes(found)["answered-at-last-tick", Polarity.KEPT].tests
     test = next(test for test in found.tests if test.name == name)
-    assert test.ticks == 301
+    assert test.ticks == 41
     assert len(test.rows) == 3
 
 

@@ -2,36 +2,16 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Mapping
-from functools import partial
 from pathlib import Path
 
 import pytest
 
 from compiler.formalization.formalized import Formalized
-from fretc.testing.conformance.campaign import Campaign
-from fretc.testing.conformance.findings import Conformance, Failure
-from fretc.testing.conformance.program import Program
+from fretc.testing.conformance.findings import Failure
 from fretc.testing.suite import Repeat
 from fretc.testing.words import Word, defined, letters
 from tests.each import each
-from tests.fretc.testing.controllers import FAULTS, INPUTS, OUTPUTS, PROMISE, SENTENCES, program
-from tests.requirement_sets import roles, rule, rules
-
-ASSUMED = rule("A1", PROMISE)
-RULES: Mapping[str, Formalized] = {each.id: each for each in rules(*SENTENCES)}
-
-
-def seen_of(folder: Path, text: str) -> Conformance:
-    """What is seen of a program."""
-    path = folder / "program.py"
-    path.write_text(text)
-    command = [sys.executable, "-ISE", str(path)]
-    campaign = Campaign([*RULES.values()], [ASSUMED], roles(INPUTS, OUTPUTS), 60)
-    columns = campaign.referee.inputs, campaign.referee.outputs
-    campaign.run(partial(Program, command, *columns, seconds=60), lambda words: None)
-    return campaign.findings(command)
+from tests.fretc.testing.controllers import ASSUMED, FAULTS, RULES, program, seen_of
 
 
 def is_broken(rule: Formalized, rows: tuple[Repeat, ...]) -> list[bool]:

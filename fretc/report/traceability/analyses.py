@@ -1,0 +1,104 @@
+"""What an analysis of all requirements together says of each, and what that is about.
+
+It is about the component: the requirements that share outputs with it, then or now, and the
+assumptions. A change of another requirement leaves it as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain
+
+from compiler.formalization.formalized import Formalized
+from compiler.project.folder import Project
+from fretc.analysis.arena.roles import roles
+from fretc.analysis.assumptions import assumptions
+from fretc.analysis.components import by_outputs
+from fretc.analysis.evidence import AnalyzedSet, Member, members
+from fretc.analysis.findings import Analysis, Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """Whether one requirement can be kept together with the others of its component."""
+
+    verdict: Verdict
+    findings: tuple[str, ...]
+    """Each conflict that it is in, then what it rests on; each in words."""
+    differing: tuple[str, ...]
+    """Ids of requirements and assumptions of which there is another one, or none, by now."""
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """The verdict, then the findings."""
+        return (str(self.verdict), *self.findings)
+
+
+def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Answer]:
+    """The answer for each requirement that was analyzed, and is there now.
+
+    Args:
+        analyzed: the evidence; None: nobody has asked.
+        project: as it is now.
+    """
+    if analyzed is None:
+        return {}
+    document = analyzed.document
+    rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
+    assumed, _ = assumptions(rules, project.declarations)
+    old = _differences(document.requirements, members(rules))
+    promises = _differences(document.assumptions, members(assumed))
+    now = _components(rules, assumed, document.requirements)
+    found: dict[str, Answer] = {}
+    for rule in rules:
+        if rule.id in document.requirements:
+            then = _component(document.analysis, rule.id)
+            mates = {rule.id, *then, *now[rule.id]}
+            differing = (*(id for id in old if id in mates), *promises)
+            found[rule.id] = _answer(document.analysis, rule.id, differing, document.as_fret)
+    return found
+
+
+def _answer(analysis: Analysis, id: str, differing: tuple[str, ...], as_fret: bool) -> Answer:
+    own = [each for each in analysis.components if id in each.requirements]
+    verdict = own[0].verdict if own else Verdict.NOT_CHECKED
+    return Answer(verdict, tuple(_findings(analysis, id, as_fret)), differing)
+
+
+def _findings(analysis: Analysis, id: str, as_fret: bool) -> Iterator[str]:
+    for each in analysis.conflicts:
+        if id in each.requirements:
+            yield f"conflict of {', '.join(each.requirements)}"
+    for assumption in analysis.assumptions:
+        yield f"assumed {assumption.id}: {assumption.sentence}"
+    if as_fret:
+        yield "FRET's question"
+
+
+def _component(analysis: Analysis, id: str) -> tuple[str, ...]:
+    own = (each.requirements for each in analysis.components if id in each.requirements)
+    return tuple(chain.from_iterable(own))
+
+
+def _components(
+    rules: Sequence[Formalized], assumed: Sequence[Formalized], analyzed: Mapping[str, Member]
+) -> Mapping[str, tuple[str, ...]]:
+    """The requirements of each one's component now; all, where the roles are not known."""
+    systems = {rule.sentence.component for rule in rules if rule.id in analyzed}
+    own = [rule for rule in rules if rule.sentence.component in systems]
+    for some in (rules, own):  # an input of one system may be an output of another one
+        chosen = roles([*some, *assumed])
+        if not isinstance(chosen, tuple):
+            groups = [[each.id for each in group] for group in by_outputs(some, assumed, chosen)]
+            found = {id: tuple(ids) for ids in groups for id in ids}
+            return {rule.id: found.get(rule.id, ()) for rule in rules}
+    return dict.fromkeys((rule.id for rule in rules), tuple(rule.id for rule in rules))
+
+
+def _differences(then: Mapping[str, Member], now: Mapping[str, Member]) -> tuple[str, ...]:
+    return tuple(
+        id
+        for id in dict.fromkeys((*then, *now))
+        if id not in then or id not in now or then[id].sha256 != now[id].sha256
+    )

@@ -1,0 +1,99 @@
+"""Whether an analysis still stands: its questions are asked again, and the answers compared.
+
+What took too long then or now, or was stopped, is not checked; anything else that is not the same
+is a difference, and so is a conflict that is left out. Nothing but `seconds` is passed over.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from compiler.files.edition import __version__
+from fretc.analysis.evidence import Document
+from fretc.analysis.findings import Analysis, Component, Conflict, Verdict
+from fretc.reproduction.outcome import TOGETHER, Finding, Recheck, differs, unknown
+
+_REST = (
+    "verdict", "repairs", "redundant", "removable", "vacuous", "consistent", "inconsistent",
+    "always", "never", "assumptions", "roles", "terms",
+)  # fmt: skip
+_OF_TIME = ("why", "complete", "open")
+"""What may be otherwise where a question took too long."""
+
+
+def compared(document: Document, now: Analysis) -> Iterator[Recheck]:
+    """Each component, each conflict, and what else was found, held against an analysis made now.
+
+    Args:
+        document: the evidence.
+        now: of the same requirements as they are now, under the assumptions that are there now.
+    """
+    before = document.analysis
+    if document.as_fret:
+        yield unknown(TOGETHER, "", "it answers FRET's question, not whether they can be kept")
+    if {document.fretc, before.fretc} != {__version__}:
+        yield differs(TOGETHER, "", f"this is fretc {__version__}")
+    known = {each.requirements: each for each in now.components}
+    for each in before.components:
+        yield _component(each, known.get(each.requirements))
+    then = {each.requirements for each in before.components}
+    for ids in (each for each in known if each not in then):
+        yield differs(TOGETHER, "", "it is left out", claim=", ".join(ids))
+    if len(then) != len(before.components):
+        yield differs(TOGETHER, "", "a component is told twice")
+    yield from _conflicts(before, now)
+    others = [name for name in _REST if getattr(before, name) != getattr(now, name)]
+    claim = "what else is said of them"
+    if others and not (before.open or now.open):
+        yield differs(TOGETHER, "", f"it differs in {', '.join(others)}", claim=claim)
+    elif others:
+        why = f"some questions have no answer, and {', '.join(others)} may differ for that"
+        yield unknown(TOGETHER, "", why, claim=claim)
+    elif any(getattr(before, name) != getattr(now, name) for name in _OF_TIME):
+        why = f"other questions are open now: {_questions(now)}, and were: {_questions(before)}"
+        yield unknown(TOGETHER, "", why, claim=claim)
+    else:
+        yield Recheck(TOGETHER, "", Finding.STANDS, (), claim)
+
+
+def _questions(analysis: Analysis) -> str:
+    return "; ".join(f"{each.question} ({each.why})" for each in analysis.open) or "none"
+
+
+def _component(before: Component, now: Component | None) -> Recheck:
+    claim = ", ".join(before.requirements)
+    if now is None or before.outputs != now.outputs:
+        return differs(TOGETHER, "", "they are no component of the set now", claim=claim)
+    if now.verdict is Verdict.NOT_CHECKED:
+        return unknown(TOGETHER, "", now.why, claim=claim)
+    if before.verdict is now.verdict and before.why != now.why:
+        return unknown(TOGETHER, "", f"`{now.why}` is why now, and was `{before.why}`", claim=claim)
+    if before.verdict is now.verdict:
+        return Recheck(TOGETHER, "", Finding.STANDS, (), f"{claim}: {now.verdict}")
+    why = f"they are {now.verdict} now, and the file says {before.verdict}"
+    if before.verdict is Verdict.NOT_CHECKED and now.verdict is Verdict.REALIZABLE:
+        return unknown(TOGETHER, "", why, claim=claim)
+    return differs(TOGETHER, "", why, claim=claim)
+
+
+def _conflicts(before: Analysis, now: Analysis) -> Iterator[Recheck]:
+    then, found = _by_members(before), _by_members(now)
+    for ids in dict.fromkeys((*then, *found)):
+        claim = f"conflict of {', '.join(ids)}"
+        old, new = then.get(ids), found.get(ids)
+        if old == new:
+            yield Recheck(TOGETHER, "", Finding.STANDS, (), claim)
+        elif old is None:
+            judge = differs if before.complete else unknown
+            yield judge(TOGETHER, "", "it is left out", claim=claim)
+        elif new is None:
+            judge = differs if now.complete else unknown
+            yield judge(TOGETHER, "", "there is no such conflict now", claim=claim)
+        else:
+            yield differs(TOGETHER, "", "its play is another one", claim=claim)
+    if len(then) != len(before.conflicts):
+        yield differs(TOGETHER, "", "a conflict is told twice")
+
+
+def _by_members(analysis: Analysis) -> dict[tuple[str, ...], Conflict]:
+    return {each.requirements: each for each in analysis.conflicts}

@@ -1,0 +1,114 @@
+"""Runs that come back, for requirements without inputs: held against what arithmetic says."""
+
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fretc.analysis.findings import Verdict
+from fretc.analysis.games.budget import Budget
+from fretc.analysis.games.lassos import Impossible, Lasso, lasso
+from fretish.bindings.declarations import Role
+from tests.requirement_sets import ROLES, analyzed, drawn, roles, rules, staged
+
+NAMED = roles([], ["v", "x"])
+RATE = "the sw shall always satisfy absReal(v - preReal({}, v)) <= {}"
+
+
+def found(*sentences: str, as_fret: bool = False) -> Lasso | Impossible | None:
+    return lasso(rules(*sentences), NAMED, Budget(60), as_fret=as_fret)
+
+
+def values(run: Lasso) -> list[Fraction]:
+    return [Fraction(str(each["v"].as_fraction())) for each in run.numbers]
+
+
+@given(st.integers(-3, 3), st.integers(1, 4), st.integers(0, 6), st.integers(-8, 12), st.booleans())
+def test_a_goal_is_reached_just_where_the_rate_lets_it(
+    first: int, rate: int, bound: int, goal: int, strict: bool
+) -> None:
+    """At tick n the number is at most `first + rate * (n + 1)`."""
+    sign = ">" if strict else ">="
+    sentences = (
+        RATE.format(f"{first}.0" if first >= 0 else f"-{-first}.0", rate),
+        f"the sw shall within {bound} ticks satisfy v {sign} {goal}",
+    )
+    highest = first + rate * (bound + 1)
+    run = found(*sentences)
+    if highest > goal or (highest == goal and not strict):
+        assert isinstance(run, Lasso)
+        known = values(run)
+        assert all(abs(b - a) <= rate for a, b in pairwise([Fraction(first), *known]))
+        assert abs(known[run.loop] - known[-1]) <= rate
+        assert max(known[: bound + 1]) >= goal
+    else:
+        assert run == Impossible(bound + 1)
+
+
+@pytest.mark.parametrize(
+    ("sentences", "verdict"),
+    [
+        (["the sw shall eventually satisfy v > 5"], Verdict.REALIZABLE),
+        (["the sw shall within 3 ticks satisfy v > 5"], Verdict.UNREALIZABLE),
+        (
+            [
+                "whenever v > 3 the sw shall eventually satisfy v < 1",
+                "whenever v < 1 the sw shall eventually satisfy v > 4",
+                "the sw shall always satisfy x <-> v = preReal(9.0, v) + 1",
+                "whenever x the sw shall at the next timepoint satisfy x | v > 4",
+            ],
+            Verdict.REALIZABLE,
+        ),
+        (["the sw shall always satisfy v >= preReal(0.0, v) + 0.5 & v < 9"], Verdict.UNREALIZABLE),
+    ],
+)
+def test_what_no_memory_of_comparisons_tells_is_unrolled(
+    sentences: list[str], verdict: Verdict
+) -> None:
+    whole = analyzed(RATE.format("0.0", 1), *sentences, roles=NAMED)
+    assert whole.verdict is verdict
+    assert whole.consistent is (verdict is Verdict.REALIZABLE)
+
+
+def test_what_never_comes_back_is_not_known() -> None:
+    """A run that grows for ever keeps it; there is no lasso, and no end."""
+    assert found("the sw shall always satisfy v > preReal(0.0, v)") is None
+
+
+def test_a_demand_that_stays_open_is_not_met_by_coming_back() -> None:
+    rising = "the sw shall always satisfy v = preReal(0.0, v) + 1 | v = 0"
+    run = found(rising, "whenever v < 9 the sw shall eventually satisfy v > 4")
+    assert isinstance(run, Lasso)
+    assert max(values(run)[run.loop :]) > 4
+
+
+@pytest.mark.slow
+def test_without_numbers_it_is_as_the_game_says() -> None:
+    """Over all scopes, conditions and timings, where the system chooses everything."""
+    own = dict.fromkeys(ROLES, Role.OUTPUT)
+    seen = set()
+    for seed in range(60):
+        for as_fret in (False, True):
+            sentences = drawn(("lassos", seed), most=5)
+            game = staged(*sentences, roles=own, as_fret=as_fret)
+            is_kept = game.game(game.arena.counters, Budget(60)).solution().is_realizable
+            run = lasso(rules(*sentences), own, Budget(60), as_fret=as_fret)
+            assert isinstance(run, Lasso) is is_kept, sentences
+            seen.add(is_kept)
+    assert seen == {True, False}
+
+
+def test_as_fret_nothing_is_owed_at_any_tick() -> None:
+    sentences = (RATE.format("0.0", 1), "the sw shall eventually satisfy v > 5")
+    assert isinstance(found(*sentences), Lasso)
+    assert isinstance(found(*sentences, as_fret=True), Impossible)
+
+
+def test_a_number_before_is_not_known_where_there_are_inputs() -> None:
+    """Then one run shows nothing of the others."""
+    jump = "whenever x the sw shall immediately satisfy v >= 5"
+    named = roles(["x"], ["v"])
+    whole = analyzed(RATE.format("0.0", 1), jump, roles=named)
+    assert whole.verdict is not Verdict.REALIZABLE
