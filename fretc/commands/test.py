@@ -125,6 +125,9 @@ def test(
     sources = [requirement.wording.source.name for requirement in project.requirements]
     protected = [*sources, *companions(sources), *filter(None, [bindings])]
     if against is not None:
+        if emitted is not None or show is not None:
+            clash = "`--against` tests a program, and makes no tests to emit or show"
+            stop(Diagnostic(Code.BAD_USAGE, clash, help="ask for one of them"))
         place = output or "build/tests/conformance.json"
         test_against.against(against, rules, assumed, seconds, line_time, form, place, protected)
     output = output or "build/tests/suite.json"

@@ -180,7 +180,7 @@ def _printed(command: str, found: Iterable[Line]) -> str:
 
 def emitted(sentence: str) -> str:
     """The test of a sentence, in pytest, that takes the most ticks."""
-    rules = (rule("R1", sentence),)
+    rules = (rule(sentence),)
     found = _suite(rules)
     longest = max(found.tests, key=lambda test: test.ticks)
     artifacts, _ = files(found, rules, Form.PYTEST)
@@ -193,9 +193,9 @@ def conformance(fault: str) -> str:
     """What is printed of a program with a fault."""
     with TemporaryDirectory() as folder:
         found = seen_of(Path(folder), program(fault))
-    shown = replace(found, command=("python3", "line.py"))
+    drawn_of = replace(found, command=("python3", "line.py"))
     return _printed(
-        'fretc test --against "python3 line.py"', lines_of(shown, roles(INPUTS, OUTPUTS))
+        'fretc test --against "python3 line.py"', lines_of(drawn_of, roles(INPUTS, OUTPUTS))
     )
 
 

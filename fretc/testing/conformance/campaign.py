@@ -69,6 +69,7 @@ class Campaign:
         self._outcomes: dict[Aim, tuple[Outcome, str]] = {}
         self._triggered: set[str] = set()
         self._runs = self._ticks = self._longest = 0
+        self._is_whole = False
 
     def run(self, start: Start, progress: Callable[[str], None]) -> None:
         """All of them.
@@ -89,6 +90,7 @@ class Campaign:
                         progress(f"{aim.rule.id}: {aim.situation.words}; {aim.polarity}")
                         self._go_for(aim, field, driver)
             self._roam(driver, progress)
+            self._is_whole = True
         finally:
             self._runs, self._ticks = driver.runs, driver.ticks
 
@@ -178,6 +180,7 @@ class Campaign:
             situations=tuple(self._situated()),
             failures=tuple(self._failures[id] for id in self._rules if id in self._failures),
             untried=tuple(id for id in self._rules if id not in self._triggered),
+            whole=self._is_whole,
             not_judged=self._not_judged,
         )
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Annotated, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
-from compiler.files.records import Count, Name, Ordinal, Record, about
+from compiler.files.records import Count, Name, Ordinal, Record, about, json_schema
 from fretc.testing.suite import Repeat
 
 SCHEMA: Final = "fretc-conformance-1"
@@ -57,6 +57,7 @@ class Conformance(Record, frozen=True):
     situations: tuple[Situated, ...]
     failures: tuple[Failure, ...]
     untried: Annotated[tuple[Name, ...], about("requirements of which no run began a demand")]
+    whole: Annotated[bool, about("whether all runs were made; a mistake or Ctrl-C ends them")]
     not_judged: Annotated[dict[str, str], about("why a requirement has no monitor, by its id")]
 
     @property
@@ -64,4 +65,14 @@ class Conformance(Record, frozen=True):
         """Whether all was searched, all was reached that can be forced, and all was asked for."""
         left = (Outcome.NOT_REACHED, Outcome.NOT_SEARCHED)
         reached = all(each.outcome not in left for each in self.situations)
-        return reached and not self.untried and not self.not_judged
+        return self.whole and reached and not self.untried and not self.not_judged
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of what was seen."""
+    return json_schema(
+        Conformance,
+        SCHEMA,
+        "A program under test, as `fretc test --against` saw it",
+        "Nothing depends on when it was made.",
+    )

@@ -54,7 +54,7 @@ def _table(found: Conformance) -> Iterator[Line]:
         own = [each for each in found.situations if each.requirement == id]
         counts = {kind: sum(each.outcome is kind for each in own) for kind in Outcome}
         shown = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
-        sign = signs.BAD if id in broken else signs.GOOD
+        sign = signs.BAD if id in broken else signs.GOOD if found.whole else signs.UNKNOWN
         if id in found.not_judged:
             sign, shown = signs.UNKNOWN, f"not judged: {found.not_judged[id]}"
         elif id in broken:

@@ -38,10 +38,19 @@ def test_a_violation_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
     assert failure["requirement"] == "R3"
 
 
+def test_a_program_that_ends_does_not_conform(fretc: Fretc, folder: Path) -> None:
+    what = join([sys.executable, "-ISE", "-c", "input(); print('alarm,run')"])
+    run = fretc("test", str(folder), "--against", what, "-o", str(folder / "seen.json"))
+    assert run.status == 2
+    assert "F943 " in run.err
+    assert "✔" not in run.out
+    assert "not all was tested" in run.out
+
+
 def test_what_cannot_be_started_is_said(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder), "--against", str(folder / "none"), "-o", "-")
     assert run.status == 2
-    assert run.err.startswith("F940 ")
+    assert "F940 " in run.err
 
 
 @pytest.mark.parametrize("text", ["", "'a"])
