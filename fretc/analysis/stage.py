@@ -82,7 +82,9 @@ class Stage:
             return self
         counted = [{each.id for each in there.counters(ids)} for there in (self, found)]
         mine, its = self.arena.alphabet, found.arena.alphabet
-        is_known = all(its.doubtful(role) <= mine.doubtful(role) for role in (Role.INPUT, Role.OUTPUT))
+        is_known = all(
+            its.doubtful(role) <= mine.doubtful(role) for role in (Role.INPUT, Role.OUTPUT)
+        )
         return found if is_known and counted[0] == counted[1] else self
 
     def game(self, counters: Sequence[Counter], budget: Budget) -> Game:

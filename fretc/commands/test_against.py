@@ -55,8 +55,8 @@ def against(
     from compiler.files.records import plain
     from compiler.files.templating import to_json
     from fretc.analysis.arena.alphabet import BeyondError
+    from fretc.analysis.arena.budget import OutOfTimeError
     from fretc.analysis.arena.roles import roles
-    from fretc.analysis.games.budget import OutOfTimeError
     from fretc.terminal.progress import at_work
     from fretc.testing.conformance.campaign import Campaign
     from fretc.testing.conformance.program import Program, ProgramError

@@ -12,9 +12,9 @@ from compiler.logic.evaluation import evaluate
 from compiler.logic.formula import Formula
 from compiler.targets.python import monitor as emitted
 from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about, by_variables
-from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.testing.conformance.driving import Driver, Start
 from fretc.testing.conformance.field import Aim, Field, Plan
 from fretc.testing.conformance.findings import SCHEMA, Conformance, Failure, Outcome, Situated

@@ -20,12 +20,12 @@ from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
 from compiler.situations.situations import Situation, situations
 from fretc.analysis.arena.alphabet import BeyondError, Tick, numbers
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter, counter
 from fretc.analysis.arena.memory import Bit, Memory, Past
 from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.transition import State, Transition
-from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.game import upheld
 from fretc.analysis.stage import alphabet_of
 from fretc.testing.bench import demands
@@ -71,7 +71,7 @@ class Field:
         """
         every = [*rules, *assumptions]
         fresh = numbers()
-        alphabet = alphabet_of(every, roles, fresh, Role.INPUT)
+        alphabet = alphabet_of(every, roles, fresh, Role.INPUT, of_moments=True)
         shared: dict[Function, Bit] = {}
         found: dict[str, Counter] = {}
         self.beyond: dict[str, str] = {}
