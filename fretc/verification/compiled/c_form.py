@@ -255,7 +255,9 @@ class _Step:
                 return True
             case _:
                 names = frozenset(filter(_is_free, statement))
-                self._change(names, names)
+                left = statement[: statement.index("=")] if "=" in statement else ()
+                # What points to a ring changes it, and is changed with it.
+                self._change(names & {*left, *self._rings}, names)
                 self._local.update(statement[2:3] if statement[:2] == ("const", "bool") else ())
                 return True
 

@@ -17,7 +17,6 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 CLAIM = "the monitor means what the sentence says"
 ENGINE = "fretc, lock step with the counter automaton of the sentence"
-OF_BINARY = "the compiled monitor means what the sentence says"
 
 
 def prove(
@@ -77,6 +76,6 @@ def _of_binary(
         under = (f"the binary is what was proved: {found.compiler}",) if found.compiler else ()
         engine = f"{ENGINE} and the monitor in Python"
         proofs.append(
-            proof(rule.id, Layer.MONITOR, OF_BINARY, found.outcome, engine, under, found.artefacts)
+            proof(rule.id, Layer.MONITOR, CLAIM, found.outcome, engine, under, found.artefacts)
         )
     return proofs
