@@ -17,7 +17,7 @@ monitors.kernel  monitors
 fretish.diagnostics  fretish.reading  fretish.mistakes  fretish  fretish.bindings
 compiler.files  compiler.logic.ordering  compiler.logic  compiler.formalization
 compiler.situations  compiler.project  compiler.agents  compiler.program
-compiler.targets  compiler.targets.python  compiler.targets.c
+compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
 compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs
@@ -28,7 +28,7 @@ fretc.verification.interceptor
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis.controllers
 fretc.analysis
-fretc.testing
+fretc.testing  fretc.testing.exports  fretc.testing.conformance  fretc.coverage
 fretc.report.traceability  fretc.attestation  fretc.reproduction
 fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front
@@ -78,7 +78,7 @@ DOORS = {
     "dask": {"fretc/audit/fleet.py"},
     "mujoco": {"simulation/world/robot.py"},
     "matplotlib": {"simulation/picture.py"},
-    "scipy": {"fretc/audit/measurements/binomial.py"},
+    "scipy": {"fretc/audit/measurements/binomial.py", "fretc/coverage/least_runs.py"},
     "msgspec": {"compiler/files/records.py"},
     "rosbags": {
         "fretc/logs/messages/idl.py",

@@ -50,11 +50,12 @@ _MOST_BITS = 2**23
 
 def refuse(rule: Formalized) -> Diagnostic | None:
     """As a monitor in Python; and F601 for bounds beyond what a controller can keep."""
-    return refusal(rule, "C") or _too_large(rule)
+    return refusal(rule, "C") or too_large(rule, "C")
 
 
 @deep
-def _too_large(rule: Formalized) -> Diagnostic | None:
+def too_large(rule: Formalized, language: str) -> Diagnostic | None:
+    """F601 where a counter or a ring is beyond what a controller can keep."""
     cells = rail(program({rule.id: rule.watch}), {rule.id: "r"}).cells
     if any(isinstance(cell, Counter) and cell.most >= 2**31 for cell in cells):
         what, mend = "a bound of 2^31 ticks or more", "counters have 32 bits: choose a longer tick"
@@ -63,7 +64,7 @@ def _too_large(rule: Formalized) -> Diagnostic | None:
         mend = "it would keep more than a mebibyte: choose a longer tick"
     else:
         return None
-    return not_expressible("a monitor in C", rule, what, mend)
+    return not_expressible(f"a monitor in {language}", rule, what, mend)
 
 
 def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
