@@ -1,6 +1,6 @@
 """A monitor in C as a shared library, with the layout of its structs.
 
-The build traps: undefined behaviour ends the process, and never passes for an answer.
+The build traps: undefined behaviour that the compiler sees ends the process, and is no answer.
 """
 
 from __future__ import annotations
