@@ -42,6 +42,7 @@ _COMMANDS = Registry(
         "info": "fretc.commands.info:info",
         "bind": "fretc.commands.bind:bind",
         "check": "fretc.commands.check:check",
+        "play": "fretc.commands.play:play",
         "analyze": "fretc.commands.analyze:analyze",
         "test": "fretc.commands.test:test",
         "audit": "fretc.commands.audit:audit",

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from itertools import chain
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, comparisons
@@ -12,6 +11,7 @@ from compiler.formalization.resolution import candidates
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, numbers
 from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import side_by_side
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
@@ -134,17 +134,8 @@ def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
     near = about(rules, setting.assumptions, setting.roles)
     used = numbers()
     first = _built(rules, near, setting.roles, used, as_fret=setting.as_fret)
-    weights = {
-        number: weight
-        for each in (*first.arena.counters, *first.arena.assumptions)
-        for word in each.words
-        for weight, bit in enumerate(word)
-        for number in (bit.now, bit.after)
-    }
-    count = next(used)  # the same build takes as many again, in the same order
-    order = sorted(range(count), key=lambda number: (-weights.get(number, count), number))
-    places = {number: place for place, number in enumerate(order)}
-    fresh = chain((places[number] for number in range(count)), numbers(count))
+    counters = (*first.arena.counters, *first.arena.assumptions)
+    fresh = side_by_side([word for each in counters for word in each.words], next(used))
     return _built(rules, near, setting.roles, fresh, as_fret=setting.as_fret)
 
 

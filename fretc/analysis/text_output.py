@@ -169,6 +169,8 @@ def _row(head: str, cells: Iterable[str], width: int, widths: Sequence[int]) -> 
 
 
 def _value(value: object) -> str:
+    if value is None:
+        return "?"
     return str(int(value)) if isinstance(value, bool) else str(value)
 
 

@@ -17,9 +17,9 @@ from compiler.formalization.predicates import Past as PastWords
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.formula import Formula, atoms
-from fretc.analysis.arena.alphabet import Alphabet, BeyondError, numbers
+from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers, numbers
 from fretc.analysis.arena.counters import Counter, counter
-from fretc.analysis.arena.memory import Bit, Memory, Past
+from fretc.analysis.arena.memory import Bit, Memory, Past, side_by_side
 from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.budget import Budget
@@ -55,6 +55,7 @@ class Bench:
         others: Sequence[Formalized],
         more: Iterable[Formalized],
         budget: Budget,
+        fresh: Numbers | None = None,
     ) -> None:
         """The bench.
 
@@ -63,6 +64,7 @@ class Bench:
             others: requirements and assumptions that its tests keep.
             more: sentences whose atoms belong to the letters, too.
             budget: for all searches.
+            fresh: variables, where their order matters.
 
         Raises:
             BeyondError: the requirement has no counter.
@@ -70,7 +72,7 @@ class Bench:
         every = [rule, *others, *more]
         roles = dict.fromkeys((name for each in every for name in each.variables), Role.OUTPUT)
         self.rule, self.budget = rule, budget
-        self._fresh = numbers()
+        self._fresh = fresh or numbers()
         self._shared: dict[Function, Bit] = {}
         alphabet = alphabet_of(every, roles, self._fresh, Role.OUTPUT)
         self.beyond: dict[str, str] = {}
@@ -105,6 +107,15 @@ class Bench:
         for part in (whole.trigger, whole.demand.response, whole.demand.stop):
             for name in atoms(part):
                 yield from bdd.support(self.alphabet.atom(name))
+
+    def order(self) -> Numbers:
+        """Variables for another bench like this one, once all goals are known.
+
+        What goals count and what the requirement counts stand side by side: they are compared, and
+        two long counts one after the other need as many nodes for that as they have values.
+        """
+        words = [*self._counters[self.rule.id].words, *self._memory.words]
+        return side_by_side(words, next(self._fresh))
 
     # Situations
 

@@ -171,7 +171,7 @@ class _Generation:
         chosen = cover(shown, {run: run.rank for run in shown})
         words = {each.key: each.words for each in self._wrong}
         return {
-            run: _Purpose(f"unlike-{key}", f"{self._rule.id} and not the same with {words[key]}")
+            run: _Purpose(f"unlike-{key}", f"tells {self._rule.id} from the same with {words[key]}")
             for run, (key, *_) in chosen.items()
         }
 

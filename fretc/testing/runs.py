@@ -65,6 +65,8 @@ Answer = Run | Absence
 Find = Callable[[Ids], F | None]
 """What is found among the runs that keep some others."""
 Need = tuple[str, Polarity]
+_LONG = 64
+"""Ticks of a bound that is worth an order of variables of its own."""
 
 
 class Runs:
@@ -85,10 +87,14 @@ class Runs:
             except BeyondError as error:
                 self._formulas[each.key] = Absence(why=str(error))
         more = [*(each.rule for each in self.mutants), *places.carriers]
-        self.bench = Bench(rule, others, more, Budget(seconds))
+        budget = Budget(seconds)
+        self.bench = Bench(rule, others, more, budget)
         self._shown = _atoms([rule, *others])
         self._atoms = _atoms([rule, *others, *more])
         self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
+        if (rule.ticks or 0) >= _LONG:
+            self.bench = Bench(rule, others, more, budget, self.bench.order())
+            self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
         self._found: dict[tuple[int, ...], Run] = {}
 
     def _goal(self, formula: Formula | Absence) -> Function | Absence:

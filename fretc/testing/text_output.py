@@ -109,22 +109,28 @@ def _by_situation(suite: Suite) -> list[list[Obligation]]:
     return [*found.values()]
 
 
-def _unmet(both: Sequence[Obligation]) -> Iterator[Line]:
-    """Of a situation, kept and broken."""
-    if all(each.outcome is Met.IMPOSSIBLE for each in both):
-        text = f"{both[0].requirement}: no run shows this: {both[0].words}"
-        yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
-        return
-    for each in both:
-        head = f"{each.requirement} {each.polarity}: {each.words}"
+def _unmet(obligations: Sequence[Obligation]) -> Iterator[Line]:
+    """Of one situation, on runs that keep the requirement and on runs that break it."""
+    first = obligations[0]
+    for outcome, sign, how in (
+        (Met.IMPOSSIBLE, signs.UNUSED, "no run shows this"),
+        (Met.EXCLUDED, signs.UNUSED, f"not with {listed(first.by)}"),
+        (Met.NOT_SEARCHED, signs.UNKNOWN, f"not searched: {first.why}"),
+    ):
+        if all(
+            (each.outcome, each.by, each.why) == (outcome, first.by, first.why)
+            for each in obligations
+        ):
+            yield f"{sign.glyph} {first.requirement}: {how}: {first.words}", sign.colour
+            return
+    for each in obligations:
+        head = f"{each.requirement} {each.polarity}"
         if each.outcome is Met.EXCLUDED:
-            yield f"{signs.UNUSED.glyph} {head}: {_excluded(each.by)}", signs.UNUSED.colour
+            text = f"{head}: not with {listed(each.by)}: {each.words}"
+            yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
         elif each.outcome is Met.NOT_SEARCHED:
-            yield f"{signs.UNKNOWN.glyph} {head}: not searched: {each.why}", signs.UNKNOWN.colour
-
-
-def _excluded(by: Sequence[str]) -> str:
-    return f"excluded by {listed(by)}"
+            text = f"{head}: not searched: {each.why}: {each.words}"
+            yield f"{signs.UNKNOWN.glyph} {text}", signs.UNKNOWN.colour
 
 
 def _surviving(mutant: Mutated) -> Iterator[Line]:

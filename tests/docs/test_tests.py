@@ -5,14 +5,24 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
+from pathlib import Path
 
 import pytest
 
+from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import Demand, Kind, dual
 from compiler.logic import formula as f
+from compiler.project.folder import load
+from compiler.project.paths import requirement_files
 from compiler.situations.facts import facts
 from compiler.situations.mutants import OPERATORS
 from compiler.situations.situations import MEANINGS, situations
+from fretc.analysis.text_output import Line
+from fretc.testing.assembly import jobs, suite
+from fretc.testing.suite import Suite
+from fretc.testing.text_output import lines, shown
+from fretish.bindings.declarations import Role
+from fretish.diagnostics.diagnostic import Diagnostic
 from tests.docs.pages import is_current
 from tests.emitting import rule
 from tests.strategies import templates
@@ -138,7 +148,33 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join([lines[0], "|--" * len(head) + "|", *lines[1:]])
 
 
+def summary(folder: str) -> str:
+    """What `fretc test` prints of a folder."""
+    paths = requirement_files(str(Path(__file__).parents[2] / folder))
+    assert not isinstance(paths, Diagnostic)
+    rules = tuple(load(paths, None).rules)
+    return _printed(f"fretc test {folder}", lines(_suite(rules)))
+
+
+def drawn(sentence: str) -> str:
+    """What `--show` prints of one sentence."""
+    subject = rule(sentence)
+    roles = {"start": Role.INPUT, "run": Role.OUTPUT}
+    return _printed("fretc test --show R1", shown(_suite([subject]), "R1", subject.watched, roles))
+
+
+def _suite(rules: Sequence[Formalized]) -> Suite:
+    return suite(rules, (), [batch for job in jobs(rules, (), 60) for batch in job.ask(())])
+
+
+def _printed(command: str, found: Iterable[Line]) -> str:
+    text = [f"$ {command}", *(line for line, _ in found)]
+    return "\n".join(f"    {line}".rstrip() for line in text)
+
+
 MAKERS = {
+    "suite": summary,
+    "tests": drawn,
     "situations": table_of_situations,
     "duals": table_of_duals,
     "mutants": table_of_mutants,

@@ -366,6 +366,27 @@ class Writer:
         return _Term(f"power({self._text(base)}, {times})", scale)
 
 
+def threshold(compared: Compared) -> tuple[str, Fraction] | None:
+    """A variable that is compared with a number, and the number in its unit."""
+    names = {name: name for name in compared.inputs}
+    writer = Writer(names, units=compared.units)
+    tree = compared.tree
+    for side, other in ((tree.left, tree.right), (tree.right, tree.left)):
+        if isinstance(side, e.Name) and not any(e.names(other)) and not compared.is_of_words:
+            _, limit, _ = writer._in_one_unit(writer._term(side), writer._term(other))
+            if limit.exact is not None:
+                return variable(side.id), limit.exact
+    return None
+
+
+def numbers(compared: Compared) -> Iterator[Fraction]:
+    """Those that a comparison is written with."""
+    for part in e.parts(compared.tree.left), e.parts(compared.tree.right):
+        for each in part:
+            if isinstance(each, e.Number | e.Quantity) and _WRITTEN.fullmatch(each.digits):
+                yield Fraction(each.digits)
+
+
 _WRITTEN = re.compile(r"\d{1,60}(?:\.\d{1,60})?(?:[eE][+-]?\d{1,3})?", re.ASCII)
 """A number of no more digits than one in the bindings has."""
 

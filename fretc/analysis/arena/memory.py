@@ -6,14 +6,15 @@ computed by arithmetic: a bound of a million ticks has twenty bits.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import assert_never
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import BeyondError, Numbers
+from fretc.analysis.arena.alphabet import BeyondError, Numbers, numbers
 
 Word = Sequence[Function]
 """The bits of a whole number from 0 on, the least first."""
@@ -75,6 +76,24 @@ class Memory:
             waiting.extend(self.steps[bit] for bit in read - found)
             found |= read
         return tuple(bit for bit in dict.fromkeys(self.bits) if bit in found)
+
+
+def side_by_side(words: Iterable[tuple[Bit, ...]], count: int) -> Numbers:
+    """Variables for a second build like a first one, with bits of the same weight in a row.
+
+    Args:
+        words: of the first build, the least bits first.
+        count: how many variables it took; the second one takes them in the same order.
+    """
+    weights = {
+        number: weight
+        for word in words
+        for weight, bit in enumerate(word)
+        for number in (bit.now, bit.after)
+    }
+    order = sorted(range(count), key=lambda number: (-weights.get(number, count), number))
+    places = {number: place for place, number in enumerate(order)}
+    return chain((places[number] for number in range(count)), numbers(count))
 
 
 # Arithmetic -----------------------------------------------------------------------------------

@@ -99,17 +99,14 @@ function mark(marks, tick, now, renewed) {
   else if (marks.open < 0) marks.open = tick;
 }
 
-/** What a rail says of a requirement; ticks are null where there is none. */
-function reading(signals, marks, horizon) {
-  const some = (tick) => (tick < 0 ? null : tick);
-  const violated = [marks.broken, marks.doomed].filter((tick) => tick >= 0);
-  return {
-    ...signals,
-    firstViolation: violated.length > 0 ? Math.min(...violated) : null,
-    lastTrigger: some(marks.last),
-    open: some(marks.open),
-    deadline: marks.open >= 0 && horizon !== null ? marks.open + horizon : null,
-  };
+/** What a rail says of a requirement: its signals, and with them ticks, null where there is none. */
+function reading(signals, { broken, doomed, last, open }, horizon) {
+  const violated = broken < 0 ? doomed : doomed < 0 ? broken : Math.min(broken, doomed);
+  signals.firstViolation = violated < 0 ? null : violated;
+  signals.lastTrigger = last < 0 ? null : last;
+  signals.open = open < 0 ? null : open;
+  signals.deadline = open < 0 || horizon === null ? null : open + horizon;
+  return signals;
 }
 
 /** The verdict on a run that ends here. */
@@ -120,21 +117,21 @@ function ended(violated, owed, triggered) {
   return "vacuous";
 }
 
-function outcome(rails, index) {
+function outcome({ certain: must, possible: may }, index) {
   const { horizon } = REQUIREMENTS[index];
-  const [certain, possible] = rails.map(({ signals, marks }) => reading(signals[index], marks[index], horizon));
-  const both = (name) => truth(certain[name], possible[name]);
+  const certain = reading(must.signals[index], must.marks[index], horizon);
+  const possible = reading(may.signals[index], may.marks[index], horizon);
   const violated = truth(certain.firstViolation !== null, possible.firstViolation !== null);
-  const broken = truth(...rails.map(({ marks }) => marks[index].broken >= 0));
-  const fails = both("fails");
+  const broken = truth(must.marks[index].broken >= 0, may.marks[index].broken >= 0);
+  const fails = truth(certain.fails, possible.fails);
+  const owed = truth(certain.owed, possible.owed);
   const triggered = truth(certain.lastTrigger !== null, possible.lastTrigger !== null);
-  const owed = both("owed");
   return {
     verdict: violated ? "violated" : certain.settled && violated === false ? "satisfied" : "pending",
     atEnd: ended(violated, owed, triggered),
     finite: broken || fails ? false : broken === false && fails === false ? true : null,
-    trigger: both("trigger"),
-    breach: both("breach"),
+    trigger: truth(certain.trigger, possible.trigger),
+    breach: truth(certain.breach, possible.breach),
     owed,
     firstViolation: certain.firstViolation,
     open: certain.open,
@@ -165,10 +162,10 @@ function init() {
 /** One tick, by the truth of PROPOSITIONS; an outcome for each requirement. */
 function judge(state, row) {
   const truths = inOrder(row, PROPOSITIONS).map((value, i) => truthValue(value, PROPOSITIONS[i]));
-  const rails = [state.certain, state.possible];
   state.tick += 1;
-  for (const each of rails) advance(each, state.tick, truths);
-  return REQUIREMENTS.map((_, index) => outcome(rails, index));
+  advance(state.certain, state.tick, truths);
+  advance(state.possible, state.tick, truths);
+  return REQUIREMENTS.map((_, index) => outcome(state, index));
 }
 
 /** One tick, by the values of VARIABLES; an outcome for each requirement. */

@@ -1,0 +1,108 @@
+"""The command that makes a page to play with traces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+import click
+
+from fretc.terminal.options import (
+    PATH,
+    analysis_option,
+    output_option,
+    path_option,
+    requirements_option,
+)
+from fretc.terminal.output import BAD, SHOWN, deliver, say, stop
+from fretish.diagnostics.diagnostic import Diagnostic
+
+if TYPE_CHECKING:
+    from compiler.formalization.formalized import Formalized
+    from fretc.play.starts import Start
+
+
+T = TypeVar("T")
+
+
+@click.command(short_help="Make a page: move a tick and see what requirements say.")
+@click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
+@requirements_option
+@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@path_option(
+    "--tests", help="What `fretc test` made; build/tests/suite.json, if it is there and none given."
+)
+@analysis_option
+@output_option(default="build/play.html", show_default=True, help="The page; `-` prints it.")
+def play(
+    files: tuple[str, ...],
+    requirements: str,
+    bindings: str | None,
+    tests: str | None,
+    analysis: str | None,
+    output: str,
+) -> None:
+    """Make a page: move a tick of a trace and see what each requirement says.
+
+    FILE holds requirements, or is a folder of such files: in place of `--requirements`. The page is
+    one file, asks nothing of the network, and judges with the monitors of `--emit js`. It starts
+    from the traces of `fretc explain`, and from those of `fretc test` and `fretc analyze` where
+    they have been made.
+    """
+    from compiler.formalization.formalize import clashes
+    from compiler.project.paths import companions
+    from compiler.targets.javascript.monitor import refuse
+    from fretc.commands.analyze import in_force, project_of
+    from fretc.play.page import html
+    from fretc.play.starts import of_examples
+
+    project, _ = project_of(files, requirements, bindings)
+    rules = in_force(project, None)
+    refused = {rule.id: said for rule in rules if (said := refuse(rule)) is not None}
+    known = tuple(rule for rule in rules if rule.id not in refused)
+    if not known:
+        stop(*refused.values())
+    clashing = [*clashes(known)]
+    if clashing:
+        stop(*clashing)
+    say([*refused.values()])
+    starts = [*of_examples(known), *_of_files(project.rules, known, tests, analysis)]
+    page = html(known, [(id, said.message) for id, said in refused.items()], starts)
+    sources = [requirement.wording.source.name for requirement in project.requirements]
+    inputs = filter(None, [bindings, tests, analysis])
+    deliver({Path(output): page}, [*sources, *companions(sources), *inputs])
+    raise SystemExit(BAD if refused else SHOWN)
+
+
+def _of_files(
+    rules: Sequence[Formalized],
+    known: Sequence[Formalized],
+    tests: str | None,
+    analysis: str | None,
+) -> Iterator[Start]:
+    """What other commands have found, as far as it is about the requirements as they are."""
+    from fretc.analysis.evidence import read as read_analysis
+    from fretc.analysis.evidence import written
+    from fretc.play.starts import SUITE, changed, of_analysis, of_suite, others, read_suite, stale
+
+    path = tests or (SUITE if Path(SUITE).exists() else None)
+    if path is not None:
+        suite = _good(read_suite(path))
+        old = changed(suite, rules)
+        if old:
+            say([stale(path, f"{', '.join(old)} changed since", "fretc test")])
+        yield from of_suite(suite, known)
+    path = analysis or written()
+    if path is not None:
+        found = _good(read_analysis(path)).document
+        old = others(found, rules)
+        if old:
+            say([stale(path, f"{', '.join(old)} changed since", "fretc analyze")])
+        yield from of_analysis(found, old)
+
+
+def _good(found: T | Diagnostic) -> T:
+    if isinstance(found, Diagnostic):
+        stop(found)
+    return found

@@ -1,0 +1,239 @@
+"""The page itself: monitors in JavaScript, what is known of them, and the script that plays."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import groupby, pairwise
+from math import floor, isfinite, log10
+from typing import Any
+
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.obligation import TRAITS, Trait, Uninterpreted, boolean, obligation
+from compiler.logic import formula as f
+from compiler.targets.javascript.monitor import Body, body
+from compiler.targets.python.comparisons import NUMBER, Compared, Front, numbers, threshold
+from compiler.targets.target import stem
+from fretc.play.starts import MOST, Start
+from fretc.report.model.phrases import visible
+from fretc.report.page.html import hash_source
+from fretish.diagnostics import signs
+from fretish.printer import expression
+from fretish.printer import sentence as printed
+from monitors.kernel.verdicts import Verdict
+
+_GLYPHS: Mapping[str, str] = {
+    Verdict.VIOLATED: signs.BAD.glyph,
+    Verdict.SATISFIED: signs.GOOD.glyph,
+    Verdict.PENDING: "",
+    "unknown": signs.UNKNOWN.glyph,
+    Verdict.INCONCLUSIVE: signs.OPEN.glyph,
+    Verdict.VACUOUS: signs.EMPTY.glyph,
+    Verdict.NO_DATA: signs.UNKNOWN.glyph,
+}
+_WORDS: Mapping[str, str] = {
+    Verdict.VIOLATED: "violated, whatever follows",
+    Verdict.SATISFIED: "satisfied; at this tick: whatever follows",
+    Verdict.PENDING: "pending: what follows decides",
+    "unknown": "unknown: it depends on unknown values",
+    Verdict.INCONCLUSIVE: "inconclusive: it would end with an open demand",
+    Verdict.VACUOUS: "vacuous: nothing was demanded",
+}
+
+
+def html(
+    rules: Sequence[Formalized], left_out: Sequence[tuple[str, str]], starts: Sequence[Start]
+) -> str:
+    """The whole file.
+
+    Args:
+        rules: at least one, of which JavaScript can be made, and all on one clock.
+        left_out: the ids of the others, and why they are.
+        starts: traces to begin with; those of more than `MOST` ticks are passed over.
+    """
+    made = body(*rules)
+    known = [each for each in starts if 0 < each.ticks <= MOST]
+    names = ", ".join(("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "truths", "judge"))
+    code = "\n".join(line for line in made.text.splitlines() if not line.lstrip().startswith("//"))
+    monitor = f'"use strict";\nconst monitor = (() => {{\n{code}\nreturn {{ {names} }};\n}})();\n'
+    script = render(
+        "play/page.js.j2",
+        **{part: render(f"play/{part}.js.j2", glyphs=json.dumps(_GLYPHS)) for part in _PARTS},
+    )
+    style = render("play/style.css.j2")
+    return render(
+        "play/page.html.j2",
+        title=visible(", ".join(rule.id for rule in rules[:_TITLED]) + _more(len(rules))),
+        tick=str(rules[0].clock) if rules[0].clock else "",
+        left_out=[(visible(id), visible(why)) for id, why in left_out],
+        labels=[visible(rule.id) for rule in rules],
+        starts=[*_grouped(known)],
+        glyphs=[(_WORDS[word], glyph) for word, glyph in _GLYPHS.items() if word in _WORDS],
+        version=__version__,
+        data=_data(rules, made, known),
+        monitor=monitor,
+        script=script,
+        style=style,
+        monitor_hash=hash_source(monitor),
+        script_hash=hash_source(script),
+        style_hash=hash_source(style),
+    )
+
+
+_PARTS = ("trace", "words", "grid", "gestures")
+_TITLED = 6
+"""Ids in the title."""
+
+
+def _more(count: int) -> str:
+    return f" and {count - _TITLED} more" if count > _TITLED else ""
+
+
+def _grouped(starts: Sequence[Start]) -> Iterator[tuple[str, list[tuple[int, str]]]]:
+    numbered = enumerate(starts)
+    for group, some in groupby(numbered, key=lambda each: each[1].group):
+        yield group, [(place, visible(start.name)) for place, start in some]
+
+
+def _data(rules: Sequence[Formalized], made: Body, starts: Sequence[Start]) -> dict[str, Any]:
+    front = made.front or Front({}, {})
+    variables = [*front.inputs] or [*made.propositions]
+    places = {name: place for place, name in enumerate(variables)}
+    reads = {name: [places[name]] for name in made.propositions if name in places}
+    for name, compared in front.comparisons.items():
+        reads[name] = [places[each] for each in compared.inputs]
+    ids = {rule.id: place for place, rule in enumerate(rules)}
+    return {
+        "most": MOST,
+        "requirements": [_requirement(rule, made.propositions, reads) for rule in rules],
+        "variables": [_variable(name, front) for name in variables],
+        "comparisons": [
+            {
+                "proposition": place,
+                "label": visible(name.strip("()")),
+                "limit": _limit(front.comparisons[name], places),
+            }
+            for place, name in enumerate(made.propositions)
+            if name in front.comparisons
+        ],
+        "groups": [*_groups(made.propositions, front, places)],
+        "starts": [
+            {
+                "about": visible(start.about),
+                "requirements": [ids[id] for id in start.requirements if id in ids],
+                "rows": start.rows,
+            }
+            for start in starts
+        ],
+    }
+
+
+def _requirement(
+    rule: Formalized, propositions: Sequence[str], reads: Mapping[str, Sequence[int]]
+) -> dict[str, Any]:
+    demand = obligation(rule.sentence, rule.ticks or 0).demand
+    formula = boolean(rule.sentence.response, Uninterpreted().alone())
+    known = all(name in propositions for name in f.atoms(formula))
+    return {
+        "label": visible(rule.id),
+        "file": stem(rule),
+        "sentence": visible(printed(rule.written)),
+        "response": visible(expression(rule.written.response)),
+        "formula": _tree(formula, propositions) if known else None,
+        "waits": Trait.WAITS in TRAITS[demand.kind],
+        "watches": [propositions.index(name) for name in rule.watched],
+        "reads": sorted({place for name in rule.watched for place in reads[name]}),
+    }
+
+
+def _tree(formula: f.Formula, propositions: Sequence[str]) -> list[Any]:
+    """A Boolean formula as operators and operands."""
+    match formula:
+        case f.Const(value):
+            return [str(value).lower()]
+        case f.Atom(name):
+            return ["atom", propositions.index(name)]
+        case f.Not(arg):
+            return ["not", _tree(arg, propositions)]
+        case f.And(args):
+            return ["and", *(_tree(arg, propositions) for arg in args)]
+        case f.Or(args):
+            return ["or", *(_tree(arg, propositions) for arg in args)]
+        case f.Implies(left, right):
+            return ["or", ["not", _tree(left, propositions)], _tree(right, propositions)]
+        case f.Iff(left, right):
+            return ["same", _tree(left, propositions), _tree(right, propositions)]
+        case f.Xor(left, right):
+            return ["not", ["same", _tree(left, propositions), _tree(right, propositions)]]
+        case _:
+            raise AssertionError(f"not a Boolean formula: {formula}")
+
+
+# Numbers --------------------------------------------------------------------------------------
+
+
+def _variable(name: str, front: Front) -> dict[str, Any]:
+    own = [each for each in front.comparisons.values() if name in each.inputs]
+    found = front.inputs.get(name)
+    unit = next((each.units[name][0] for each in own if name in each.units), "")
+    candidates: list[Any] = []
+    if found is not None and found.words:
+        candidates = [*found.words]
+    elif found is not None and found.kind == NUMBER:
+        limits = [each[1] for one in own if (each := threshold(one)) and each[0] == name]
+        candidates = _candidates(limits or [each for one in own for each in numbers(one)])
+    return {
+        "label": visible(name),
+        "note": f"in {unit}" if unit else "",
+        "candidates": candidates,
+    }
+
+
+def _limit(compared: Compared, places: Mapping[str, int]) -> tuple[int, float] | None:
+    """A threshold: the place of its variable, and the number."""
+    found = threshold(compared)
+    value = _finite(found[1]) if found else None
+    return (places[found[0]], value) if found and value is not None else None
+
+
+def _finite(value: Fraction) -> float | None:
+    try:
+        found = float(value)
+    except OverflowError:
+        return None
+    return found if isfinite(found) else None
+
+
+def _candidates(limits: Sequence[Fraction]) -> list[float]:
+    """Numbers at, between and beside these: they make all patterns of comparisons with them."""
+    known = sorted({each for limit in limits if (each := _finite(limit)) is not None} or {0.0})
+    between = [(a + b) / 2 for a, b in pairwise(known)]
+    least, most = known[0] - _step(known[0]), known[-1] + _step(known[-1])
+    return [each for each in (most, *known, *between, least) if isfinite(each)]
+
+
+def _step(value: float) -> float:
+    """A unit of the first digit."""
+    return float(10 ** floor(log10(abs(value)))) if value else 1.0
+
+
+def _groups(
+    propositions: Sequence[str], front: Front, places: Mapping[str, int]
+) -> Iterator[dict[str, list[int]]]:
+    """Comparisons that share variables, so that numbers of one bear upon the others."""
+    groups: list[tuple[set[str], set[str]]] = []
+    for name, compared in front.comparisons.items():
+        variables, members = {*compared.inputs}, {name}
+        for group in [each for each in groups if not each[0].isdisjoint(variables)]:
+            groups.remove(group)
+            variables |= group[0]
+            members |= group[1]
+        groups.append((variables, members))
+    for variables, members in groups:
+        yield {
+            "variables": sorted(places[name] for name in variables),
+            "propositions": sorted(propositions.index(name) for name in members),
+        }

@@ -1,0 +1,141 @@
+"""Traces that a page starts from: examples, tests, conflicts.
+
+A value is of a variable or of a proposition; what a trace does not say is unknown.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from compiler.explanation.explain import explanation
+from compiler.files.checked_json import MisshapenError, parsed
+from compiler.files.records import decoded
+from compiler.files.text_files import read
+from compiler.formalization.formalized import Formalized
+from fretc.analysis.evidence import Document
+from fretc.testing.suite import Suite
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source
+from fretish.printer import sentence as printed
+
+Value = bool | int | float | str | None
+Ticks = tuple[int, dict[str, Value]]
+"""How many equal ticks there are one after the other, and their values."""
+MOST = 2_000
+"""Ticks of a trace in a page."""
+SUITE = "build/tests/suite.json"
+"""Where `fretc test` writes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """A trace, and what it shows."""
+
+    group: str
+    name: str
+    about: str
+    requirements: tuple[str, ...]
+    """The ids of those that it is about."""
+    rows: tuple[Ticks, ...]
+
+    @property
+    def ticks(self) -> int:
+        """How long it is."""
+        return sum(count for count, _ in self.rows)
+
+
+def of_examples(rules: Sequence[Formalized]) -> Iterator[Start]:
+    """The traces of `fretc explain`; what repeats comes twice."""
+    for rule in rules:
+        if (rule.ticks or 0) > MOST:
+            continue
+        explained = explanation(rule)
+        for shown in explained.traces:
+            names = explained.propositions
+            rows: list[Ticks] = [
+                (row.last - row.first + 1, dict(zip(names, row.values, strict=True)))
+                for row in shown.rows
+            ]
+            again = [row for row, each in zip(rows, shown.rows, strict=True) if each.repeats]
+            word = "satisfied" if shown.satisfied else "violated"
+            name = f"{rule.id}, {word}: {shown.reason}"
+            yield Start("Examples", name, name, (rule.id,), (*rows, *again))
+
+
+def of_suite(suite: Suite, rules: Sequence[Formalized]) -> Iterator[Start]:
+    """The tests of requirements whose sentences are still the same."""
+    fingerprints = {rule.id: rule.fingerprint for rule in rules}
+    same = {each.id for each in suite.requirements if fingerprints.get(each.id) == each.fingerprint}
+    for test in suite.tests:
+        if test.requirement in same:
+            rows = tuple((row.count, dict(row.values)) for row in test.rows)
+            about = f"{test.name}: {test.words}"
+            name = f"{test.requirement}: {test.words}"
+            yield Start("Tests", name, about, (test.requirement,), rows)
+
+
+def changed(suite: Suite, rules: Sequence[Formalized]) -> tuple[str, ...]:
+    """The requirements that the tests are about as they were before."""
+    fingerprints = {rule.id: rule.fingerprint for rule in rules}
+    return tuple(
+        each.id
+        for each in suite.requirements
+        if fingerprints.get(each.id, each.fingerprint) != each.fingerprint
+    )
+
+
+def others(document: Document, rules: Sequence[Formalized]) -> tuple[str, ...]:
+    """The requirements of an analysis that are not those of the project, or have changed."""
+    sentences = {rule.id: printed(rule.written) for rule in rules}
+    members = document.requirements.items()
+    return tuple(id for id, member in members if sentences.get(id) != member.sentence)
+
+
+def of_analysis(document: Document, changed: Sequence[str]) -> Iterator[Start]:
+    """The plays of conflicts, but of those that have changed; a loop comes three times."""
+    for conflict in document.analysis.conflicts:
+        if not {*changed}.isdisjoint(conflict.requirements):
+            continue
+        rows = [(1, dict[str, Value](tick)) for tick in conflict.play]
+        if rows:
+            loop = rows[conflict.loop :] if conflict.loop is not None else []
+            name = f"{', '.join(conflict.requirements)}: {conflict.because}"
+            yield Start("Conflicts", name, name, conflict.requirements, (*rows, *loop, *loop))
+
+
+def read_suite(path: str) -> Suite | Diagnostic:
+    """Read and check what `fretc test` has written."""
+    source = read(path)
+    if isinstance(source, Diagnostic):
+        return source
+    try:
+        return decoded(parsed(source.text).value, Suite)
+    except json.JSONDecodeError as error:
+        return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
+    except MisshapenError as error:
+        return _wrong(source, f"is not what `fretc test` writes: {error}")
+    except RecursionError:
+        return _wrong(source, "is not JSON that fretc can read: it is nested too deeply")
+    except ValueError as error:
+        return _wrong(source, f"is not JSON that fretc can read: {error}")
+
+
+def _wrong(source: Source, what: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EVIDENCE,
+        f"`{source.name}` {what}",
+        Source(source.name, "").span(),
+        help="make it again: `fretc test`",
+    )
+
+
+def stale(path: str, why: str, again: str) -> Diagnostic:
+    """A warning: traces of a file are left out, because they are of something else."""
+    return Diagnostic(
+        Code.BAD_EVIDENCE,
+        f"traces of `{path}` are left out: {why}",
+        help=f"make it again: `{again}`",
+        severity=Severity.WARNING,
+    )

@@ -1,0 +1,97 @@
+"""`fretc test` as its users meet it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+import jsonschema  # type: ignore[import-untyped]
+import pytest
+
+from compiler.files.records import decoded, plain
+from compiler.files.templating import to_json
+from fretc.testing import suite
+from tests.command import Fretc
+
+SENTENCES = (
+    "whenever start the line shall within 2 ticks satisfy run",
+    "whenever hold the line shall immediately satisfy !run",
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return written(tmp_path, SENTENCES)
+
+
+def written(folder: Path, sentences: Sequence[str]) -> Path:
+    for number, sentence in enumerate(sentences, 1):
+        (folder / f"r{number}.fret").write_text(f'+++\nid = "R{number}"\n+++\n{sentence}\n')
+    return folder
+
+
+def test_a_row_tells_of_each_requirement(fretc: Fretc, folder: Path) -> None:
+    run = fretc("test", str(folder))
+    assert run.status == 0
+    head, gap, titles, first, *_ = run.out.splitlines()
+    assert head.startswith("✔ 2 requirements: ")
+    assert head.endswith("; each situation is met or cannot be, no mutant survives")
+    assert gap == ""
+    assert titles.split() == ["tests", "ticks", "situations", "mutants"]
+    assert first.split()[0] == "R1"
+    assert (folder / "build/tests/suite.json").is_file()
+
+
+def test_the_suite_is_as_its_schema_says_and_is_read_back(fretc: Fretc, folder: Path) -> None:
+    run = fretc("test", str(folder), "-o", "-")
+    found = json.loads(run.out)
+    jsonschema.validate(found, suite.schema())
+    again = decoded(found, suite.Suite)
+    assert json.loads(to_json(plain(again))) == found
+    assert not (folder / "build").exists()
+
+
+def test_tests_of_one_requirement_are_drawn(fretc: Fretc, folder: Path) -> None:
+    run = fretc("test", str(folder), "--show", "R1")
+    assert run.status == 0
+    assert run.out.startswith(
+        "R1  whenever start the line shall within 2 ticks satisfy run\n  its tests keep R2, too\n"
+    )
+    assert (
+        "✔ r1-answered-at-last-tick-kept: satisfied\n"
+        "  `run` at the last tick that counts (2 ticks after the trigger); R1 is kept\n"
+        "    tick   0  1  2\n"
+        "    run    0  0  1\n"
+        "    start  1  0  0\n"
+        "  triggered at tick 0, `run` is true at tick 2, 2 ticks later; the bound is 2 ticks\n"
+    ) in run.out
+
+
+def test_a_requirement_that_there_is_not_is_a_mistake(fretc: Fretc, folder: Path) -> None:
+    run = fretc("test", str(folder), "--show", "R3")
+    assert run.status == 2
+    assert "F907 there is no requirement `R3`" in run.err
+    assert not (folder / "build").exists()
+
+
+def test_what_was_not_searched_is_told(fretc: Fretc, folder: Path) -> None:
+    run = fretc("test", str(folder), "--time", "0.000001")
+    assert run.status == 3
+    assert run.out.startswith("? 2 requirements: 0 tests of 0 ticks together; not all was searched")
+    assert "not searched: not answered within 1e-06 s of a processor" in run.out
+
+
+def test_what_others_exclude_is_told(fretc: Fretc, tmp_path: Path) -> None:
+    folder = written(tmp_path, (SENTENCES[0], "the line shall never satisfy start"))
+    run = fretc("test", str(folder), "-o", str(tmp_path / "suite.json"))
+    assert run.status == 0
+    assert "○ R1: not with R2: triggered at tick 0\n" in run.out
+
+
+def test_a_sentence_that_cannot_be_read_is_a_mistake(fretc: Fretc, tmp_path: Path) -> None:
+    folder = written(tmp_path, ("the line shal run",))
+    run = fretc("test", str(folder))
+    assert run.status == 2
+    assert "Traceback" not in run.err

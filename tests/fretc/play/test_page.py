@@ -1,0 +1,376 @@
+"""The page as a browser shows it: its verdicts, a person's gestures, and that it stays alone."""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib.resources import files
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from compiler.formalization.reference import (
+    BROKEN,
+    Automaton,
+    accepts,
+    explore,
+    happening,
+    template,
+)
+from compiler.targets.python.monitor import text as monitor_text
+from fretc.play.page import html
+from fretc.play.starts import Start
+from monitors.loading import load
+from tests.meaning import SCOPES
+from tests.monitoring import rule
+from tests.strategies import templates
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Locator, Page
+
+pytestmark = pytest.mark.slow
+WITHIN = "whenever near the robot shall within 2 ticks satisfy stopped"
+BATTERY = "whenever battery < 20 the agv shall within 1 ticks satisfy docking | speed <= 0.5"
+HOSTILE = "</script><script>document.title='broken'</script>\u202e"
+Open = Callable[..., "Page"]
+
+
+@pytest.fixture
+def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
+    """Opens a page; at the end nothing was asked of the network and nothing complained."""
+    messages: list[str] = []
+    asked: list[str] = []
+    contexts: list[Any] = []
+
+    def open_it(
+        *sentences: str, starts: Sequence[Start] = (), address: str = "", **options: Any
+    ) -> Page:
+        path = tmp_path / f"{len(contexts)}.html"
+        rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences, 1)]
+        path.write_text(html(rules, [(HOSTILE, HOSTILE)], starts), encoding="utf-8")
+        contexts.append(browser.new_context(offline=True, **options))
+        page: Page = contexts[-1].new_page()
+        page.on("console", lambda message: messages.append(message.text))
+        page.on("pageerror", lambda error: messages.append(str(error)))
+        page.on("request", lambda request: asked.append(request.url))
+        page.goto(f"{path.as_uri()}{address}")
+        return page
+
+    yield open_it
+    for context in contexts:
+        context.close()
+    assert messages == []
+    assert not [url for url in asked if not url.startswith(("file:", "blob:"))]
+
+
+def expected_to(subject: Any) -> Any:
+    """What waits for it to come true."""
+    from playwright.sync_api import expect
+
+    return expect(subject)
+
+
+def lane(page: Page, label: str, note: str = "") -> Locator:
+    """The cells of a lane."""
+    name = f"{label} {note}".strip()
+    return (
+        page.locator("#grid tbody tr")
+        .filter(has=page.get_by_role("rowheader", name=name, exact=True))
+        .locator("td")
+    )
+
+
+def told(page: Page, label: str, note: str = "") -> list[str]:
+    """What a lane says to who hears it, tick by tick."""
+    labels = [cell.get_attribute("aria-label") or "" for cell in lane(page, label, note).all()]
+    assert all(f"at tick {t}: " in text for t, text in enumerate(labels))
+    return [text.split(": ", 1)[1] for text in labels]
+
+
+def everything(page: Page) -> dict[str, list[str]]:
+    """All lanes at once: their heads, and what each cell says."""
+    found: dict[str, list[str]] = page.evaluate(
+        "Object.fromEntries([...document.querySelectorAll('#grid tbody tr')].map(row =>"
+        " [row.cells[0].textContent.trim(), [...row.cells].slice(1)"
+        ".map(cell => cell.ariaLabel.split(': ').slice(1).join(': '))]))"
+    )
+    return found
+
+
+# Verdicts -------------------------------------------------------------------------------------
+
+
+def address(rows: Sequence[Mapping[str, bool | None]]) -> str:
+    names = rows[0]
+    values = {
+        name: "_".join("u" if row[name] is None else str(int(bool(row[name]))) for row in rows)
+        for name in names
+    }
+    return f"#ticks={len(rows)}" + "".join(f"&v.{name}={text}" for name, text in values.items())
+
+
+def judged(automaton: Automaton, rows: Sequence[Mapping[str, bool]]) -> Iterator[tuple[str, str]]:
+    """The verdict whatever follows, and a verdict where the run ends, of the counter automaton."""
+    state, broken, triggered = 0, False, False
+    for row in rows:
+        letter = tuple(row.get(name, True) for name in "mpqs")
+        place = automaton.letters.index(letter)
+        if not broken:
+            now = happening(automaton.template, automaton.states[state], letter[0], letter[1])
+            triggered = triggered or now.triggered
+            state = automaton.moves[state][place]
+        broken = broken or state == BROKEN or automaton.verdicts[state] == "violated"
+        if broken:
+            yield "violated", "violated"
+            continue
+        good = "satisfied" if triggered else "vacuous"
+        closed = accepts(automaton.template, automaton.states[state])
+        yield automaton.verdicts[state], good if closed else "open"
+
+
+@pytest.mark.parametrize("scope", SCOPES)
+def test_the_verdicts_are_those_of_the_automaton(opened: Open, scope: str) -> None:
+    chosen = [each for each in templates((0, 2)) if each.scope == scope]
+    choose = random.Random(scope)
+    names = "pqs" if scope == "null" else "mpqs"
+    rows = [{name: choose.random() < 0.5 for name in names} for _ in range(14)]
+    found = everything(opened(*[each.sentence for each in chosen], address=address(rows)))
+    letters = [(m, p, q, s) for m, p, q, s in product((False, True), repeat=4)]
+    for place, each in enumerate(chosen, 1):
+        subject = rule(each.sentence)
+        counted = explore(template(subject.sentence, subject.ticks or 0), letters)
+        known = [{n: row[n] for n in each.columns} for row in rows]
+        expected = [*judged(counted, known)]
+        assert found[f"R{place} at this tick"] == [now for now, _ in expected], each
+        for (_, end), shown in zip(expected, found[f"R{place} if it ended here"], strict=True):
+            assert shown == end or (shown == "inconclusive" and end != "violated"), each
+
+
+def test_what_is_unknown_is_told_as_unknown(opened: Open) -> None:
+    rows = [{"near": None if t == 0 else False, "stopped": False} for t in range(4)]
+    page = opened(WITHIN, address=address(rows))
+    assert told(page, "R1", "at this tick") == ["pending", "pending", "unknown", "unknown"]
+    assert told(page, "R1", "open demand")[:2] == ["unknown", "unknown"]
+    assert told(page, "near") == ["unknown", "false", "false", "false"]
+    assert lane(page, "near").first.inner_text() == "?"
+
+
+# Gestures -------------------------------------------------------------------------------------
+
+
+def centre(cell: Locator) -> tuple[float, float]:
+    box = cell.bounding_box()
+    assert box is not None
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def test_a_click_turns_a_value_and_a_drag_paints_it(opened: Open) -> None:
+    page = opened(WITHIN)
+    near = lane(page, "near")
+    near.nth(3).click()
+    assert told(page, "near")[3] == "true"
+    assert told(page, "R1", "at this tick")[4:6] == ["pending", "violated"]
+    page.mouse.move(*centre(near.nth(5)))
+    page.mouse.down()
+    page.mouse.move(*centre(near.nth(8)))
+    page.mouse.up()
+    assert told(page, "near")[3:10] == ["true", "false", "true", "true", "true", "true", "false"]
+    near.nth(6).click(button="right")
+    assert told(page, "near")[5:8] == ["true", "unknown", "true"]
+    page.keyboard.press("Control+z")
+    page.keyboard.press("Control+z")
+    assert told(page, "near").count("true") == 1
+    page.keyboard.press("Control+y")
+    assert told(page, "near").count("true") == 5
+
+
+def test_everything_can_be_done_by_keyboard(opened: Open) -> None:
+    page = opened(WITHIN)
+    lane(page, "near").first.focus()
+    for key in ("ArrowRight", "ArrowRight", "Space", "ArrowDown", "End", "1", "Home", "u"):
+        page.keyboard.press(key)
+    assert told(page, "near") == ["false"] * 2 + ["true"] + ["false"] * 9
+    assert told(page, "stopped") == ["unknown"] + ["false"] * 10 + ["true"]
+    assert page.locator("#where").inner_text() == "Tick 0: 1 pending."
+    for key in ("ArrowRight", "ArrowRight", "1", "Shift+ArrowRight", "Shift+ArrowRight"):
+        page.keyboard.press(key)
+    assert told(page, "stopped")[1:6] == ["false", "true", "true", "true", "false"]
+    for key in ("Home", "i", "r", "Delete"):
+        page.keyboard.press(key)
+    assert told(page, "stopped")[:4] == ["unknown", "unknown", "false", "true"]
+    focused = page.evaluate("document.activeElement.ariaLabel")
+    assert focused == "stopped at tick 1: unknown"
+    assert page.locator("#grid [tabindex='0']").count() == 1
+
+
+def test_the_cursor_says_why(opened: Open) -> None:
+    rows = [{"near": t == 1, "stopped": t > 3} for t in range(6)]
+    page = opened(WITHIN, address=address(rows))
+    says = {}
+    for t in range(6):
+        lane(page, "R1", "at this tick").nth(t).click()
+        says[t] = page.locator("#why li").inner_text()
+    assert "no demand is open." in says[0]
+    assert "open since tick 1, due by tick 3, in 1 tick; not met, violated at tick 3." in says[2]
+    assert "`stopped` is false at ticks 1 to 2." in says[2]
+    assert "violated since tick 3. Triggered at tick 1, due by tick 3." in says[4]
+    assert "`stopped` is false at ticks 1 to 3." in says[4]
+
+
+def test_numbers_are_typed_and_comparisons_follow(opened: Open) -> None:
+    page = opened(BATTERY)
+    battery = lane(page, "battery")
+    battery.nth(2).click()
+    page.keyboard.type("20.5")
+    page.keyboard.press("Enter")
+    battery.nth(3).click()
+    page.keyboard.type("-1e-3")
+    page.keyboard.press("Enter")
+    assert told(page, "battery")[1:5] == ["0", "20.5", "-0.001", "0"]
+    assert told(page, "battery < 20")[1:5] == ["true", "false", "true", "true"]
+    page.keyboard.press("u")
+    assert told(page, "battery < 20")[3] == "unknown"
+    page.keyboard.type("1x")
+    page.keyboard.press("Enter")
+    assert "is no number" in page.locator("#status").inner_text()
+    assert told(page, "battery")[3] == "unknown"
+    page.keyboard.press("Escape")
+    lines = page.locator(".plot .limit")
+    assert [line.get_attribute("d").count("M") for line in lines.all()] == [1, 1]  # type: ignore[union-attr]
+
+
+# Traces in and out ----------------------------------------------------------------------------
+
+
+def test_the_address_is_the_trace(opened: Open) -> None:
+    page = opened(BATTERY, WITHIN)
+    page.locator("#which").select_option("R1")
+    lane(page, "battery").nth(1).click()
+    page.keyboard.type("17.25")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Repeat tick").click()
+    lane(page, "docking").nth(2).click(button="right")
+    before = everything(page)
+    expected_to(page).to_have_url(re.compile("17[.]25"))
+    other = page.context.new_page()
+    other.goto(page.url)
+    assert everything(other) == before
+    assert other.locator("#which").input_value() == "0"
+
+
+def test_an_address_of_something_else_is_told(opened: Open) -> None:
+    page = opened(WITHIN, address="#ticks=0")
+    refused = "the address holds no trace of this page"
+    assert page.locator("#status").inner_text() == refused
+    for bad in ("ticks=99999999", "x", "ticks=2&v.near=1", "ticks=2&v.x=1_1", "ticks=1&v.near=%"):
+        page.evaluate("location.hash = 'ticks=3'")
+        expected_to(page.locator("#status")).to_have_text("")
+        page.evaluate("hash => { location.hash = hash; }", bad)
+        expected_to(page.locator("#status")).to_have_text(refused)
+        assert len(told(page, "near")) == 3
+
+
+def test_a_saved_table_is_judged_alike_by_the_monitor(opened: Open, tmp_path: Path) -> None:
+    page = opened(BATTERY, WITHIN)
+    page.locator("#which").select_option("R1")
+    for t, number in ((1, "30"), (2, "19.99"), (4, "inf")):
+        lane(page, "battery").nth(t).click()
+        page.keyboard.press("Enter")
+        page.keyboard.type(number)
+        page.keyboard.press("Enter")
+    lane(page, "docking").nth(3).click(button="right")
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save CSV").click()
+    path = tmp_path / download.value.suggested_filename
+    assert path.name == "r1.csv"
+    download.value.save_as(path)
+    header, *rows = path.read_text("utf-8").splitlines()
+    machine: Any = load("monitor.py", monitor_text(rule(BATTERY)))
+    assert header == ",".join(machine.VARIABLES)
+    expected = []
+    for row in rows:
+        battery, docking, speed = row.split(",")
+        machine.take([(float(battery), docking == "1" if docking else None, float(speed))])
+        expected.append(machine.verdicts()[0].value)
+    shown = told(page, "R1", "at this tick")
+    assert [word.replace("unknown", "pending") for word in shown] == expected
+    page.get_by_role("button", name="Clear").click()
+    page.locator("#load").set_input_files(path)
+    expected_to(page.locator("#status")).to_have_text("r1.csv: 12 ticks")
+    page.locator("#which").select_option("R1")
+    assert told(page, "R1", "at this tick") == shown
+
+
+BAD_TABLES = (
+    ("near\n", "the table has no rows"),
+    ("near,x\n1,1\n", "`x` is no variable here: there are near, stopped"),
+    ("near,near\n1,1\n", "`near` comes twice in the header"),
+    ("near,stopped\n1,0\n1\n", "row 2 has 1 cells for 2 names"),
+    ("near\n1\n2\n", "row 2: `near` cannot be `2`"),
+    ("near\n" + "1\n" * 2001, "the table has 2001 rows, and a page takes 2000: cut a part out"),
+)
+
+
+def test_a_table_that_cannot_be_taken_changes_nothing(opened: Open, tmp_path: Path) -> None:
+    page = opened(WITHIN)
+    before = everything(page)
+    for table, message in BAD_TABLES:
+        (tmp_path / "bad.csv").write_text(table, encoding="utf-8")
+        page.locator("#load").set_input_files(tmp_path / "bad.csv")
+        expected_to(page.locator("#status")).to_contain_text(f"bad.csv: {message}")
+        assert everything(page) == before
+
+
+def test_a_start_gets_numbers_that_make_its_comparisons_true(opened: Open) -> None:
+    given = [
+        {"(battery < 20)": n % 2 == 0, "docking": False, "(speed <= 0.5)": n > 2} for n in range(5)
+    ]
+    start = Start(
+        "Tests", "a word", "what it shows", ("R1",), tuple((1, dict(row)) for row in given)
+    )
+    page = opened(BATTERY, WITHIN, starts=[start])
+    assert told(page, "battery < 20") == [str(row["(battery < 20)"]).lower() for row in given]
+    assert told(page, "speed <= 0.5") == [str(row["(speed <= 0.5)"]).lower() for row in given]
+    assert page.locator("#status").inner_text() == "what it shows"
+    assert page.locator("#hidden").inner_text().startswith("Not shown: 1 unknown")
+
+
+def test_what_is_not_shown_is_counted(opened: Open) -> None:
+    rows = [{"near": True, "stopped": False, "q": True}] * 4
+    page = opened(WITHIN, "the robot shall always satisfy q", address=address(rows))
+    assert page.locator("#hidden").inner_text() == ""
+    page.locator("#which").select_option("R2")
+    assert page.locator("#hidden").inner_text() == "Not shown: 1 violated at the last tick."
+    assert [*everything(page)][:2] == ["q", "R2 at this tick"]
+
+
+# The page as a whole --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1200), ("dark", 390)])
+def test_axe_finds_nothing_serious_and_nothing_is_too_wide(
+    opened: Open, scheme: str, width: int
+) -> None:
+    rows = [{"near": t in (1, 5), "stopped": None if t == 5 else t > 5} for t in range(40)]
+    sentences = (WITHIN, BATTERY, "the robot shall eventually satisfy near")
+    view = {"width": width, "height": 900}
+    page = opened(*sentences, address=address(rows), color_scheme=scheme, viewport=view)
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    page.locator("summary").click()
+    page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
+    violations = page.evaluate("axe.run({resultTypes: ['violations']})")["violations"]
+    serious = [each for each in violations if each["impact"] in ("serious", "critical")]
+    assert [(each["id"], each["nodes"][0]["html"][:200]) for each in serious] == []
+
+
+def test_it_asks_nothing_of_anybody_and_texts_stay_texts(opened: Open) -> None:
+    page = opened('whenever "a</script>b" the robot shall within 2 ticks satisfy stopped')
+    assert page.title() == "Play: R1"
+    assert lane(page, "a</script>b").count() == 12
+    text = page.content()
+    assert "default-src 'none'" in text
+    assert not re.search(r"(?:src|href)=\"(?!#)", text)
+    assert "\\u202e" in page.locator("header").inner_text()

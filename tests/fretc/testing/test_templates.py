@@ -1,0 +1,71 @@
+"""Each of FRET's templates: what its tests show, held against two definitions of their own."""
+
+from __future__ import annotations
+
+import os
+from itertools import product
+
+from compiler.formalization import reference
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import atoms_of, meanings
+from compiler.formalization.reference import State
+from compiler.situations.mutants import mutants
+from fretc.testing.generation import batch
+from fretc.testing.suite import Fate, Met, Polarity
+from tests.each import each
+from tests.requirement_sets import rule
+from tests.strategies import Template, templates
+
+ALL = [*templates()]
+IS_FULL = os.environ.get("HYPOTHESIS_PROFILE") == "full"
+TRIED = ALL if IS_FULL else ALL[7::41]
+"""Every one of the 504, or one here and there."""
+
+
+def accept_the_same(one: Formalized, other: Formalized) -> bool:
+    """Whether two sentences accept the same finite words: both reference automata side by side."""
+    atoms = tuple(dict.fromkeys([*atoms_of(one.sentence), *atoms_of(other.sentence)]))
+    sides = []
+    for each_rule in (one, other):
+        template = reference.template(each_rule.sentence, each_rule.ticks or 0)
+        sides.append((template, meanings(each_rule.sentence, atoms)))
+    start: tuple[State | None, ...] = tuple(reference.initial(template) for template, _ in sides)
+    seen, waiting = {start}, [start]
+    while waiting:
+        states = waiting.pop()
+        for valuation in product((False, True), repeat=len(atoms)):
+            after = tuple(
+                None if state is None else reference.step(template, state, *letters[valuation])
+                for state, (template, letters) in zip(states, sides, strict=True)
+            )
+            accepted = {
+                state is not None and reference.accepts(template, state)
+                for state, (template, _) in zip(after, sides, strict=True)
+            }
+            if len(accepted) > 1:
+                return False
+            if after not in seen:
+                seen.add(after)
+                waiting.append(after)
+    return True
+
+
+@each("template", TRIED)
+def test_all_is_met_or_impossible_and_killed_or_equivalent(template: Template) -> None:
+    subject = rule("R1", template.sentence)
+    found = batch(subject, [], 60)
+    assert {each.outcome for each in found.obligations} <= {Met.MET, Met.IMPOSSIBLE}
+    wrong = {each.key: each.rule for each in mutants(subject)}
+    for mutant in found.mutants:
+        same = accept_the_same(subject, wrong[mutant.key])
+        assert mutant.outcome is (Fate.EQUIVALENT if same else Fate.KILLED), mutant
+    for test in found.tests:
+        columns = {
+            name: [row.values[name] for row in test.rows for _ in range(row.count)]
+            for name in template.columns
+        }
+        if test.polarity is Polarity.UNKNOWN:
+            assert test.finite is None
+            continue
+        known = {name: [bool(value) for value in column] for name, column in columns.items()}
+        assert template.satisfied(known) is test.finite
