@@ -46,6 +46,8 @@ _COMMANDS = Registry(
         "analyze": "fretc.commands.analyze:analyze",
         "test": "fretc.commands.test:test",
         "audit": "fretc.commands.audit:audit",
+        "coverage": "fretc.commands.coverage:coverage",
+        "mutate": "fretc.commands.mutate:mutate",
         "report": "fretc.commands.report:report",
         "trends": "fretc.commands.trends:trends",
         "lock": "fretc.commands.review:lock",

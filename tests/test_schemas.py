@@ -11,11 +11,13 @@ from compiler.logic import claims
 from fretc.analysis import evidence, findings
 from fretc.audit.evidence import schema
 from fretc.audit.store import manifest
+from fretc.coverage import mutation_record, record
 from fretc.testing import suite
 
 SCHEMAS = {"evidence": schema.schema(), "verification": claims.schema()}
 SCHEMAS |= {"store": manifest.schema(), "analysis": findings.schema()}
 SCHEMAS |= {"analyzed-set": evidence.schema(), "tests": suite.schema()}
+SCHEMAS |= {"coverage": record.schema(), "mutation": mutation_record.schema()}
 
 
 @pytest.mark.parametrize(("name", "made"), SCHEMAS.items())

@@ -7,7 +7,7 @@ the trace read backwards.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import assert_never
 
 from compiler.logic import formula as f
@@ -31,7 +31,6 @@ def evaluate(formula: f.Formula, columns: Mapping[str, int], ticks: int) -> int:
     return _Evaluation(columns, ticks, (1 << ticks) - 1).at_each_tick(formula)
 
 
-@deep
 def evaluate_unknown(formula: f.Formula, columns: Mapping[str, c.Column], ticks: int) -> c.Column:
     """The same where atoms may be unknown: at each tick true, false or unknown.
 
@@ -39,13 +38,25 @@ def evaluate_unknown(formula: f.Formula, columns: Mapping[str, c.Column], ticks:
     can be true by two parts that are unknown). Source: Kleene, Introduction to Metamathematics,
     1952, section 64.
     """
+    (column,) = evaluate_unknown_all([formula], columns, ticks)
+    return column
+
+
+@deep
+def evaluate_unknown_all(
+    formulas: Sequence[f.Formula], columns: Mapping[str, c.Column], ticks: int
+) -> tuple[c.Column, ...]:
+    """The same of several formulas: a part that they share is computed once."""
     every = (1 << ticks) - 1
     sure = _Evaluation({name: column.true for name, column in columns.items()}, ticks, every)
-    open_ = {name: column.true | column.unknown for name, column in columns.items()}
-    may = _Evaluation(open_, ticks, every)
-    sure.dual, may.dual = may, sure
-    true = sure.at_each_tick(formula)
-    return c.Column(true, may.at_each_tick(formula) & ~true)
+    may = sure
+    if any(column.unknown for column in columns.values()):
+        open_ = {name: column.true | column.unknown for name, column in columns.items()}
+        may = _Evaluation(open_, ticks, every)
+        sure.dual, may.dual = may, sure
+    true = [sure.at_each_tick(formula) for formula in formulas]
+    possible = [may.at_each_tick(formula) for formula in formulas]
+    return tuple(c.Column(t, p & ~t) for t, p in zip(true, possible, strict=True))
 
 
 class _Evaluation:

@@ -15,11 +15,20 @@ from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of, totals
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
 from fretc.audit.evidence.briefs import Brief, EvidenceSource, brief
+from fretc.audit.evidence.claim import Claim
 from fretc.audit.evidence.courses import course, no_way
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.reader import Evidence
-from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Hashes, Requirement, Result
+from fretc.audit.evidence.schema import (
+    SCHEMA,
+    Bindings,
+    Document,
+    Hashes,
+    Requirement,
+    Result,
+    Situation,
+)
 from fretc.audit.evidence.writer import as_record, health, phases_of, unjudged, unread
 from fretc.audit.evidence.writer import text as written
 from fretc.audit.measurements.judgement import Engine as Evaluation
@@ -401,6 +410,10 @@ def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
     return {} if digest is None or changed else {"log": digest}
 
 
+def _named(claim: Claim) -> tuple[Situation, ...]:
+    return tuple(Situation(each.key, each.words) for each in claim.situations)
+
+
 def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estimated]) -> Document:
     """The evidence of an audit."""
     return Document(
@@ -411,7 +424,13 @@ def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estima
             of_all({each.id: each.basis[BINDINGS] for each in plan.named}),
         ),
         requirements=tuple(
-            Requirement(each.id, each.sentence, each.basis[SENTENCE]) for each in plan.named
+            Requirement(
+                each.id,
+                each.sentence,
+                each.basis[SENTENCE],
+                situations=_named(each) if isinstance(each, Claim) else UNSET,
+            )
+            for each in plan.named
         ),
         results=tuple(results),
         probabilities=tuple(of_all_runs) or UNSET,

@@ -9,10 +9,13 @@ from statistics import median
 
 import numpy as np
 
-from fretc.audit.evidence.schema import Health
+from compiler.situations.situations import Situation
+from compiler.situations.thresholds import Place
+from fretc.audit.evidence.schema import Health, Situations
 from fretc.audit.evidence.writer import Evidence, health
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
 from fretc.audit.measurements.margins import Margin, margins, worst
+from fretc.audit.measurements.situations import Near, encounters, nowhere_known
 from fretc.audit.measurements.states import states
 from fretc.audit.measurements.tallies import tally
 from fretc.audit.measurements.trials import Count, Trials
@@ -28,7 +31,7 @@ from fretc.logs.signals.words import Foreign, shown
 from fretish import expressions as e
 from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
 from fretish.bindings.amounts import margin as margin_text
-from fretish.bindings.declarations import Declarations, Signal
+from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
 from fretish.reading.memory import remembered
@@ -49,6 +52,8 @@ class MonitoredRequirement:
     """Of a requirement with a probability: what its triggers came to."""
     counted: tuple[str, ...] = ()
     """The propositions that `count` needs; the monitor may do without some of them."""
+    situations: tuple[Situation, ...] = ()
+    """In which runs are looked at; none: that is not measured."""
 
     @property
     def propositions(self) -> tuple[str, ...]:
@@ -134,10 +139,11 @@ def audit(
         )
         for name in names
     }
+    near = _near(recording, declarations, len(truths.timeline.times))
     phases_of = phases(declarations, recording, [each.monitor for each in requirements])
     found, at = health(recording), _moments(truths.timeline)
     evidence = [
-        _evidence(recording, declarations, truths, at, margins_of, each, engine, found)
+        _evidence(recording, declarations, truths, at, margins_of, near, each, engine, found)
         for each in requirements
     ]
     return tuple(_phased(each, phases_of.get(each.requirement)) for each in evidence)
@@ -159,6 +165,7 @@ def _evidence(
     truths: Trace,
     at: Callable[[int], Moment],
     margins_of: Mapping[str, tuple[Margin, ...]],
+    near: Near,
     requirement: MonitoredRequirement,
     engine: Engine,
     found: Health,
@@ -202,12 +209,44 @@ def _evidence(
         hashes={**hash_of(recording), **requirement.hashes},
         health=found,
         assumptions=_assumed(declarations, requirement),
+        situations=_situations(requirement, columns, ticks, near, at),
     )
     evidence = replace(evidence, reason=_reason(evidence, recording, declarations))
     if requirement.count is None:
         return evidence
     evidence = replace(evidence, hashes={**evidence.hashes, **hash_of_messages(recording)})
     return _counted(evidence, _trials(requirement.count, columns, truths))
+
+
+def _near(recording: Recording, declarations: Declarations, ticks: int) -> Near:
+    """Where numbers of the recording are: of the samples of a tick the last one counts."""
+    nowhere = nowhere_known(ticks)
+
+    @cache
+    def named(name: str, place: Place) -> Column:
+        proposition = Proposition(name, place.near)
+        if not declarations.signals.keys() >= {*proposition.signals}:
+            return nowhere(place)
+        alone = replace(declarations, propositions={name: proposition})
+        return trace(alone, recording, (name,)).columns[name]
+
+    return lambda place: named(expression(place.near), place)
+
+
+def _situations(
+    requirement: MonitoredRequirement,
+    columns: Mapping[str, Column],
+    ticks: int,
+    near: Near,
+    at: Callable[[int], Moment],
+) -> Situations | None:
+    if not requirement.situations:
+        return None
+    found = [*encounters(requirement.situations, columns, ticks, near)]
+    return Situations(
+        {each.key: at(each.seen) for each in found if each.seen is not None},
+        {each.key: at(each.perhaps) for each in found if each.perhaps is not None},
+    )
 
 
 def _counted(evidence: Evidence, trials: Trials) -> Evidence:

@@ -14,6 +14,7 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
 from compiler.project.folder import Project
+from compiler.situations.situations import situations
 from compiler.targets.python import monitor as monitors
 from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import Basis
@@ -116,6 +117,7 @@ def _claim(rule: Formalized, basis: Basis) -> Claim:
         basis,
         monitors.text(rule),
         demand(rule),
+        situations(rule),
         chance(rule),
     )
 
@@ -195,6 +197,7 @@ def monitored_requirements(plan: Plan) -> tuple[MonitoredRequirement, ...]:
             claim.demand,
             partial(trials, claim.chance.obligation) if claim.chance else None,
             claim.chance.obligation.atoms if claim.chance else (),
+            claim.situations,
         )
         for claim in plan.claims
     )

@@ -22,7 +22,7 @@ def audit_in_memory(plan: Plan, logs: Sequence[str], engine: Engine) -> Audit:
     from fretc.audit.many_logs import audit_logs
 
     try:
-        with _shown(logs) as show:
+        with shown(logs) as show:
             result = audit_logs(plan, logs, engine, tell=lambda log, _: show(log))
     except KeyboardInterrupt:
         say_line("stopped")
@@ -51,7 +51,7 @@ def audit_into(session: Session, engine: Engine) -> StoredAudit:
     if session.earlier.foreign:
         say_line(f"`{session.folder}` was not written by you in this place: nothing of it is used")
     try:
-        with _shown(session.new) as show:
+        with shown(session.new) as show:
             result = session.run(engine, show)
     except KeyboardInterrupt:
         say_line(f"stopped{_kept(session)}")
@@ -73,7 +73,7 @@ def _kept(session: Session) -> str:
 
 
 @contextmanager
-def _shown(logs: Sequence[str]) -> Iterator[Callable[[str], None]]:
+def shown(logs: Sequence[str]) -> Iterator[Callable[[str], None]]:
     """Show how many bytes of these logs are done; gives what is to be called with each of them."""
     sizes = {log: _size(log) for log in logs}
     logs_done = bytes_done = 0

@@ -27,6 +27,8 @@ from fretc.audit.outputs.totals import (
 )
 from fretc.audit.outputs.violated_values import values
 from fretc.commands.audit_table import Line, table
+from fretc.coverage.coverage import of_all_runs
+from fretc.coverage.text_output import in_counts
 from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE
 from fretc.terminal.screen import Screen, padded, titled, width
 from fretish.bindings.amounts import exact, instant, seconds, value
@@ -54,10 +56,14 @@ class Places:
         folder = self._option("--requirements", self.requirements, REQUIREMENTS_FOLDER)
         project = f"{folder}{self._option('--bindings', self.bindings, None)}"
         if self.evidence != "-":
-            default = self.evidence if self.evidence in (EVIDENCE, STORE) else None
-            evidence = self._option("--evidence", self.evidence, default)
-            yield f"fretc report{project}{evidence}"
+            yield f"fretc report{project}{self.evidence_option}"
         yield f"fretc explain {quote(id)}{project}"
+
+    @property
+    def evidence_option(self) -> str:
+        """What names the evidence to a command that reads it; empty where it finds it by itself."""
+        default = self.evidence if self.evidence in (EVIDENCE, STORE) else None
+        return self._option("--evidence", self.evidence, default)
 
     @staticmethod
     def _option(name: str, value: str | None, default: str | None) -> str:
@@ -96,7 +102,17 @@ def lines(subject: Subject, screen: Screen, *, every: bool) -> Iterator[Line]:
         yield from _estimate(one, named(one.requirement, titles.get(one.requirement, "")))
     for text in _first_to_look_at(subject):
         yield ((visible(text), None),)
+    yield from _situations(subject)
     yield _last(subject)
+
+
+def _situations(subject: Subject) -> Iterator[Line]:
+    """How much of the requirements the runs have exercised, and the command that says more."""
+    _, found = of_all_runs(subject.source)
+    if any(each.situations for each in found):
+        printed = subject.places.evidence == "-"
+        more = "" if printed else f": `fretc coverage{subject.places.evidence_option}` lists them"
+        yield ((visible(f"{in_counts(found)}{more}"), None),)
 
 
 def _listed(subject: Subject, titles: Mapping[str, str], screen: Screen) -> Iterator[Line]:

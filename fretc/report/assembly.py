@@ -47,6 +47,7 @@ from fretc.report.sections.results import is_bounded
 from fretc.report.sections.runs import Run, run_summaries, runs, trust
 from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
+from fretc.report.situations import situations
 from fretc.report.traceability.acceptances import warnings
 from fretc.report.traceability.artefacts import shared_products
 from fretc.report.traceability.lock import Lock, withdrawn_requirements
@@ -90,6 +91,7 @@ def report(
     withdrawn = withdrawn_requirements(project.requirements, chains, lock)
     anchors = {assessment.id: assessment.anchor for assessment in reversed(assessed)}
     shared = shared_products(project.declarations) if all_proofs else ()
+    exercised = situations(assessed, evidence)
     sections = tuple(
         section(
             assessment,
@@ -100,6 +102,7 @@ def report(
             all_proofs,
             shared,
             book,
+            exercised.get(assessment.id),
         )
         for assessment in assessed
     )

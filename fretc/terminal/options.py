@@ -109,6 +109,10 @@ analysis_option = path_option(
     "--analysis",
     help="What `fretc analyze` found; build/analysis.json, if it is there and none is given.",
 )
+tests_option = path_option(
+    "--tests",
+    help="What `fretc test` has made; build/tests/suite.json, if it is there and none is given.",
+)
 label_option = click.option(
     "--label",
     "labels",

@@ -23,6 +23,7 @@ from fretc.audit.evidence.schema import (
     Requirement,
     Result,
     Selection,
+    Situations,
     Threshold,
 )
 from fretc.audit.measurements.trials import Trials
@@ -229,6 +230,11 @@ class EvidenceSource(Protocol):
         self, requirements: Collection[str]
     ) -> Iterator[tuple[int, Sequence[Threshold]]]:
         """The thresholds of each result of some requirements, with its place, in order."""
+
+    def situations(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Situations | UnsetType]]:
+        """Which situations each result of some requirements shows, with its place, in order."""
 
 
 @dataclass(frozen=True, slots=True)

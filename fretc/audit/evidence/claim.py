@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from compiler.situations.situations import Situation
 from fretc.audit.evidence.basis import Basis
 from fretc.audit.measurements.count_trials import Chance
 from fretc.audit.measurements.violations import Demand
@@ -20,5 +21,7 @@ class Claim:
     monitor: str
     demand: Demand
     """What is missing where it is violated."""
+    situations: tuple[Situation, ...] = field(compare=False)
+    """In which runs are looked at: made from the sentence and the bindings."""
     chance: Chance | None = None
     """With a probability: all runs together are judged, and no run alone."""

@@ -12,13 +12,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from compiler.files.checked_json import MisshapenError, parsed
-from compiler.files.records import decoded
+from compiler.files.records import UnsetType, decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
 from fretc.audit.evidence.briefs import Brief, Headed, RunFacts, brief, run_facts
 from fretc.audit.evidence.schema import (
     Document,
     Result,
+    Situations,
     Threshold,
 )
 from fretc.audit.measurements.confidence_intervals import REFUTED
@@ -83,6 +84,13 @@ class Evidence(Headed):
         """The thresholds of each result of some requirements, with its place, in order."""
         for place, result in self._of(requirements):
             yield place, result.thresholds
+
+    def situations(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Situations | UnsetType]]:
+        """Which situations each result of some requirements shows, with its place, in order."""
+        for place, result in self._of(requirements):
+            yield place, result.situations
 
     def _of(self, requirements: Collection[str]) -> Iterator[tuple[int, Result]]:
         return self.details([at for id in {*requirements} for at in self._places.get(id, ())])

@@ -375,6 +375,16 @@ class PhaseVerdicts(Record, frozen=True):
     ]
 
 
+class Situations(Record, frozen=True):
+    """Which situations of its requirement a run came by, by their keys; all others it did not."""
+
+    seen: Annotated[dict[str, Moment], about("the first tick at which each has certainly been")]
+    perhaps: Annotated[
+        dict[str, Moment],
+        about("of others the first tick at which each may have been: something is unknown there"),
+    ]
+
+
 class Result(Record, frozen=True, kw_only=True):
     """What the audit of one run says of one requirement."""
 
@@ -437,6 +447,13 @@ class Result(Record, frozen=True, kw_only=True):
             "no signal of words is read"
         ),
     ] = UNSET
+    situations: Annotated[
+        Situations | UnsetType,
+        about(
+            "of those that the requirement has; absent: not measured, as in evidence of earlier "
+            "versions, or where the log could not be read"
+        ),
+    ] = UNSET
     labels: Annotated[
         Annotated[dict[LabelName, LabelText], Meta(min_length=1, max_length=32)] | UnsetType,
         about(
@@ -485,12 +502,23 @@ class Bindings(Record, frozen=True):
     ]
 
 
+class Situation(Record, frozen=True):
+    """A way in which a run can meet a requirement."""
+
+    key: Annotated[str, about("unique within the requirement")]
+    words: Annotated[str, about("for people")]
+
+
 class Requirement(Record, frozen=True):
     """A requirement of the audit."""
 
     id: Name
     sentence: str
     sha256: Annotated[Sha256, about("of the canonical wording")]
+    situations: Annotated[
+        tuple[Situation, ...] | UnsetType,
+        about("all that a run can come by; absent: they were not measured"),
+    ] = UNSET
 
 
 class Selection(Record, frozen=True):

@@ -25,6 +25,7 @@ from fretc.audit.evidence.schema import (
     PhaseStretch,
     PhaseVerdicts,
     Result,
+    Situations,
     State,
     StateWord,
     Threshold,
@@ -85,6 +86,8 @@ class Evidence:
     assumptions: tuple[str, ...]
     trials: Trials | None = None
     """Of a requirement with a probability: what its triggers came to."""
+    situations: Situations | None = None
+    """That the run came by; None: not measured."""
     phases: Phases | None = None
     """The verdict at each phase of the ticks, of one with a probability that of the run alone; None
     where the clock ticks by message."""
@@ -168,6 +171,7 @@ def as_record(evidence: Evidence) -> Result:
         assumptions=evidence.assumptions,
         outcomes=_known(evidence.trials, _outcomes),
         phases=_known(evidence.phases, phase_verdicts),
+        situations=_known(evidence.situations, lambda situations: situations),
     )
 
 

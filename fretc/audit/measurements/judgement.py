@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from monitors import kernel
@@ -63,10 +63,30 @@ def judged(
         end: what a demand is that is open at the end.
         engine: how the monitor is run.
     """
-    (outcome,) = engine(monitor, columns, ticks, end)
-    matters = outcome.verdict in WITHOUT_VIOLATION and intact and cut is not None
-    longer = _longer(monitor, columns, cut, ticks, engine) if matters and cut is not None else None
-    return Judgement(outcome, longer, intact)
+    (judgement,) = each_judged(monitor, columns, cut, ticks, intact=intact, end=end, engine=engine)
+    return judgement
+
+
+def each_judged(
+    monitor: Monitor,
+    columns: Mapping[str, Column],
+    cut: Mapping[str, bool | None] | None,
+    ticks: int,
+    *,
+    intact: bool,
+    end: Verdict,
+    engine: Engine = kernel.evaluate,
+) -> tuple[Judgement, ...]:
+    """The same by each requirement of a monitor of several, in their order."""
+    outcomes = engine(monitor, columns, ticks, end)
+    matters = [each.verdict in WITHOUT_VIOLATION and intact for each in outcomes]
+    longer: Sequence[str | None] = [None] * len(outcomes)
+    if any(matters) and cut is not None:
+        longer = _longer(monitor, columns, cut, ticks, engine) or longer
+    return tuple(
+        Judgement(outcome, then if it_matters else None, intact)
+        for outcome, then, it_matters in zip(outcomes, longer, matters, strict=True)
+    )
 
 
 def _longer(
@@ -75,8 +95,8 @@ def _longer(
     cut: Mapping[str, bool | None],
     ticks: int,
     engine: Engine,
-) -> str | None:
-    """The verdict with the cut tick as one more.
+) -> list[str] | None:
+    """The verdicts with the cut tick as one more.
 
     What that shows is no verdict: the tick is cut short, and no duration counts it. Nor does a
     tick that is as the last one, unless something is unknown: then it may be another one.
@@ -88,5 +108,4 @@ def _longer(
     if cut == last and None not in cut.values():
         return None
     longer = {name: column.followed(cut[name], ticks) for name, column in columns.items()}
-    (then,) = engine(monitor, longer, ticks + 1, kernel.INCONCLUSIVE)
-    return then.verdict
+    return [then.verdict for then in engine(monitor, longer, ticks + 1, kernel.INCONCLUSIVE)]

@@ -73,8 +73,23 @@ def decoded(
     Raises:
         MisshapenError: it is none of this kind.
     """
+    wanted = types.names if columns is None else [*columns]
     with _parquet(data, file, types) as parquet:
-        return parquet.read(None if columns is None else list(columns), use_threads=False)
+        there = [name for name in wanted if name in parquet.schema_arrow.names]
+        return _with_later(parquet.read(there, use_threads=False), types, wanted)
+
+
+LATER = frozenset({"situations"})
+"""Columns that the first stores do not have: nothing is known of them there."""
+
+
+def _with_later(table: pa.Table, types: pa.Schema, wanted: Sequence[str]) -> pa.Table:
+    """The table with all columns that are wanted; those of `LATER` that it lacks are null."""
+    for place, name in enumerate(wanted):
+        if name not in table.schema.names:
+            empty = pa.nulls(table.num_rows, types.field(name).type)
+            table = table.add_column(place, types.field(name), empty)
+    return table
 
 
 @contextmanager
@@ -116,6 +131,7 @@ class Rows:
                 low, high = np.searchsorted(wanted, (start, end))
                 if low < high:
                     of_group = parquet.read_row_group(number, use_threads=False)
+                    of_group = _with_later(of_group, self.types, self.types.names)
                     parts.append(of_group.take(pa.array(wanted[low:high] - start)))
         return pa.concat_tables(parts)
 
@@ -123,7 +139,8 @@ class Rows:
         """All rows, some at a time."""
         with _parquet(self.data, self.file, self.types) as parquet:
             for number in range(parquet.num_row_groups):
-                yield parquet.read_row_group(number, use_threads=False)
+                group = parquet.read_row_group(number, use_threads=False)
+                yield _with_later(group, self.types, self.types.names)
 
 
 def _spans(parquet: ParquetFile) -> Iterator[tuple[int, int, int]]:
@@ -139,7 +156,9 @@ def _check(parquet: ParquetFile, file: Table, types: pa.Schema) -> None:
     about = parquet.metadata
     if about.num_rows != file.rows:
         raise MisshapenError("a table does not have as many rows as the manifest says")
-    if not parquet.schema_arrow.equals(types):
+    there = parquet.schema_arrow
+    known = [each for each in types if each.name in there.names or each.name not in LATER]
+    if not there.equals(pa.schema(known)):
         raise MisshapenError("a table does not have the columns of this version of fretc")
     groups = [about.row_group(number) for number in range(about.num_row_groups)]
     chunks = [group.column(number) for group in groups for number in range(group.num_columns)]

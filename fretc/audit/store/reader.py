@@ -17,7 +17,7 @@ import pyarrow as pa
 
 from compiler.files.checked_json import MisshapenError
 from compiler.files.checked_json import plain as parsed
-from compiler.files.records import decoded
+from compiler.files.records import UNSET, UnsetType, decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
 from fretc.audit.evidence.briefs import Brief, Headed, RunFacts, brief
@@ -26,6 +26,7 @@ from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import (
     Document,
     Result,
+    Situations,
     Threshold,
 )
 from fretc.audit.measurements.tallies import Tally
@@ -145,6 +146,16 @@ class Store(Headed):
         for at, value in self._nested(requirements, "thresholds"):
             try:
                 yield at, decoded(value, list[Threshold])
+            except MisshapenError as error:
+                raise self._error(f"cannot be read: {error}") from None
+
+    def situations(
+        self, requirements: Collection[str]
+    ) -> Iterator[tuple[int, Situations | UnsetType]]:
+        """Which situations each result of some requirements shows, with its place, in order."""
+        for at, value in self._nested(requirements, "situations"):
+            try:
+                yield at, UNSET if value is None else decoded(value, Situations)
             except MisshapenError as error:
                 raise self._error(f"cannot be read: {error}") from None
 

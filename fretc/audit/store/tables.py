@@ -467,7 +467,7 @@ def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tup
     values = column.values(_whole(_taken(events, rows), name))
     texts = _taken(main[EXACT], rows).to_pylist()
     whole = [
-        value if text is None else plain(decoded(parsed(text), Result))[name]
+        value if text is None else plain(decoded(parsed(text), Result)).get(name)
         for value, text in zip(values, texts, strict=True)
     ]
     return [*zip(rows, whole, strict=True)]

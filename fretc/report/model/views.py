@@ -126,6 +126,20 @@ class Planned:
 
 
 @dataclass(frozen=True, slots=True)
+class SituationsView:
+    """How much of a requirement the runs have exercised."""
+
+    share: str
+    """`7/11`; empty where they were not measured."""
+    text: str
+    """`7 of 11 situations seen`."""
+    perhaps: tuple[str, ...]
+    """Those that were perhaps seen, in words."""
+    never: tuple[str, ...]
+    """Those that were not."""
+
+
+@dataclass(frozen=True, slots=True)
 class Row:
     """A requirement and a hazard that it traces to; `hazard` is empty where it traces to none."""
 
@@ -144,6 +158,8 @@ class Row:
     proof: Mark | None
     """What is proved of it: the closed loop, or its monitor; None: neither."""
     review: Mark
+    situations: SituationsView | None
+    """None where no run has been audited."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -470,6 +486,8 @@ class RequirementView:
     """Why no run can violate it, in one sentence; empty where one can."""
     coverage: str
     """How far along the chain it is; one of `fretc.report.model.assessments.COVERAGE`."""
+    situations: SituationsView | None
+    """None where no run has been audited."""
     review: ReviewView
     waiver: WaiverView | None
 

@@ -99,6 +99,7 @@ def _row(
         limit=section.limit,
         proof=_proof(section),
         review=_review(assessment),
+        situations=section.situations,
     )
 
 

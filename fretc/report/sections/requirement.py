@@ -27,6 +27,7 @@ from fretc.report.model.views import (
     Remark,
     RequirementView,
     SignalView,
+    SituationsView,
     verdict_mark,
 )
 from fretc.report.pictures.histograms import exercise
@@ -53,6 +54,7 @@ def section(
     proofs: Sequence[Proof] = (),
     shared_products: Sequence[Product] = (),
     book: SignatureBook = NO_SIGNATURES,
+    situations: SituationsView | None = None,
 ) -> RequirementView:
     """The view of one requirement.
 
@@ -65,6 +67,7 @@ def section(
         proofs: about all requirements, and about shared parts.
         shared_products: what targets make from the bindings alone.
         book: who signed what.
+        situations: that runs have shown; None where no run has been audited.
     """
     requirement, rule = assessment.requirement, assessment.rule
     products = (*assessment.products, *shared_products)
@@ -102,6 +105,7 @@ def section(
         reasons=reasons(assessment, runs, audited=audited),
         limit=_limit(rule),
         coverage=assessment.coverage,
+        situations=situations,
         review=review(assessment, book),
         waiver=waiver(assessment, book),
     )

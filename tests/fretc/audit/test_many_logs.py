@@ -53,6 +53,7 @@ def test_the_recorded_mission_shows_r1_with_the_stops_that_a_person_sees_in_it(
         "run.mcap\n"
         "  ✔ Stop when an obstacle is within 5 cm (R1)  satisfied     held, 98 triggers, "
         "answered after 0 s (median), 39.8 s (longest)\n"
+        "15 of 20 situations seen, 5 never: `fretc coverage` lists them\n"
         "1 run \N{MULTIPLICATION SIGN} 1 requirement: 1 satisfied\n",
         "wrote build/evidence.json\n",
     )

@@ -8,6 +8,7 @@ import pytest
 
 from compiler.files.records import plain
 from compiler.formalization.formalize import formalize
+from compiler.situations.situations import situations
 from compiler.targets.python.monitor import text
 from fretc.audit.evidence.writer import Evidence, as_record
 from fretc.audit.one_log import MonitoredRequirement, audit, signals_of
@@ -176,3 +177,59 @@ def test_the_record_is_plain_json_with_times_in_nanoseconds() -> None:
 
 def test_the_signals_of_propositions_are_named_once_in_order() -> None:
     assert signals_of(declared(), ["still", "near", "still"]) == ("v", "d")
+
+
+@pytest.mark.parametrize(
+    ("cm", "where"),
+    [
+        (3.4, None),
+        (3.5, "below"),
+        (4.4, "below"),
+        (4.6, "at"),
+        (5.4, "at"),
+        (5.6, "above"),
+        (6.4, "above"),
+        (6.6, None),
+        (float("nan"), None),
+    ],
+)
+def test_a_number_is_at_a_threshold_by_its_rounded_value_where_the_comparison_decides(
+    cm: float, where: str | None
+) -> None:
+    bindings = declared()
+    sentence = "whenever near the rover shall immediately satisfy still"
+    ((requirement,), _) = requirements(Source("R1.fret", sentence))
+    rule, _ = formalize(requirement, bindings)
+    assert rule is not None
+    watched = MonitoredRequirement(
+        load("monitor", text(rule)),
+        HASHES | {"sentence": rule.fingerprint},
+        situations=situations(rule),
+    )
+
+    def places(speed: float) -> dict[str, list[str]]:
+        (found,) = audit(recorded([FAR, cm / 100, FAR], [speed] * 3), bindings, [watched])
+        assert found.situations is not None
+        return {
+            name: [
+                key.split(":")[0].removeprefix("threshold-")
+                for key, at in moments.items()
+                if key.startswith("threshold-")
+                and ":condition:near:" in key
+                and (at.tick == 1 or name == "seen")
+            ]
+            for name, moments in (
+                ("seen", found.situations.seen),
+                ("perhaps", found.situations.perhaps),
+            )
+        }
+
+    assert places(MOVING)["seen"] == ([] if where is None else [where])
+    assert places(STILL)["seen"] == []  # the answer is there, whether it is demanded or not
+    unknown = ["below", "at", "above"] if cm != cm else []
+    assert places(MOVING)["perhaps"] == unknown
+    assert places(STILL)["perhaps"] == []
+
+
+def test_without_a_list_of_situations_they_are_not_measured() -> None:
+    assert audited(WITHIN, recorded([FAR, NEAR], [MOVING, STILL])).situations is None

@@ -112,6 +112,7 @@ def test_many_answers_support_it(fretc: Fretc) -> None:
         "    33 of 33 triggers answered, 0 failed, 0 open, in 33 logs\n"
         "    estimate 1.0000; bounds, by whole logs, at 95 % each: 0.9022 to 1.0000\n"
         f"    {AVERAGE}\n"
+        "2 of 20 situations seen, 18 never: `fretc coverage` lists them\n"
         "33 runs \N{MULTIPLICATION SIGN} 1 requirement: 1 supported over all runs, "
         "33 counted over all runs\n"
     )

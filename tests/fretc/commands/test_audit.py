@@ -146,6 +146,7 @@ def test_the_worst_is_named_with_title_value_limit_times_and_commands(robot: Fre
         "  limit: charge > 5 % (charged); from 0 % to 11 % in this run\n"
         "  more: fretc report --evidence 'e v.json'\n"
         "        fretc explain R1\n"
+        "5 of 7 situations seen, 2 never: `fretc coverage --evidence 'e v.json'` lists them\n"
         "1 run \N{MULTIPLICATION SIGN} 1 requirement: 1 violated\n"
     )
 

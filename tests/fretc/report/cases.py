@@ -232,15 +232,23 @@ ODOM = {
 }
 
 
+SITUATIONS = [
+    {"key": key, "words": f"{key} <b>it</b>"} for key in ("at-once", "late", "while-open")
+]
+"""Of a requirement, where a result says which of them its run came by."""
+
+
 def evidence(known: Project, *results: Mapping[str, Any]) -> dict[str, Any]:
     """A whole evidence file."""
     bound = {rule.id: basis(known, rule.id)[BINDINGS_PART] for rule in known.rules}
+    measured = {each["requirement"] for each in results if "situations" in each}
     return {
         "schema": "fretc-evidence-1",
         "fretc": "0.1.0",
         "bindings": {"file": "bindings.toml", "sha256": of_all(bound)},
         "requirements": [
             {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
+            | ({"situations": SITUATIONS} if rule.id in measured else {})
             for rule in known.rules
         ],
         "results": list(results),

@@ -10,6 +10,7 @@ from typing import Any
 import pyarrow as pa
 import pytest
 
+from compiler.files.records import UNSET
 from fretc.audit.store.anywhere import read
 from fretc.audit.store.files import encoded
 from fretc.audit.store.reader import Store, opened
@@ -136,8 +137,20 @@ def tables() -> dict[TableName, pa.Table]:
 @pytest.mark.parametrize("name", [*TABLES])
 def test_a_table_of_other_columns_is_refused(store: Path, name: TableName) -> None:
     table = tables()[name]
-    with_table(store, name, table.drop_columns([table.column_names[-1]]))
+    with_table(store, name, table.drop_columns([table.column_names[0]]))
     assert "does not have the columns of this version of fretc" in refused(store)
+
+
+def test_a_store_of_earlier_versions_is_read_and_has_no_situations(store: Path) -> None:
+    now = opened(str(store))
+    assert isinstance(now, Store)
+    expected = [*now.details([0, 1])]
+    with_table(store, "events", tables()["events"].drop_columns(["situations"]))
+    found = opened(str(store))
+    assert isinstance(found, Store)
+    assert [*found.details([0, 1])] == expected
+    assert [*found.situations(["R1"])] == [(0, UNSET), (1, UNSET)]
+    assert not isinstance(read(str(store)), Diagnostic)
 
 
 @pytest.mark.parametrize(

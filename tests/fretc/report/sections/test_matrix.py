@@ -1,7 +1,19 @@
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
+from compiler.project.folder import Project
 from fretish.diagnostics.diagnostic import Code, Severity
-from tests.fretc.report.cases import HAZARDS, R1, as_json, project, report_of, requirement, result
+from tests.fretc.report.cases import (
+    HAZARDS,
+    R1,
+    as_json,
+    moment,
+    project,
+    report_of,
+    requirement,
+    result,
+)
 
 ALWAYS = "the robot shall always satisfy stopped"
 
@@ -88,3 +100,44 @@ def test_without_hazards_the_requirements_are_still_in_the_matrix(tmp_path: Path
     content = as_json(report_of(known, tmp_path))
     assert [(row["hazard"], row["requirement"]) for row in content["matrix"]] == [("", "R1")]
     assert content["orphans"]["parents"] == ["R1 names HAZ-1, which is not declared"]
+
+
+def shown(known: Project, folder: Path, *results: Mapping[str, Any]) -> list[Any] | None:
+    """What the matrix and the section of R1 say of situations."""
+    content = as_json(report_of(known, folder, *results))
+    (row,) = content["matrix"]
+    (section,) = content["requirements"]
+    assert row["situations"] == section["situations"]
+    return row["situations"] and [*row["situations"].values()]
+
+
+def situations(*seen: str, perhaps: str = "") -> dict[str, Any]:
+    return {
+        "seen": dict.fromkeys(seen, moment(1)),
+        "perhaps": {perhaps: moment(2)} if perhaps else {},
+    }
+
+
+def test_a_row_says_which_situations_current_results_have_shown(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    late = result(known, "satisfied", run="a", situations=situations("late", perhaps="at-once"))
+    old = result(
+        known, "satisfied", run="b", situations=situations("at-once"), hashes={"bindings": "0" * 64}
+    )
+    one = ["1/3", "1 of 3 situations seen", ["at-once <b>it</b>"], ["while-open <b>it</b>"]]
+    none = ["", "situations not measured", [], []]
+    assert shown(known, tmp_path, late, old) == one
+    assert shown(known, tmp_path, old) == none
+    assert shown(known, tmp_path, result(known, "satisfied")) == none
+    assert shown(known, tmp_path) is None
+
+
+def test_the_words_of_a_strangers_evidence_are_text_in_the_page(tmp_path: Path) -> None:
+    known = project(tmp_path)
+    page = report_of(
+        known, tmp_path, result(known, "satisfied", situations=situations("late"))
+    ).html
+    assert page is not None
+    assert "1 of 3 situations seen" in page
+    assert "&lt;b&gt;it" in page
+    assert "<b>it" not in page

@@ -1,0 +1,182 @@
+"""`fretc coverage`: what recorded runs have exercised of each requirement.
+
+`fretc.audit` reads the logs, `fretc.coverage` counts; this module reads the options and prints.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    evidence_option,
+    format_option,
+    is_given,
+    jobs_option,
+    requirements_option,
+    tests_option,
+)
+from fretc.terminal.output import (
+    BAD,
+    NOT_SHOWN,
+    SHOWN,
+    coloured,
+    say_also,
+    say_briefly,
+    say_line,
+    stop,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.rendering import visible
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from compiler.project.folder import Project
+    from fretc.audit.evidence.briefs import EvidenceSource
+    from fretc.audit.plan import Plan
+    from fretc.coverage.coverage import Coverage
+    from fretc.coverage.directions import Directions
+    from fretc.testing.suite import Suite
+
+
+@click.command(short_help="Say which situations of requirements recorded runs have shown.")
+@click.argument("paths", nargs=-1, type=PATH, metavar="[LOG]...")
+@requirements_option
+@bindings_option
+@evidence_option
+@format_option()
+@click.option("-v", "--verbose", is_flag=True, help="List what was seen, and all runs, too.")
+@tests_option
+@jobs_option
+def coverage(
+    paths: tuple[str, ...],
+    requirements: str,
+    bindings: str | None,
+    evidence: str,
+    form: str,
+    verbose: bool,
+    tests: str | None,
+    jobs: int,
+) -> None:
+    """Say which situations of requirements recorded runs have shown, and which they never have.
+
+    LOG is what `fretc audit` takes. Without one, the evidence of an audit says what its runs have
+    shown. A situation is a way in which a run can meet a requirement: triggered again while a
+    demand is open, answered at the last tick allowed, and others (docs/coverage.md).
+
+    Exit status: 0 every situation was seen that a run can show, 2 bad use or bad input (as of an
+    audit: what could be looked at is printed all the same), 3 some were not.
+    """
+    from fretc.coverage import record, text_output
+    from fretc.coverage.coverage import coverage as found_in
+    from fretc.coverage.directions import is_complete
+
+    if paths and is_given("evidence"):
+        stop(
+            Diagnostic(
+                Code.BAD_USAGE,
+                "logs and `--evidence` are both named: runs are in one of them",
+                help="leave out one of the two",
+            )
+        )
+    if paths:
+        source, titles, is_bad = _audited(paths, requirements, bindings, jobs)
+    else:
+        source, titles, is_bad = _recorded(evidence), {}, False
+    covered = found_in(source)
+    known = _directions(covered, tests)
+    if form == "json":
+        click.echo(record.text(covered, known), nl=False)
+    else:
+        found = text_output.lines(covered, titles, known, every=verbose)
+        click.echo(coloured((visible(text), colour) for text, colour in found), nl=False)
+    if is_bad:
+        raise SystemExit(BAD)
+    raise SystemExit(SHOWN if is_complete(covered, known) else NOT_SHOWN)
+
+
+def _directions(covered: Coverage, named: str | None) -> Directions:
+    """How runs come by situations, as far as tests say; those of other sentences say nothing."""
+    from fretc.coverage.directions import directions
+
+    fingerprints = {each.id: each.fingerprint for each in covered.requirements}
+    suite = suite_of(named, fingerprints)
+    return {} if suite is None else directions(suite, fingerprints)
+
+
+def suite_of(named: str | None, fingerprints: Mapping[str, str]) -> Suite | None:
+    """The tests that the user names, or that are there; None: there are none.
+
+    Args:
+        named: their file; None: the one that `fretc test` writes.
+        fingerprints: of each requirement: a line says of which of them the tests say nothing.
+    """
+    from fretc.testing.reader import DEFAULT, read
+
+    if named is None and not os.path.lexists(DEFAULT):
+        return None
+    suite = read(named or DEFAULT)
+    if isinstance(suite, Diagnostic):
+        stop(suite)
+    known = {each.id: each.fingerprint for each in suite.requirements}
+    other = [id for id, own in fingerprints.items() if known.get(id, own) != own]
+    if other:
+        which = ", ".join(other)
+        say_line(visible(f"the tests are of other sentences of {which}: `fretc test` makes them"))
+    return suite
+
+
+def _recorded(evidence: str) -> EvidenceSource:
+    from fretc.audit.store.anywhere import required_source
+
+    source = required_source(evidence)
+    if isinstance(source, Diagnostic):
+        stop(source)
+    return source
+
+
+def _audited(
+    paths: Sequence[str], requirements: str, bindings: str | None, jobs: int
+) -> tuple[EvidenceSource, dict[str, str], bool]:
+    """The audit of some logs, what requirements are called, and whether some input was bad.
+
+    Nothing is written.
+    """
+    from fretc.audit.many_logs import locally
+    from fretc.commands.audit_logs import selected
+    from fretc.commands.audit_progress import audit_in_memory
+
+    project, plan = planned_project(requirements, bindings)
+    logs, _ = selected(paths, None, None, 0)
+    audit = audit_in_memory(plan, logs, locally(jobs))
+    diagnostics = project.answered(audit.diagnostics)
+    say_also(diagnostics, project.diagnostics)
+    if not audit.read:
+        raise SystemExit(BAD)
+    is_bad = bool(plan.refused) or has_errors((*project.diagnostics, *diagnostics))
+    return audit.source, {each.id: each.name for each in project.requirements}, is_bad
+
+
+def planned_project(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
+    """The project, and the plan to audit what of it can be judged; a mistake stops the command."""
+    from compiler.project.folder import load
+    from compiler.project.paths import beside, requirement_files
+    from fretc.audit.plan import Plan, planned
+
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+    project = load(files, bindings or beside(requirements, "bindings.toml"))
+    say_briefly(project.diagnostics, requirements)
+    if has_errors(project.general):
+        raise SystemExit(BAD)
+    plan = planned(project)
+    if not isinstance(plan, Plan):
+        stop(*(reason for reason in plan if reason not in project.diagnostics))
+    say_also(plan.refusals, project.diagnostics)
+    return project, plan

@@ -1,0 +1,91 @@
+"""`fretc mutate`: which wrong requirements recorded runs would not have noticed.
+
+`fretc.coverage` answers; this module reads the options and prints.
+"""
+
+from __future__ import annotations
+
+import click
+
+from fretc.terminal.options import (
+    PATH,
+    bindings_option,
+    format_option,
+    jobs_option,
+    places,
+    requirements_option,
+    tests_option,
+)
+from fretc.terminal.output import BAD, INTERRUPTED, NOT_SHOWN, SHOWN, coloured, say_also, say_line
+
+
+@click.command(short_help="Say which wrong requirements recorded runs would not have noticed.")
+@click.argument("folder", required=False, type=PATH, metavar="[FOLDER]")
+@click.option(
+    "--against",
+    "paths",
+    multiple=True,
+    required=True,
+    type=PATH,
+    metavar="LOG",
+    help="A log, or what else `fretc audit` takes; may be given again.",
+)
+@requirements_option
+@bindings_option
+@format_option()
+@click.option("-v", "--verbose", is_flag=True, help="List what was noticed, too, and how.")
+@tests_option
+@jobs_option
+def mutate(
+    folder: str | None,
+    paths: tuple[str, ...],
+    requirements: str,
+    bindings: str | None,
+    form: str,
+    verbose: bool,
+    tests: str | None,
+    jobs: int,
+) -> None:
+    """Say which wrong requirements recorded runs would not have noticed.
+
+    FOLDER has requirements, or is one file of them: in place of `--requirements`. Each is
+    changed in small ways, as somebody might have written or meant it (docs/coverage.md). A run
+    notices a change where the verdict, or the ticks of a violation, are not what they were.
+
+    What the tests prove to say the same is left out: no run could notice it.
+
+    Exit status: 0 every change is noticed, 2 bad use or bad input (what could be judged is printed
+    all the same), 3 some are not.
+    """
+    from fretc.commands.audit_logs import selected
+    from fretc.commands.audit_progress import shown
+    from fretc.commands.coverage import planned_project, suite_of
+    from fretc.coverage import mutation_output, mutation_record
+    from fretc.coverage.mutation import inquiry, survey
+    from fretish.diagnostics.rendering import visible
+
+    (place,) = places([folder] if folder else [], requirements)
+    project, plan = planned_project(place, bindings)
+    logs, _ = selected(paths, None, None, 0)
+    asked = inquiry(project, plan)
+    try:
+        with shown(logs) as show:
+            found = survey(asked, logs, jobs, show)
+    except KeyboardInterrupt:
+        say_line("stopped")
+        raise SystemExit(INTERRUPTED) from None
+    say_also(found.diagnostics, project.diagnostics)
+    if not found.runs:
+        raise SystemExit(BAD)
+    suite = suite_of(tests, {each.id: each.fingerprint for each in found.suspects})
+    if suite is not None:
+        found = found.with_proofs(suite)
+    if form == "json":
+        click.echo(mutation_record.text(found), nl=False)
+    else:
+        titles = {each.id: each.name for each in project.requirements}
+        all_lines = mutation_output.lines(found, titles, every=verbose)
+        click.echo(coloured((visible(text), colour) for text, colour in all_lines), nl=False)
+    if plan.refused or found.diagnostics:
+        raise SystemExit(BAD)
+    raise SystemExit(SHOWN if found.is_complete else NOT_SHOWN)

@@ -1,0 +1,1 @@
+"""What recorded runs have exercised: situations of requirements, and wrong requirements."""

@@ -1,0 +1,142 @@
+"""What to record next: how a run comes by a situation, from the shortest runs of `fretc test`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+from fretc.coverage.coverage import Coverage, Standing
+from fretc.testing.suite import Met, Obligation, Polarity, Repeat, Suite, Test
+from fretish.bindings.amounts import seconds
+from fretish.units import nanoseconds
+
+
+class Way(StrEnum):
+    """Which runs can show a situation."""
+
+    KEPT = "record"
+    """A run that keeps the requirement."""
+    BROKEN = "only a run that breaks the requirement shows it"
+    NONE = "no run can show it"
+    EXCLUDED = "no run that keeps the other requirements shows it"
+
+
+@dataclass(frozen=True, slots=True)
+class Direction:
+    """How a run comes by a situation."""
+
+    way: Way
+    steps: str
+    """What a driver does from the start of the run; empty where no run can."""
+
+    @property
+    def text(self) -> str:
+        """One line."""
+        return f"{self.way}: {self.steps}" if self.steps else f"{self.way}"
+
+
+Directions = Mapping[tuple[str, str], Direction]
+"""Requirement and situation → how; none where nobody has searched."""
+
+
+def directions(suite: Suite, fingerprints: Mapping[str, str]) -> Directions:
+    """Those of a suite.
+
+    Args:
+        suite: that `fretc test` made.
+        fingerprints: of the sentence of each requirement; tests of another sentence say nothing.
+    """
+    current = {
+        each.id: each.sentence
+        for each in suite.requirements
+        if fingerprints.get(each.id) == each.fingerprint
+    }
+    tests = {test.name: test for test in suite.tests}
+    groups: dict[tuple[str, str], dict[Polarity, Obligation]] = {}
+    for one in suite.obligations:
+        if one.requirement in current:
+            groups.setdefault((one.requirement, one.situation), {})[one.polarity] = one
+    found = {
+        key: _direction(both, tests, current[key[0]], nanoseconds(suite.clock))
+        for key, both in groups.items()
+    }
+    return {key: direction for key, direction in found.items() if direction is not None}
+
+
+def _direction(
+    both: Mapping[Polarity, Obligation],
+    tests: Mapping[str, Test],
+    sentence: str,
+    tick: int | None,
+) -> Direction | None:
+    for polarity, way in ((Polarity.KEPT, Way.KEPT), (Polarity.BROKEN, Way.BROKEN)):
+        one = both.get(polarity)
+        if one is None or one.outcome is Met.NOT_SEARCHED:
+            return None
+        if one.outcome is Met.MET:
+            known = [tests[name] for name in one.tests if name in tests]
+            return Direction(way, steps(known[0], sentence, tick)) if known else None
+    excluded = any(one.outcome is Met.EXCLUDED for one in both.values())
+    return Direction(Way.EXCLUDED if excluded else Way.NONE, "")
+
+
+def steps(test: Test, sentence: str, tick: int | None) -> str:
+    """What a driver does, stretch by stretch: the values that the sentence reads, as they change.
+
+    Args:
+        test: the run.
+        sentence: of the requirement.
+        tick: nanoseconds; None: its length is not known.
+    """
+    names = [name for name in test.rows[0].values if _is_in(name, sentence)] if test.rows else []
+    parts: list[str] = []
+    waited, before = 0, dict[str, object]()
+    for row in test.rows:
+        changed = [_said(name, row) for name in names if before.get(name, ...) != row.values[name]]
+        if not parts:
+            parts.append(f"start with {', '.join(changed) or 'anything'}")
+        elif changed:
+            parts.append(f"after {_time(waited, tick)} {', '.join(changed)}")
+            waited = 0
+        waited += row.count
+        before = {name: row.values[name] for name in names}
+    return "; ".join((*parts, f"after {_time(waited, tick)} stop"))
+
+
+def _is_in(name: str, sentence: str) -> bool:
+    return re.search(rf"(?<![\w.]){re.escape(name)}(?![\w.])", sentence) is not None
+
+
+def _said(name: str, row: Repeat) -> str:
+    value = row.values[name]
+    if value is None:
+        return f"`{name}` unknown"
+    return f"`{name}` {str(value).lower() if isinstance(value, bool) else value}"
+
+
+def _time(ticks: int, tick: int | None) -> str:
+    if tick is None:
+        return f"{ticks} tick{'' if ticks == 1 else 's'}"
+    return seconds(ticks * tick / 1e9)
+
+
+def unseen(covered: Coverage, known: Directions) -> Iterator[tuple[str, str]]:
+    """The situations that no run has shown for certain, and that some run might.
+
+    Left out are those of which it is proved that no run shows them that keeps all requirements.
+    """
+    for one in covered.requirements:
+        for situation in one.situations:
+            direction = known.get((one.id, situation.key))
+            if situation.standing is not Standing.SEEN and (
+                direction is None or direction.way is Way.KEPT
+            ):
+                yield one.id, situation.key
+
+
+def is_complete(covered: Coverage, known: Directions) -> bool:
+    """Whether every situation has been seen that a run can show."""
+    measured = all(one.situations and one.measured for one in covered.requirements)
+    return measured and next(unseen(covered, known), None) is None

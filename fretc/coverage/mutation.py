@@ -1,0 +1,279 @@
+"""Which wrong requirements recorded runs would have shown: mutants judged beside the right one.
+
+A run notices a mutant where the two verdicts on it differ, both of them known, or where one is
+certainly violated at a tick at which the other certainly is not. What is unknown notices nothing.
+All mutants of a requirement are one monitor, judged over the very columns of its audit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+from functools import partial
+
+from compiler.formalization.formalized import Formalized, plain
+from compiler.formalization.resolution import extended
+from compiler.project.folder import Project
+from compiler.situations.mutants import Mutant, mutants
+from compiler.targets.python import monitor as monitors
+from fretc.audit.measurements.judgement import Judgement, each_judged
+from fretc.audit.plan import Plan
+from fretc.audit.pool import Killed, each, was_killed
+from fretc.logs.reader import read
+from fretc.logs.signals.integrity import Integrity
+from fretc.logs.signals.traces import Trace, trace
+from fretc.testing.suite import Fate, Suite
+from fretish.bindings.declarations import Declarations
+from fretish.diagnostics.diagnostic import Diagnostic
+from monitors import kernel
+from monitors.kernel import Column, Monitor, Outcome
+from monitors.kernel.verdicts import Verdict
+from monitors.loading import load
+
+
+@dataclass(frozen=True)
+class Suspects:
+    """A requirement and its mutants, as one monitor: the requirement is the first in it."""
+
+    id: str
+    fingerprint: str
+    """SHA-256 of its sentence."""
+    mutants: tuple[Mutant, ...]
+    """Those that a monitor can judge, in its order."""
+    refused: tuple[tuple[Mutant, str], ...]
+    """The others, and why."""
+    monitor: Monitor
+
+
+@dataclass(frozen=True)
+class Inquiry:
+    """All that is needed beside a log to tell which mutants its run notices."""
+
+    suspects: tuple[Suspects, ...]
+    declarations: Declarations
+    """With the signals of the audit, so that its ticks are those of the audit."""
+    propositions: tuple[str, ...]
+    """Those of which these signals tell the truth; others are unknown throughout."""
+    integrity: Integrity
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """What a run says of a requirement and of a mutant."""
+
+    own: str
+    """The verdict of the requirement."""
+    other: str
+    """That of the mutant."""
+    tick: int | None
+    """The first tick at which only one of them is violated; None: the verdicts alone differ."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunSurvey:
+    """What one run tells apart."""
+
+    known: frozenset[str]
+    """The requirements on which it has a verdict."""
+    noticed: Mapping[tuple[str, str], Difference]
+    """Requirement and mutant → how it tells them apart."""
+
+
+def inquiry(project: Project, plan: Plan) -> Inquiry:
+    """The mutants of each requirement that the plan audits.
+
+    Args:
+        project: that the plan is of.
+        plan: of an audit.
+    """
+    audited = {claim.id for claim in plan.claims}
+    rules = {rule.id: rule for rule in project.rules if rule.id in audited}
+    found = tuple(map(suspects, rules.values()))
+    declarations = project.declarations
+    assert declarations is not None, "there is a plan"
+    for own in (mutant.rule.declarations for one in found for mutant in one.mutants):
+        if own is not None:
+            declarations = extended(declarations, own.propositions, own.mistakes)
+    declarations = replace(declarations, signals=plan.declarations.signals)
+    names = dict.fromkeys(name for one in found for name in one.monitor.PROPOSITIONS)
+    known = tuple(name for name in names if _is_told(declarations, name))
+    return Inquiry(found, declarations, known, plan.integrity)
+
+
+def _is_told(declarations: Declarations, name: str) -> bool:
+    """Whether the signals tell its truth."""
+    proposition = declarations.propositions.get(name)
+    return proposition is not None and declarations.signals.keys() >= {*proposition.signals}
+
+
+def suspects(rule: Formalized) -> Suspects:
+    """The mutants of a rule in one monitor, with the rule itself."""
+    judged: list[Mutant] = []
+    refused: list[tuple[Mutant, str]] = []
+    for mutant in mutants(rule):
+        why = monitors.refuse(plain(mutant.rule))
+        if why is None:
+            judged.append(mutant)
+        else:
+            refused.append((mutant, why.message))
+    numbered = [_called(each.rule, f"M{n}") for n, each in enumerate(judged)]
+    text = monitors.text(_called(rule, "R"), *numbered)
+    watching = load(f"{rule.id}_mutants", text)
+    return Suspects(rule.id, rule.fingerprint, tuple(judged), tuple(refused), watching)
+
+
+def _called(rule: Formalized, id: str) -> Formalized:
+    """The rule under another id: in a monitor each has its own."""
+    return replace(rule, requirement=replace(rule.requirement, id=id))
+
+
+# One run ----------------------------------------------------------------------------------------
+
+
+def of_run(asked: Inquiry, log: str) -> RunSurvey | Diagnostic:
+    """What the run of a log tells apart, or why the log cannot be read.
+
+    Args:
+        asked: the mutants.
+        log: its path.
+    """
+    declarations, names = asked.declarations, asked.propositions
+    signals = tuple(declarations.signals)
+    recording = read(log, declarations, signals, asked.integrity)
+    if isinstance(recording, Diagnostic):
+        return recording
+    truths = trace(declarations, recording, names)
+    end = Verdict(declarations.clock.end)
+    known: set[str] = set()
+    noticed: dict[tuple[str, str], Difference] = {}
+    for one in asked.suspects:
+        own, *others = judgements(one.monitor, truths, end, intact=recording.intact)
+        if own.verdict != kernel.NO_DATA:
+            known.add(one.id)
+        for mutant, other in zip(one.mutants, others, strict=True):
+            found = difference(own, other)
+            if found is not None:
+                noticed[one.id, mutant.key] = found
+    return RunSurvey(frozenset(known), noticed)
+
+
+def judgements(
+    monitor: Monitor, truths: Trace, end: Verdict, *, intact: bool
+) -> tuple[Judgement, ...]:
+    """Those of one trace by each requirement of a monitor.
+
+    Args:
+        monitor: of any requirements; a proposition that the trace lacks is unknown throughout.
+        truths: the trace.
+        end: what a demand is that is open at the end.
+        intact: whether the log is whole.
+    """
+    ticks, cut = len(truths.timeline.times), truths.cut
+    unknown = Column(0, (1 << ticks) - 1)
+    columns = {name: truths.columns.get(name, unknown) for name in monitor.PROPOSITIONS}
+    if cut is not None:
+        cut = {name: cut.get(name) for name in columns}
+    return each_judged(monitor, columns, cut, ticks, intact=intact, end=end)
+
+
+def difference(own: Judgement, other: Judgement) -> Difference | None:
+    """How one run tells two requirements apart for certain; None: it does not.
+
+    Args:
+        own: the judgement by one.
+        other: that by the other.
+    """
+    ticks = [*_only_in(own.outcome, other.outcome), *_only_in(other.outcome, own.outcome)]
+    known = kernel.NO_DATA not in (own.verdict, other.verdict)
+    if ticks or (known and own.verdict != other.verdict):
+        return Difference(own.verdict, other.verdict, min(ticks, default=None))
+    return None
+
+
+def _only_in(one: Outcome, other: Outcome) -> Iterator[int]:
+    """The first tick at which one is certainly violated and the other certainly is not."""
+    column = _column(one.violations) & ~(_column(other.violations) | _column(other.unknown))
+    if column:
+        yield (column & -column).bit_length() - 1
+
+
+def _column(runs: Iterable[tuple[int, int]]) -> int:
+    return sum((1 << last + 1) - (1 << first) for first, last in runs)
+
+
+# All runs ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """What all runs tell apart."""
+
+    runs: tuple[str, ...]
+    """Those that could be read."""
+    suspects: tuple[Suspects, ...]
+    known: frozenset[str]
+    """The requirements on which some run has a verdict."""
+    noticed: Mapping[tuple[str, str], tuple[int, Difference]]
+    """Requirement and mutant → the first run that tells them apart, and how."""
+    diagnostics: tuple[Diagnostic, ...]
+    """Why others could not."""
+    equivalent: frozenset[tuple[str, str]] = frozenset()
+    """Requirement and mutant that are proved to say the same: no run could notice that one."""
+
+    @property
+    def count(self) -> int:
+        """Of the mutants that say something else, as far as is known."""
+        return sum(len(each.mutants) + len(each.refused) for each in self.suspects) - len(
+            self.equivalent
+        )
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether every mutant is noticed that says something else."""
+        return bool(self.runs) and len(self.noticed) == self.count
+
+    def with_proofs(self, suite: Suite) -> Survey:
+        """The same with what tests have proved, of requirements whose sentence they are of."""
+        known = {each.id: each.fingerprint for each in suite.requirements}
+        current = {each.id for each in self.suspects if known.get(each.id) == each.fingerprint}
+        keys = {(each.id, one.key) for each in self.suspects for one in _all(each)}
+        proved = {
+            (each.requirement, each.key)
+            for each in suite.mutants
+            if each.outcome is Fate.EQUIVALENT and each.requirement in current
+        }
+        return replace(self, equivalent=frozenset(proved & keys - self.noticed.keys()))
+
+
+def _all(suspects: Suspects) -> tuple[Mutant, ...]:
+    return (*suspects.mutants, *(mutant for mutant, _ in suspects.refused))
+
+
+def survey(asked: Inquiry, logs: Sequence[str], jobs: int, tell: Callable[[str], None]) -> Survey:
+    """What the runs of some logs tell apart, in the order of the logs.
+
+    Args:
+        asked: the mutants.
+        logs: files or folders, each once.
+        jobs: processes.
+        tell: is called with each log when it is done.
+    """
+    found: dict[int, RunSurvey | Diagnostic] = {}
+    with closing(each(partial(of_run, asked), logs, jobs)) as done:
+        for place, one in done:
+            found[place] = was_killed(logs[place], str(one)) if isinstance(one, Killed) else one
+            tell(logs[place])
+    in_order = [(log, found[place]) for place, log in enumerate(logs)]
+    runs = [(log, one) for log, one in in_order if isinstance(one, RunSurvey)]
+    first: dict[tuple[str, str], tuple[int, Difference]] = {}
+    for place, (_, one) in enumerate(runs):
+        for key, apart in one.noticed.items():
+            first.setdefault(key, (place, apart))
+    return Survey(
+        tuple(log for log, _ in runs),
+        asked.suspects,
+        frozenset().union(*(one.known for _, one in runs)),
+        first,
+        tuple(one for _, one in in_order if isinstance(one, Diagnostic)),
+    )

@@ -1,0 +1,74 @@
+"""What `fretc mutate` prints: each requirement with the mutants that no run has noticed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from fretc.coverage.mutation import Difference, Survey, Suspects
+from fretc.coverage.mutation_record import written
+from fretish.diagnostics import signs
+
+Line = tuple[str, str | None]
+"""A line and its colour."""
+
+
+def lines(survey: Survey, titles: Mapping[str, str], *, every: bool) -> Iterator[Line]:
+    """All of it.
+
+    Args:
+        survey: what is known.
+        titles: what a requirement is called, by its id.
+        every: list the mutants that were noticed, too.
+    """
+    for each in survey.suspects:
+        yield from _requirement(each, titles.get(each.id, each.id), survey, every=every)
+    yield "", None
+    yield _totals(survey)
+
+
+def _requirement(suspects: Suspects, title: str, survey: Survey, *, every: bool) -> Iterator[Line]:
+    same = sum(id == suspects.id for id, _ in survey.equivalent)
+    count = len(suspects.mutants) + len(suspects.refused) - same
+    found = [(each, survey.noticed.get((suspects.id, each.key))) for each in suspects.mutants]
+    noticed = sum(difference is not None for _, difference in found)
+    sign = signs.GOOD if noticed == count else signs.UNUSED
+    wrong = f"{count} wrong sentence{'' if count == 1 else 's'}"
+    unknown = "" if suspects.id in survey.known else "; no run has a verdict on it"
+    yield f"{sign.glyph} {title}: {noticed} of {wrong} noticed{unknown}", sign.colour
+    for mutant, difference in found:
+        if (suspects.id, mutant.key) in survey.equivalent:
+            if every:
+                text = f"    {signs.EMPTY.glyph} {mutant.words}: it says the same"
+                yield text, signs.EMPTY.colour
+        elif difference is None:
+            yield f"    {signs.UNUSED.glyph} {mutant.words}", signs.UNUSED.colour
+            yield f"      {written(mutant)}", None
+        elif every:
+            text = f"    {signs.GOOD.glyph} {mutant.words}: {_how(difference, survey.runs)}"
+            yield text, signs.GOOD.colour
+    for mutant, why in suspects.refused:
+        if (suspects.id, mutant.key) not in survey.equivalent:
+            text = f"    {signs.UNKNOWN.glyph} {mutant.words}: not judged: {why}"
+            yield text, signs.UNKNOWN.colour
+
+
+def _how(found: tuple[int, Difference], runs: tuple[str, ...]) -> str:
+    place, difference = found
+    at = "" if difference.tick is None else f", first at tick {difference.tick}"
+    return f"{difference.other}, and the requirement {difference.own}, in {runs[place]}{at}"
+
+
+def _totals(survey: Survey) -> Line:
+    """`1 run x 15 requirements: 120 of 259 wrong sentences noticed`."""
+    same = len(survey.equivalent)
+    refused = sum(len(each.refused) for each in survey.suspects)
+    runs, requirements = len(survey.runs), len(survey.suspects)
+    sign = signs.GOOD if survey.is_complete else signs.UNUSED
+    text = (
+        f"{runs:,} run{'' if runs == 1 else 's'} \N{MULTIPLICATION SIGN} "
+        f"{requirements:,} requirement{'' if requirements == 1 else 's'}: "
+        f"{len(survey.noticed):,} of {survey.count:,} wrong sentences noticed"
+        f"{f', {refused:,} not judged' if refused else ''}"
+        f"{f', {same:,} that say the same left out' if same else ''}"
+    )
+    return text, sign.colour

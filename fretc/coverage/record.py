@@ -1,0 +1,112 @@
+"""Coverage as JSON: each requirement, its situations, and the runs that came by them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Annotated, Any, Final, Literal
+
+from compiler.files.edition import __version__
+from compiler.files.records import Count, Name, Record, Seconds, Whole, about, json_schema, plain
+from compiler.files.templating import to_json
+from fretc.audit.evidence.schema import Moment
+from fretc.coverage import coverage as c
+from fretc.coverage.directions import Directions
+
+SCHEMA: Final = "fretc-coverage-1"
+
+
+class Sighting(Record, frozen=True):
+    """The first tick of a run at which a situation was there, or may have been."""
+
+    run: Annotated[Count, about("its place among the runs, from 0")]
+    tick: Count
+    ns: Whole
+    seconds: Seconds
+
+
+class Situation(Record, frozen=True):
+    """A way in which a run can meet a requirement."""
+
+    key: Name
+    words: Annotated[str, about("for people")]
+    standing: Annotated[
+        Literal["seen", "perhaps", "never", "not measured"],
+        about("what all runs together show; perhaps: something is unknown there"),
+    ]
+    seen: Annotated[tuple[Sighting, ...], about("in each run where it was certainly there")]
+    perhaps: Annotated[tuple[Sighting, ...], about("in each other run where it may have been")]
+    direction: Annotated[
+        str | None,
+        about("how a run comes by it, or why none does; null: seen, or nobody has searched"),
+    ]
+
+
+class Requirement(Record, frozen=True):
+    """A requirement of the audit."""
+
+    id: Name
+    situations: Annotated[tuple[Situation, ...], about("empty: they were not measured")]
+    measured: Annotated[tuple[Count, ...], about("places of the runs that were looked at")]
+    unmeasured: Annotated[
+        tuple[Count, ...], about("of those that were not, or could not be: they show nothing")
+    ]
+
+
+class Document(Record, frozen=True):
+    """A whole file."""
+
+    schema: Literal["fretc-coverage-1"]
+    fretc: Annotated[str, about("version of the tool")]
+    runs: Annotated[tuple[str, ...], about("the logs, as the user named them")]
+    requirements: tuple[Requirement, ...]
+    least_runs: Annotated[
+        tuple[Count, ...], about("places of runs that show all that the runs together show")
+    ]
+    least_is_exact: Annotated[bool, about("whether it is proved that no fewer runs do")]
+
+
+def text(covered: c.Coverage, known: Directions = MappingProxyType({})) -> str:
+    """The whole file: the same values give the same bytes."""
+    return f"{to_json(plain(document(covered, known)))}\n"
+
+
+def document(covered: c.Coverage, known: Directions) -> Document:
+    """The record of what runs have exercised, and of how they come by the rest."""
+    return Document(
+        schema=SCHEMA,
+        fretc=__version__,
+        runs=covered.runs,
+        requirements=tuple(
+            Requirement(
+                each.id,
+                tuple(_situation(each.id, one, known) for one in each.situations),
+                each.measured,
+                each.unmeasured,
+            )
+            for each in covered.requirements
+        ),
+        least_runs=covered.least.runs,
+        least_is_exact=covered.least.is_exact,
+    )
+
+
+def _situation(id: str, one: c.RecordedSituation, known: Directions) -> Situation:
+    seen, perhaps = _sightings(one.seen), _sightings(one.perhaps)
+    found = None if one.standing is c.Standing.SEEN else known.get((id, one.key))
+    direction = None if found is None else found.text
+    return Situation(one.key, one.words, one.standing.value, seen, perhaps, direction)
+
+
+def _sightings(moments: Mapping[int, Moment]) -> tuple[Sighting, ...]:
+    return tuple(Sighting(run, m.tick, m.ns, m.seconds) for run, m in sorted(moments.items()))
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of coverage."""
+    return json_schema(
+        Document,
+        SCHEMA,
+        "What recorded runs have exercised, as `fretc coverage --format json` prints it",
+        "Seconds count from the first tick of a run, ticks from 0; `ns` is the time of the log.",
+    )

@@ -1,0 +1,172 @@
+"""What `fretc coverage` prints: each requirement with what no run has shown, then the runs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
+from typing import assert_never
+
+from fretc.audit.evidence.schema import Moment
+from fretc.coverage.coverage import (
+    Coverage,
+    RecordedSituation,
+    RequirementCoverage,
+    Standing,
+    counts,
+)
+from fretc.coverage.directions import Directions, is_complete, unseen
+from fretish.bindings.amounts import seconds
+from fretish.diagnostics import signs
+from fretish.diagnostics.signs import Sign
+
+Line = tuple[str, str | None]
+"""A line and its colour."""
+_MOST_NAMED = 10
+"""Runs of the least set that are named, and runs that are listed: others are counted."""
+
+
+def lines(
+    covered: Coverage,
+    titles: Mapping[str, str],
+    directions: Directions = MappingProxyType({}),
+    *,
+    every: bool,
+) -> Iterator[Line]:
+    """All of it.
+
+    Args:
+        covered: what is known.
+        titles: what a requirement is called, by its id; one without is called by its id.
+        directions: how a run comes by what was not seen, as far as is known.
+        every: list the situations that were seen, too.
+    """
+    for each in covered.requirements:
+        title = titles.get(each.id, each.id)
+        yield from _requirement(each, title, covered.runs, directions, every=every)
+    yield "", None
+    yield from _runs(covered, every=every)
+    yield from _least(covered)
+    yield totals(covered, directions)
+
+
+def _requirement(
+    one: RequirementCoverage,
+    title: str,
+    runs: tuple[str, ...],
+    directions: Directions,
+    *,
+    every: bool,
+) -> Iterator[Line]:
+    seen, of = len(one.of(Standing.SEEN)), len(one.situations)
+    sign = signs.GOOD if of and seen == of else signs.UNUSED
+    if not of:
+        yield f"{signs.UNKNOWN.glyph} {title}: situations not measured", signs.UNKNOWN.colour
+        return
+    unmeasured = f", not measured in {_times(len(one.unmeasured), 'run')}" if one.unmeasured else ""
+    yield f"{sign.glyph} {title}: {seen} of {of} situations seen{unmeasured}", sign.colour
+    for situation in one.situations:
+        if every or situation.standing is not Standing.SEEN:
+            yield _situation(situation, runs)
+        direction = directions.get((one.id, situation.key))
+        if direction is not None and situation.standing is not Standing.SEEN:
+            yield f"        {direction.text}", None
+
+
+def _situation(one: RecordedSituation, runs: tuple[str, ...]) -> Line:
+    sign = sign_of(one.standing)
+    text = f"    {sign.glyph} {one.words}: {_standing(one, runs)}"
+    return text, sign.colour
+
+
+def sign_of(standing: Standing) -> Sign:
+    """How a standing looks."""
+    match standing:
+        case Standing.SEEN:
+            return signs.GOOD
+        case Standing.PERHAPS | Standing.NOT_MEASURED:
+            return signs.UNKNOWN
+        case Standing.NEVER:
+            return signs.UNUSED
+        case _:
+            assert_never(standing)
+
+
+def _standing(one: RecordedSituation, runs: tuple[str, ...]) -> str:
+    match one.standing:
+        case Standing.SEEN:
+            many = f"seen in {_times(len(one.seen), 'run')}, first" if len(runs) > 1 else "seen"
+            return f"{many} {_first(one.seen, runs)}"
+        case Standing.PERHAPS:
+            return f"perhaps {_first(one.perhaps, runs)}, where something is unknown"
+        case Standing.NEVER | Standing.NOT_MEASURED:
+            return one.standing
+        case _:
+            assert_never(one.standing)
+
+
+def _first(moments: Mapping[int, Moment], runs: tuple[str, ...]) -> str:
+    run = min(moments)
+    place = f" of {runs[run]}" if len(runs) > 1 else ""
+    return f"at {seconds(moments[run].seconds)}{place}"
+
+
+def _runs(covered: Coverage, *, every: bool) -> Iterator[Line]:
+    """How many situations each run shows, and how many of them no other one shows."""
+    shown: Counter[int] = Counter()
+    alone: Counter[int] = Counter()
+    for requirement in covered.requirements:
+        for situation in requirement.situations:
+            shown.update(situation.seen.keys())
+            if len(situation.seen) == 1:
+                alone.update(situation.seen.keys())
+    if len(covered.runs) < 2:
+        return
+    listed = covered.runs if every else covered.runs[:_MOST_NAMED]
+    for place, name in enumerate(listed):
+        only = f", {alone[place]} of them in no other run" if alone[place] else ""
+        yield f"{name}: {_times(shown[place], 'situation')}{only}", None
+    if len(listed) < len(covered.runs):
+        yield f"and {len(covered.runs) - len(listed):,} more runs: `-v` lists them", None
+
+
+def _least(covered: Coverage) -> Iterator[Line]:
+    """The least set of runs."""
+    least, runs = covered.least, covered.runs
+    if len(runs) < 2 or not least.runs:
+        return
+    names = [runs[place] for place in least.runs[:_MOST_NAMED]]
+    more = f" and {len(least.runs) - len(names)} more" if len(least.runs) > len(names) else ""
+    how = "no fewer do" if least.is_exact else "fewer might do"
+    verb = "shows" if len(least.runs) == 1 else "show"
+    yield (
+        f"{len(least.runs)} of {_times(len(runs), 'run')} {verb} all that is seen ({how}): "
+        f"{', '.join(names)}{more}",
+        None,
+    )
+
+
+def totals(covered: Coverage, directions: Directions) -> Line:
+    """`2 runs x 15 requirements: 84 of 190 situations seen, 12 perhaps, 94 never`."""
+    head = (
+        f"{_times(len(covered.runs), 'run')} \N{MULTIPLICATION SIGN} "
+        f"{_times(len(covered.requirements), 'requirement')}"
+    )
+    left = sum(1 for _ in unseen(covered, directions))
+    known = f"; {left:,} are left that a run can show" if directions else ""
+    sign = signs.GOOD if is_complete(covered, directions) else signs.UNUSED
+    return f"{head}: {in_counts(covered.requirements)}{known}", sign.colour
+
+
+def in_counts(requirements: Sequence[RequirementCoverage]) -> str:
+    """`84 of 190 situations seen, 12 perhaps, 94 never`."""
+    found = counts(requirements)
+    rest = [f"{found[each]:,} {each}" for each in [*Standing][1:] if found[each]]
+    blank = sum(not each.situations for each in requirements)
+    rest += [f"{_times(blank, 'requirement')} not measured"] if blank else []
+    seen = f"{found[Standing.SEEN]:,} of {found.total():,} situations seen"
+    return ", ".join([seen, *rest])
+
+
+def _times(count: int, noun: str) -> str:
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"

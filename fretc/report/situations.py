@@ -1,0 +1,45 @@
+"""What the audited runs have exercised of each requirement, for its section and for the matrix."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from fretc.audit.evidence.briefs import EvidenceSource
+from fretc.audit.evidence.verdicts import RETIRED
+from fretc.coverage.coverage import RequirementCoverage, Standing, of_requirements
+from fretc.report.model.assessments import Assessment
+from fretc.report.model.views import SituationsView
+
+
+def situations(
+    assessed: Sequence[Assessment], evidence: EvidenceSource | None
+) -> Mapping[str, SituationsView]:
+    """Of each requirement in force that has results, by its id.
+
+    A result that is evidence of something else shows nothing of the requirement as it is now.
+
+    Args:
+        assessed: all requirements.
+        evidence: that their audits are of; None: there is none.
+    """
+    if evidence is None:
+        return {}
+    places = {
+        one.id: {audit.place: run for run, audit in enumerate(one.audits) if not audit.is_stale}
+        for one in assessed
+        if one.audits and one.verdict != RETIRED
+    }
+    found = (each for each in of_requirements(evidence, places) if each.id in places)
+    return {each.id: _view(each) for each in found}
+
+
+def _view(one: RequirementCoverage) -> SituationsView:
+    if not one.measured or not one.situations:
+        return SituationsView("", "situations not measured", (), ())
+    seen, every = len(one.of(Standing.SEEN)), len(one.situations)
+    return SituationsView(
+        f"{seen}/{every}",
+        f"{seen} of {every} situations seen",
+        tuple(each.words for each in one.of(Standing.PERHAPS)),
+        tuple(each.words for each in one.of(Standing.NEVER)),
+    )

@@ -1,0 +1,38 @@
+"""The suite in a file of `fretc test`.
+
+Nothing in the file is trusted: what its types (`fretc.testing.suite`) do not have is F503.
+"""
+
+from __future__ import annotations
+
+from compiler.files.checked_json import MisshapenError, parsed
+from compiler.files.records import decoded
+from compiler.files.text_files import read as read_text
+from fretc.testing.suite import Suite
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+
+DEFAULT = "build/tests/suite.json"
+"""Where `fretc test` writes."""
+
+
+def read(path: str) -> Suite | Diagnostic:
+    """Read and check a file of `fretc test`."""
+    source = read_text(path)
+    if isinstance(source, Diagnostic):
+        return source
+    try:
+        return decoded(parsed(source.text).value, Suite)
+    except (MisshapenError, ValueError) as error:
+        return _wrong(source, f"is not what `fretc test` writes: {error}")
+    except RecursionError:
+        return _wrong(source, "is not JSON that fretc can read: it is nested too deeply")
+
+
+def _wrong(source: Source, what: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_EVIDENCE,
+        f"`{source.name}` {what}",
+        Source(source.name, "").span(),
+        help=f"make it again: `fretc test -o {source.name}`",
+    )

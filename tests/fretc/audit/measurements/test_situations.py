@@ -1,0 +1,105 @@
+"""Which situations a run came by, against the definition of their formulas, tick by tick."""
+
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+
+from compiler.logic import formula as f
+from compiler.logic.definition import holds
+from compiler.situations.situations import Situation, situations
+from fretc.audit.measurements.situations import Encounter, encounters, nowhere_known
+from monitors.kernel import Column
+from monitors.kernel.verdicts import Truth
+from tests.each import each
+from tests.emitting import rule
+from tests.monitoring import packed
+from tests.strategies import Template, templates
+
+Row = Mapping[str, Truth]
+
+
+def asked(situation: Situation, recorded: Sequence[Row]) -> list[int]:
+    """The ticks that can count, from what was recorded."""
+    ticks = [len(recorded) - 1] if situation.at_end else range(len(recorded))
+    hole = situation.unknown
+    return [tick for tick in ticks if hole is None or recorded[tick][hole] is None]
+
+
+def met(
+    situation: Situation, recorded: Sequence[Row], run: Sequence[Mapping[str, bool]]
+) -> int | None:
+    """The first tick of a run that may have been so, from the definition alone."""
+    ticks = asked(situation, recorded)
+    return next((tick for tick in ticks if holds(situation.formula, run, tick)), None)
+
+
+def completions(run: Sequence[Row]) -> Iterator[list[dict[str, bool]]]:
+    """Every run that it may have been."""
+    unknown = [(tick, name) for tick, row in enumerate(run) for name in row if row[name] is None]
+    for values in product((False, True), repeat=len(unknown)):
+        chosen = dict(zip(unknown, values, strict=True))
+        yield [
+            {name: chosen[tick, name] if value is None else value for name, value in row.items()}
+            for tick, row in enumerate(run)
+        ]
+
+
+def shown(of: Sequence[Situation], run: Sequence[Row]) -> dict[str, Encounter]:
+    names = [*run[0]]
+    ticks, columns = packed({name: [row[name] for row in run] for name in names})
+    return {one.key: one for one in encounters(of, columns, ticks, nowhere_known(ticks))}
+
+
+def runs(drawn: Template, unknowns: int) -> Iterator[list[Row]]:
+    choose = random.Random(repr(drawn))
+    for length in (1, 3, 6, 9):
+        run: list[dict[str, Truth]] = [
+            {name: choose.random() < 0.5 for name in "mpqs"} for _ in range(length)
+        ]
+        for _ in range(unknowns):
+            run[choose.randrange(length)][choose.choice("mpqs")] = None
+        yield [*run]
+
+
+@each("template", [*templates((0, 2))][::8])
+def test_what_is_known_is_seen_at_its_first_tick(template: Template) -> None:
+    of = situations(rule(template.sentence))
+    for run in runs(template, unknowns=0):
+        (known,) = completions(run)
+        expected = {one.key: Encounter(one.key, met(one, run, known), None) for one in of}
+        assert shown(of, run) == expected
+
+
+@each("template", [*templates((0, 2))][4::8])
+def test_whatever_the_unknown_values_were_seen_is_certain_and_never_is_never(
+    template: Template,
+) -> None:
+    of = situations(rule(template.sentence))
+    for run in runs(template, unknowns=4):
+        possible = [*completions(run)]
+        found = shown(of, run)
+        for one in of:
+            seen, perhaps = found[one.key].seen, found[one.key].perhaps
+            firsts = [met(one, run, each) for each in possible]
+            if seen is not None:
+                assert seen in asked(one, run)
+                assert all(holds(one.formula, each, seen) for each in possible)
+                assert perhaps is None
+            elif perhaps is None:
+                assert firsts == [None] * len(possible)
+            else:
+                assert all(tick is None or tick >= perhaps for tick in firsts)
+
+
+def test_a_proposition_without_a_column_is_unknown_throughout() -> None:
+    here = Situation("here", "p", f.Atom("p"))
+    gone = Situation("gone", "q", f.Atom("q"), at_end=True)
+    found = encounters([here, gone], {"p": Column(0b100, 0)}, 4, nowhere_known(4))
+    assert [*found] == [Encounter("here", 2, None), Encounter("gone", None, 3)]
+
+
+def test_a_run_without_a_tick_shows_nothing() -> None:
+    always = Situation("always", "", f.TRUE)
+    last = Situation("last", "", f.TRUE, at_end=True)
+    found = encounters([always, last], {}, 0, nowhere_known(0))
+    assert [*found] == [Encounter("always", None, None), Encounter("last", None, None)]
