@@ -1,0 +1,68 @@
+"""What came of a program under test."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated, Final, Literal
+
+from compiler.files.records import Count, Name, Ordinal, Record, about
+from fretc.testing.suite import Polarity, Repeat
+
+SCHEMA: Final = "fretc-conformance-1"
+
+
+class Outcome(StrEnum):
+    """What came of an aim."""
+
+    REACHED = "reached"
+    UP_TO_PROGRAM = "up to the program"
+    """No inputs force it, and the program did not bring it about."""
+    NOT_REACHED = "not reached"
+    """Inputs can force it, and yet it did not come."""
+    NOT_SEARCHED = "not searched"
+
+
+class Situated(Record, frozen=True):
+    """A situation that the program was led to, or was to be led to."""
+
+    requirement: Name
+    situation: Name
+    words: str
+    outcome: Outcome
+    why: Annotated[str, about("why it was not searched; empty: it was")] = ""
+
+
+class Failure(Record, frozen=True):
+    """A run on which the program violates a requirement."""
+
+    requirement: Name
+    sentence: Name
+    because: Annotated[str, about("the reason, in words")]
+    rows: Annotated[tuple[Repeat, ...], about("inputs and outputs; the last tick violates it")]
+    situation: Annotated[Name, about("what the run was to show")]
+    polarity: Polarity
+    ticks: Annotated[Ordinal, about("of the run on which it was found")]
+    tries: Annotated[Count, about("runs by which that one was made shorter")]
+    again: Annotated[bool, about("whether the program did the same with the same inputs")]
+
+
+class Conformance(Record, frozen=True):
+    """All that was seen of a program."""
+
+    schema: Literal["fretc-conformance-1"]
+    fretc: Annotated[str, about("the version of fretc")]
+    command: tuple[str, ...]
+    requirements: tuple[Name, ...]
+    runs: Annotated[Count, about("of the program, those that made a failure shorter among them")]
+    ticks: Annotated[Count, about("of all runs together")]
+    situations: tuple[Situated, ...]
+    failures: tuple[Failure, ...]
+    untried: Annotated[tuple[Name, ...], about("requirements of which no run began a demand")]
+    not_judged: Annotated[dict[str, str], about("why a requirement has no monitor, by its id")]
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all was searched, all was reached that can be forced, and all was asked for."""
+        left = (Outcome.NOT_REACHED, Outcome.NOT_SEARCHED)
+        reached = all(each.outcome not in left for each in self.situations)
+        return reached and not self.untried and not self.not_judged
