@@ -82,6 +82,7 @@ DOORS = {
     "rosbags": {
         "fretc/logs/messages/idl.py",
         "fretc/logs/storage/bags.py",
+        "fretc/testing/staging/messages.py",
         "simulation/nodes/messages.py",
         "simulation/recording.py",
     },

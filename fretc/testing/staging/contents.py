@@ -126,7 +126,9 @@ def _fits(content: float | Sequence[float], field: Field) -> bool:
     number = content[0] if isinstance(content, Sequence) else content
     if field.base == "bool":
         return number in (0, 1)
-    limits = np.iinfo({"octet": "uint8", "byte": "uint8", "char": "uint8"}.get(field.base, field.base))
+    limits = np.iinfo(
+        {"octet": "uint8", "byte": "uint8", "char": "uint8"}.get(field.base, field.base)
+    )
     return limits.min <= number <= limits.max
 
 
@@ -157,6 +159,10 @@ def _unknown(signal: Signal, field: Field) -> Iterator[Choice]:
 
 def read(signal: Signal, field: Field, content: Content) -> float | None:
     """What an audit reads of a message with that content; None where it finds no value in it."""
-    made = message(field.type, 0, {signal.path: content})
-    value = word(signal, made) if signal.values else sample(signal, made, single=field.base == "float32")
+    made = message(field.message, 0, {signal.path: content})
+    value = (
+        word(signal, made)
+        if signal.values
+        else sample(signal, made, single=field.base == "float32")
+    )
     return None if isinstance(value, str) else value

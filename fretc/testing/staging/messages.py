@@ -34,8 +34,8 @@ class NoStageError(ValueError):
 class Field:
     """The field that a signal is read from."""
 
-    type: str
-    """Of the message: `sensor_msgs/msg/LaserScan`."""
+    message: str
+    """The type of it: `sensor_msgs/msg/LaserScan`."""
     base: str
     """Of the field or of its elements: `float32`, `bool`, `string`."""
     array: bool
@@ -55,16 +55,15 @@ def field(signal: Signal) -> Field:
     if signal.type is None:
         raise NoStageError(f"the binding of `{signal.name}` names no type of message")
     package, _, own = short_type(signal.type).partition("/")
-    name = kind = f"{package}/msg/{own}"
+    name = f"{package}/msg/{own}"
     if name not in TYPES.fielddefs:
         raise NoStageError(f"`{signal.type}`, which `{signal.name}` is read from, is not known")
-    node: tuple[Any, Any] = (Nodetype.NAME, name)
+    node: Any = (Nodetype.NAME, name)
     for part in signal.path.fields:
-        fields = dict(TYPES.fielddefs[kind][1]) if node[0] == Nodetype.NAME else {}
+        fields = dict(TYPES.fielddefs[node[1]][1]) if node[0] == Nodetype.NAME else {}
         if part not in fields:
             raise NoStageError(f"`{signal.type}` has no field `{'.'.join(signal.path.fields)}`")
         node = fields[part]
-        kind = node[1]
     array = node[0] in (Nodetype.ARRAY, Nodetype.SEQUENCE)
     if array:
         node = node[1][0]
@@ -73,9 +72,9 @@ def field(signal: Signal) -> Field:
     return Field(name, str(node[1][0]), array)
 
 
-def message(type: str, time: int, contents: Mapping[Path, Content]) -> Any:
+def message(name: str, time: int, contents: Mapping[Path, Content]) -> Any:
     """A message measured at `time` (nanoseconds) with the contents of some of its fields."""
-    made = _blank(type, time)
+    made = _blank(name, time)
     for path, content in contents.items():
         *way, last = path.fields
         inner = made

@@ -60,8 +60,6 @@ class Found:
     """Those that show something first, by their names."""
     verdicts: dict[str, Mapping[str, str]] = field(default_factory=dict)
     runs: int = 0
-    unlike: list[str] = field(default_factory=list)
-    """Scenarios whose file did not show the same again."""
 
     def new(self, scenario: str) -> tuple[Aim, ...]:
         """What a scenario is the first to show."""
@@ -94,15 +92,17 @@ def search(
     aims: Sequence[Aim],
     runs: int,
     jobs: int,
+    found: Found,
     tell: Callable[[int, str], None],
-) -> Iterator[Found]:
-    """Look for missions that show the aims; what is found so far, after each mission.
+) -> None:
+    """Look for missions that show the aims.
 
     Args:
         project: whose requirements are audited.
         aims: of `stageable`.
         runs: how many missions at most.
         jobs: processes.
+        found: takes what is found, mission by mission: what interrupts the search loses nothing.
         tell: is called with the number of missions, and what is shown.
 
     Raises:
@@ -111,7 +111,7 @@ def search(
     plan = planned(project)
     assert isinstance(plan, Plan), plan
     monitored_requirements(plan)  # before the processes are born: they inherit it
-    found, chance = Found(), Random(SEED)
+    chance = Random(SEED)
     known: list[tuple[Scenario, Shown]] = []
     waiting = [load(name) for name in names()]
     with tempfile.TemporaryDirectory() as temporary:
@@ -130,7 +130,6 @@ def search(
                     known.append((batch[place], one))
                     _note(found, aims, batch[place], one)
                     tell(found.runs, f"{len(found.shown)} of {len(aims)} shown")
-                    yield found
 
 
 def _note(found: Found, aims: Sequence[Aim], scenario: Scenario, one: Shown) -> None:
@@ -190,24 +189,29 @@ def _margin(result: Result) -> float:
     )
 
 
-def confirmed(project: Project, path: Path, aims: Sequence[Aim]) -> bool:
-    """Whether the mission of a file that has been written shows the aims.
+def confirmed(project: Project, text: str, aims: Sequence[Aim]) -> bool:
+    """Whether the mission of a file shows the aims, with the verdicts that the file expects.
 
     Args:
         project: whose requirements are audited.
-        path: of the scenario.
+        text: of the file.
         aims: that it is to show.
     """
     plan = planned(project)
     assert isinstance(plan, Plan), plan
     with tempfile.TemporaryDirectory() as temporary:
-        again = shown(plan, Path(temporary), load(str(path)))
-    return again.aims.issuperset(aims)
+        path = Path(temporary) / "again.toml"
+        path.write_text(text, encoding="utf-8")
+        scenario = load(str(path))
+        again = shown(plan, Path(temporary), scenario)
+    return again.aims.issuperset(aims) and scenario.expect.verdicts == again.verdicts
 
 
-def text(scenario: Scenario, verdicts: Mapping[str, str], aims: Sequence[Aim], words: Mapping[Aim, str]) -> str:
+def text(
+    scenario: Scenario, verdicts: Mapping[str, str], aims: Sequence[Aim], words: Mapping[Aim, str]
+) -> str:
     """A scenario as a file: what it shows, what it changes, and which verdicts its log has."""
-    lists = {each.name: [] for each in fields(Expectations)}
+    lists: dict[str, list[str]] = {each.name: [] for each in fields(Expectations)}
     for id, verdict in verdicts.items():
         lists[verdict.replace(" ", "_")].append(id)
     own = replace(
@@ -217,7 +221,9 @@ def text(scenario: Scenario, verdicts: Mapping[str, str], aims: Sequence[Aim], w
         transport=dict(scenario.transport),
         name="custom",
     )
-    comment = "".join(f"# {id}, {polarity}: {words[id, key, polarity]}\n" for id, key, polarity in aims)
+    comment = "".join(
+        f"# {id}, {polarity}: {words[id, key, polarity]}\n" for id, key, polarity in aims
+    )
     return f"{comment}\n{tomli_w.dumps(_changed(asdict(own), asdict(_PLAIN)))}"
 
 
@@ -231,6 +237,8 @@ def _changed(table: Mapping[str, Any], plain: Mapping[str, Any]) -> dict[str, An
         usual = plain.get(key)
         if value == usual or value is None:
             continue
-        both = isinstance(value, dict) and isinstance(usual, dict)
-        changed[key] = _changed(value, usual) if both else value
+        if isinstance(value, dict) and isinstance(usual, dict):
+            changed[key] = _changed(value, usual)
+        else:
+            changed[key] = value
     return changed

@@ -104,7 +104,9 @@ class _Stage:
         self, wanted: Sequence[bool | None], wished: Sequence[object]
     ) -> tuple[Choice, ...] | None:
         """The contents with which all parts are as wanted, most of them as wished."""
-        every = [self._choices(signal, wish) for signal, wish in zip(self.signals, wished, strict=True)]
+        every = [
+            self._choices(signal, wish) for signal, wish in zip(self.signals, wished, strict=True)
+        ]
         sizes = [len(each) for each in every]
         if math.prod(sizes) > _MOST_COMBINED:
             raise NoStageError(f"{len(sizes)} signals have too many values together")
@@ -120,9 +122,7 @@ class _Stage:
         return tuple(each[place[best]] for each, place in zip(every, places, strict=True))
 
     def _choices(self, signal: Signal, wish: object) -> tuple[Choice, ...]:
-        read_by = [
-            one.expression for one in self._parts if signal.name in one.proposition.signals
-        ]
+        read_by = [one.expression for one in self._parts if signal.name in one.proposition.signals]
         wishes = [] if isinstance(wish, float) and math.isnan(wish) else [wish]
         found = choices(signal, self.fields[signal.name], read_by, wishes)
         return tuple(reversed(found)) if wishes == [None] else found  # what is unknown comes first
@@ -231,21 +231,20 @@ def _of_tick(
     }
     youngest = min((s.max_age for s in own if s.max_age is not None), default=period)
     times = -(-period // max(youngest, 1)) if tick else 1
-    type = stage.fields[next(iter(own)).name].type
+    name = stage.fields[next(iter(own)).name].message
     contents: dict[Path, Content] = {}
     for signal, choice in own.items():
         assert choice.content is not None
         contents[signal.path] = choice.content
     for number in reversed(range(times)):
         time = EPOCH + tick * period - number * period // times
-        yield Spoken(topic, type, time, message(type, time, contents))
+        yield Spoken(topic, name, time, message(name, time, contents))
 
 
 def _pulse(declarations: Declarations, topics: Mapping[str, None], time: int) -> Spoken:
     """A message of another topic, so that the log lasts where nothing else is said."""
     for signal in declarations.signals.values():
         if signal.path.topic not in topics and signal.type is not None:
-            type = field(signal).type
-            return Spoken(signal.path.topic, type, time, message(type, time, {}))
+            name = field(signal).message
+            return Spoken(signal.path.topic, name, time, message(name, time, {}))
     raise NoStageError("nothing is said at its first or last tick, so no log would have that tick")
-

@@ -1,4 +1,4 @@
-"""What each proposition has to be at each tick of a log, so that the audit sees the ticks of a test.
+"""What each proposition has to be at each tick of a log, so that the audit sees those of a test.
 
 `... for 200 ms` looks back: what it names has to hold at the ticks before, which may lie before the
 test. Then the log has some ticks more in front, which change nothing of the verdict.
@@ -56,7 +56,8 @@ def part(proposition: Proposition, period: int) -> Part:
     """
     expression, back = proposition.expression, 0
     if isinstance(expression, e.Persistence):
-        expression, back = expression.arg, -(-expression.duration // period)
+        back = -(-expression.duration // period)
+        expression = expression.arg
     if any(isinstance(each, e.Persistence) for each in e.parts(expression)):
         raise NoStageError(f"`for` stands within the expression of `{proposition.name}`")
     if ticks_back(expression):
@@ -108,9 +109,7 @@ def _column(test: Test, name: str) -> list[Truth]:
     return column
 
 
-def _letters(
-    parts: Sequence[Part], columns: Mapping[str, Truths]
-) -> Iterator[Mapping[str, Truth]]:
+def _letters(parts: Sequence[Part], columns: Mapping[str, Truths]) -> Iterator[Mapping[str, Truth]]:
     """What may stand before the test: all that looks back is left open."""
     free = [one.proposition.name for one in parts if not one.back]
     first = {name: columns[name][0] for name in free}
@@ -145,9 +144,7 @@ def _seen(wanted: Truths, one: Part) -> list[Truth]:
     return seen
 
 
-def _unchanged(
-    test: Test, lead: int, seen: Mapping[str, Truths], monitor: Monitor
-) -> bool:
+def _unchanged(test: Test, lead: int, seen: Mapping[str, Truths], monitor: Monitor) -> bool:
     """Whether the monitor says of the longer run what it says of the test."""
     monitor.reset()
     for tick in range(lead + test.ticks):
