@@ -22,7 +22,8 @@ def ours(sentences: Sequence[str], named: Roles = ROLES) -> tuple[bool, float]:
     rules(*sentences)
     start = time.process_time()
     setting = staged(*sentences, roles=named)
-    game = setting.game(setting.arena.counters, Budget(LIMIT))
+    there = setting.close(rule.id for rule in setting.rules)
+    game = there.game(there.arena.counters, Budget(LIMIT))
     return game.solution().is_realizable, time.process_time() - start
 
 
@@ -69,12 +70,18 @@ def hard() -> None:
     apart = [f"the sw shall never satisfy x{i} & x{j}" for i in range(12) for j in range(i)]
     named = roles([f"a{i}" for i in range(12)], [f"x{i}" for i in range(12)])
     show("12 responses, one at a time", [*fair, *apart], named)
-    for bound in (1_000, 10_000, 100_000):
+    for bound in (1_000, 10_000, 100_000, 1_000_000):
         sentences = [
             f"whenever a the sw shall within {bound} ticks satisfy x",
             f"whenever b the sw shall for {bound + 1} ticks satisfy !x",
         ]
         show(f"a conflict after {bound} ticks", sentences, ROLES)
+        start = time.process_time()
+        found = analyze(rules(*sentences), ROLES)
+        seconds = time.process_time() - start
+        print(
+            f"  all of it, {len(found.repairs)} repairs: {seconds:.2f} s, open: {len(found.open)}"
+        )
 
 
 def pump() -> None:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 _MODULES: Mapping[str, str] = {
     "ltl": "ltl",
     "monitor": "python.monitor",
+    "c": "c.monitor",
+    "rust": "rust.monitor",
     "js": "javascript.monitor",
     "ajpf": "ajpf.properties",
     "ajpf-bundle": "ajpf.bundle",

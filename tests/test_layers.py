@@ -17,8 +17,8 @@ monitors.kernel  monitors
 fretish.diagnostics  fretish.reading  fretish.mistakes  fretish  fretish.bindings
 compiler.files  compiler.logic.ordering  compiler.logic  compiler.formalization
 compiler.situations  compiler.project  compiler.agents  compiler.program
-compiler.targets  compiler.targets.python  compiler.targets.javascript
-compiler.targets.automata  compiler.targets.ajpf
+compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
+compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit

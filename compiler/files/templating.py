@@ -55,6 +55,8 @@ def _environment() -> Environment:
     )
     environment.filters["python"] = python
     environment.filters["comment"] = comment
+    environment.filters["c_comment"] = c_comment
+    environment.filters["c_remark"] = c_remark
     environment.filters["js"] = script
     environment.filters["json"] = to_json
     environment.filters["data"] = data
@@ -113,6 +115,22 @@ def comment(text: str, mark: str = "#") -> str:
         c if c.isascii() and c.isprintable() else c.encode("unicode_escape").decode() for c in flat
     )
     return f"{mark} {safe}"
+
+
+def c_comment(text: str, indent: str = "") -> str:
+    """One line of a comment of C that is open, which no text in it can end."""
+    return f" * {indent}{_harmless(text)}"
+
+
+def c_remark(text: str) -> str:
+    """A comment of C on one line."""
+    return f"/* {_harmless(text)} */"
+
+
+def _harmless(text: str) -> str:
+    """In printable ASCII, without the signs that begin or end a comment of C, and no trigraphs."""
+    flat = comment(text, "").strip()
+    return flat.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
 
 
 def quoted(text: str) -> str:

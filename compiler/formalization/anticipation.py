@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import assert_never
 
-from compiler.formalization.letters import MOST_ATOMS, meanings, temporal_predicate
+from compiler.formalization.letters import MOST_ATOMS, letters, temporal_predicate
 from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
 from compiler.formalization.past import Stage, Watch, staged
 from compiler.formalization.reference import (
@@ -68,10 +68,9 @@ def _automaton(sentence: s.Sentence, obligation: Obligation) -> Automaton | None
     names = tuple(dict.fromkeys(name for part in parts for name in f.atoms(part)))
     if _independent(parts, names) or len(names) > MOST_ATOMS or temporal_predicate(sentence):
         return None
-    letters = meanings(sentence, names)
     ticks = min(obligation.demand.ticks, SHORT)
     try:
-        return explore(template(sentence, ticks), letters.values(), _MOST_STATES)
+        return explore(template(sentence, ticks), letters(sentence, names), _MOST_STATES)
     except TooManyStatesError:
         return None
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
 
-from compiler.formalization.obligation import atom, obligation, variable
+from compiler.formalization.obligation import Obligation, atom, obligation, variable
 from compiler.formalization.past import Watch
 from compiler.formalization.predicates import Past
 from compiler.logic.formula import Formula, atoms
@@ -80,11 +80,16 @@ class Formalized:
         needed = {name for signal in self.watch.signals for name in atoms(signal)}
         counted: tuple[str, ...] = ()
         if self.sentence.probability is not None:
-            counted = obligation(self.sentence, self.ticks or 0, Past()).atoms
+            counted = self.demanded.atoms
         known = dict.fromkeys((*self.propositions, *counted))
         return tuple(name for name in known if name in needed or name in counted)
 
-    @property
+    @cached_property
+    def demanded(self) -> Obligation:
+        """What the sentence demands, in formulas of the past."""
+        return obligation(self.sentence, self.ticks or 0, Past())
+
+    @cached_property
     def variables(self) -> tuple[str, ...]:
         """Every variable of the sentence, also those within comparisons, as they come in it."""
         found = [

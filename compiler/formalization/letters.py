@@ -47,18 +47,35 @@ def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, L
 
     Each expression is read once, as a column of bits: bit k is its value in the k-th valuation.
     """
-    valuations = tuple(product((False, True), repeat=len(atoms)))
-    columns = {
-        name: sum(valuation[i] << k for k, valuation in enumerate(valuations))
-        for i, name in enumerate(atoms)
-    }
-    m, p, q, stop = [
-        0 if part is None else evaluate(part, columns, len(valuations)) for part in parts(sentence)
-    ]
+    m, p, q, stop = _columns(sentence, atoms)
     return {
         valuation: (bool(m >> k & 1), bool(p >> k & 1), bool(q >> k & 1), bool(stop >> k & 1))
-        for k, valuation in enumerate(valuations)
+        for k, valuation in enumerate(product((False, True), repeat=len(atoms)))
     }
+
+
+@deep
+def letters(sentence: s.Sentence, atoms: Sequence[str]) -> tuple[Letter, ...]:
+    """The letters that some valuation of the atoms makes, sorted."""
+    every = (1 << 2 ** len(atoms)) - 1
+    found: list[tuple[tuple[bool, ...], int]] = [((), every)]
+    for column in _columns(sentence, atoms):
+        found = [
+            ((*letter, value), where & half)
+            for letter, where in found
+            for value, half in ((False, every ^ column), (True, column))
+        ]
+    return tuple((m, p, q, stop) for (m, p, q, stop), where in found if where)
+
+
+def _columns(sentence: s.Sentence, atoms: Sequence[str]) -> list[int]:
+    """Mode, condition, response and stop condition, bit k in the k-th valuation of the atoms."""
+    ticks = 2 ** len(atoms)
+    columns: dict[str, int] = {}
+    for name in atoms:
+        run = ticks >> len(columns) + 1  # false for so many valuations, then true for as many
+        columns[name] = ((1 << ticks) - 1) // ((1 << 2 * run) - 1) * ((1 << run) - 1) << run
+    return [0 if part is None else evaluate(part, columns, ticks) for part in parts(sentence)]
 
 
 def atoms_of(sentence: s.Sentence) -> tuple[str, ...]:
@@ -75,7 +92,7 @@ def occurring(sentence: s.Sentence) -> tuple[Letter, ...]:
     """
     atoms = atoms_of(sentence)
     if len(atoms) <= MOST_ATOMS:
-        return tuple(sorted(set(meanings(sentence, atoms).values())))
+        return letters(sentence, atoms)
     m, p, q, stop = (_values(part) for part in parts(sentence))
     return tuple(product(m, p, q, stop))
 

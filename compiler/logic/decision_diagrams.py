@@ -61,6 +61,11 @@ def literal(number: int, value: bool) -> Function:
 
 def cube(variables: Iterable[int]) -> Function:
     """The conjunction of variables, as quantifiers take it."""
+    return _cube(tuple(variables))
+
+
+@lru_cache(maxsize=64)
+def _cube(variables: tuple[int, ...]) -> Function:
     return point(dict.fromkeys(variables, True))
 
 

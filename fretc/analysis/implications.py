@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from operator import attrgetter
 
 from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
@@ -14,14 +15,12 @@ from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vac
 from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import minimal
 from fretc.analysis.reasons import listed
-from fretc.analysis.stage import Stage, interleaved
+from fretc.analysis.stage import Stage
 
 MOST_TRIPLES = 500
 """Of requirements that hang together; of more none is looked at."""
 _FEW = 3
 """So many requirements are looked at by themselves."""
-_LONG = 6
-"""Bits of a count that is worth an order of its own beside another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +51,8 @@ def consistency(setting: Stage, seconds: float) -> Iterator[Consistency | OpenQu
     ids = tuple(rule.id for rule in setting.rules)
     question = f"whether any run keeps {listed(ids)}"
     try:
-        runs = setting.runs(setting.arena.counters, Budget(seconds))
+        there = setting.close(ids)
+        runs = there.runs(there.counters(ids), Budget(seconds))
         is_possible = runs.is_possible()
     except OutOfTimeError as error:
         yield Consistency(ids, None)
@@ -127,7 +127,10 @@ def _is_implied(
     setting: Stage, counter: Counter, others: Sequence[Counter], budget: Budget
 ) -> bool:
     """Whether there are runs that keep the others, and none of them breaks the counter."""
-    runs = setting.runs(others, budget, watched=(counter,))
+    setting = setting.close(each.id for each in (counter, *others))
+    (counter,) = setting.counters([counter.id])
+    kept = setting.counters(each.id for each in others)
+    runs = setting.runs(kept, budget, watched=(counter,))
     lasting = runs.lasting()
     if (runs.transition.initial & lasting) == bdd.false():
         return False  # of no run anything is true
@@ -151,19 +154,23 @@ def vacuities(setting: Stage, seconds: float) -> Iterator[Vacuity | OpenQuestion
 def _vacuity(
     setting: Stage, rule: Formalized, counter: Counter, others: Sequence[str], budget: Budget
 ) -> Vacuity | None:
-    def excluded(ids: Sequence[str], ticks: Function) -> bool:
-        runs = setting.runs(setting.counters(ids), budget, watched=(counter,))
+    def excluded(ids: Sequence[str], ticks: Callable[[Counter], Function]) -> bool:
+        there = setting.close([*ids, counter.id])
+        (watched,) = there.counters([counter.id])
+        runs = there.runs(there.counters(ids), budget, watched=(watched,))
         lasting = runs.lasting()
         if (runs.transition.initial & lasting) == bdd.false():
             return False
-        return not runs.can_reach(ticks, lasting)
+        return not runs.can_reach(ticks(watched), lasting)
 
-    if rule.sentence.scope is not None and excluded(others, counter.enforced):
-        by = minimal(others, lambda ids: excluded(ids, counter.enforced))
-        return Vacuity(counter.id, tuple(sorted(by)), "scope")
-    if rule.sentence.condition is not None and excluded(others, counter.triggered):
-        by = minimal(others, lambda ids: excluded(ids, counter.triggered))
-        return Vacuity(counter.id, tuple(sorted(by)), "trigger")
+    def by(ticks: Callable[[Counter], Function]) -> tuple[str, ...]:
+        return tuple(sorted(minimal(others, lambda ids: excluded(ids, ticks))))
+
+    in_scope, begun = attrgetter("enforced"), attrgetter("triggered")
+    if rule.sentence.scope is not None and excluded(others, in_scope):
+        return Vacuity(counter.id, by(in_scope), "scope")
+    if rule.sentence.condition is not None and excluded(others, begun):
+        return Vacuity(counter.id, by(begun), "trigger")
     return None
 
 
@@ -224,9 +231,9 @@ def _inconsistency(
     setting: Stage, members: Sequence[Counter], alone: Mapping[str, Function], budget: Budget
 ) -> Inconsistency | None:
     ids = sorted(each.id for each in members)
-    if len(members) <= _FEW and sum(each.longest >= _LONG for each in members) > 1:
-        setting = interleaved(setting, ids)
-        members = setting.arena.counters
+    there = setting.close(ids)
+    if there is not setting:
+        setting, members = there, there.counters(ids)
         alone = {each.id: setting.runs((each,), budget).lasting() for each in members}
     runs = setting.runs(members, budget)
     each_alone = bdd.true()

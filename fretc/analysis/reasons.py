@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import assert_never
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.obligation import TRAITS, Demand, Kind, Trait, obligation
-from compiler.formalization.predicates import Past as PastWords
+from compiler.formalization.obligation import TRAITS, Kind, Trait
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
@@ -40,7 +39,7 @@ def because(
     details = {rule.id: _details(rule, game.alphabet, play) for rule in rules}
     if play.loop is not None:
         return _for_ever(rules, game, play, _asked(counters, game, play), details)
-    last = len(play.letters) - 1
+    last = play.ticks - 1
     now = _asked_last(counters, game, play)
     if not now or len(rules) == 1:
         id = rules[0].id
@@ -59,7 +58,7 @@ def because(
 
 def _asked_last(counters: Sequence[Counter], game: Game, play: Play) -> dict[str, str]:
     """What outputs each requirement asks for at the last tick, in words; those that ask."""
-    inputs = {number: play.letters[-1][number] for number in game.alphabet.inputs}
+    inputs = {number: play.runs[-1][0][number] for number in game.alphabet.inputs}
     known = bdd.point({**play.state, **inputs})
     words = {counter.id: _words(bdd.at(counter.safe, known), game) for counter in counters}
     return {id: each for id, each in words.items() if each}
@@ -67,7 +66,7 @@ def _asked_last(counters: Sequence[Counter], game: Game, play: Play) -> dict[str
 
 def _asked(counters: Sequence[Counter], game: Game, play: Play) -> Mapping[str, tuple[str, ...]]:
     """What outputs each requirement asks for, tick by tick, in words; nothing of a long play."""
-    if not counters or len(play.letters) > _LONGEST:
+    if not counters or play.ticks > _LONGEST:
         return {}
     states = [game.transition.start]
     for letter in play.letters[:-1]:
@@ -100,7 +99,7 @@ def _joined(parts: Sequence[str]) -> str:
 
 def _details(rule: Formalized, alphabet: Alphabet, play: Play) -> str:
     """` (since tick 3, by tick 5)`: of the demand that is open at the last tick; or nothing."""
-    begun, last = _begun(rule, alphabet, play), len(play.letters) - 1
+    begun, last = _begun(rule, alphabet, play), play.ticks - 1
     words = [] if begun in (None, last) else [f"since tick {begun}"]
     if play.loop is None:
         words.extend(_limit(rule, alphabet, begun, last))
@@ -110,7 +109,7 @@ def _details(rule: Formalized, alphabet: Alphabet, play: Play) -> str:
 def _limit(rule: Formalized, alphabet: Alphabet, begun: int | None, last: int) -> Iterator[str]:
     """How long the demand is open that began then, if that is known."""
     scope = rule.sentence.scope
-    demand = _demand(rule)
+    demand = rule.demanded.demand
     match demand.kind:
         case Kind.WITHIN:
             if begun is not None and begun < last == begun + demand.ticks:
@@ -141,24 +140,19 @@ def _stop(timing: Timing) -> str:
     return expression(condition)
 
 
-def _demand(rule: Formalized) -> Demand:
-    return obligation(rule.sentence, rule.ticks or 0, PastWords()).demand
-
-
 def _begun(rule: Formalized, alphabet: Alphabet, play: Play) -> int | None:
     """When the demand began that is open at the last tick; None: there is none, or no condition."""
     if rule.sentence.condition is None:
         return None
     signals = (rule.watch.trigger, rule.watch.owed)
     atoms = dict.fromkeys(name for signal in signals for name in f.atoms(signal))
-    known = columns(alphabet, play.letters, atoms)
-    ticks = len(play.letters)
+    known = columns(alphabet, play.runs, atoms)
+    ticks = play.ticks
     trigger, owed = (evaluate(signal, known, ticks) for signal in signals)
-    if Trait.FORBIDS in TRAITS[_demand(rule).kind]:  # what is open was begun by the newest trigger
+    if Trait.FORBIDS in TRAITS[rule.demanded.demand.kind]:  # what is open is of the newest trigger
         return trigger.bit_length() - 1 if trigger else None
-    tick = ticks - 1
-    while tick > 0 and owed >> (tick - 1) & 1:
-        tick -= 1
+    settled = ~owed & ((1 << ticks - 1) - 1)
+    tick = settled.bit_length()
     stretch = trigger >> tick << tick
     if not stretch:
         return None
@@ -176,7 +170,7 @@ def _for_ever(
     lost = broken(rules, game.alphabet, play)
     others = [rule.id for rule in rules if rule.id not in lost]
     open_ = listed([f"{id}{details[id]}" for id in lost])
-    again = _span(play.loop, len(play.letters) - 1)
+    again = _span(play.loop, play.ticks - 1)
     always = {id: set(asked[id][play.loop :]) for id in others if id in asked}
     if always and all(len(words) == 1 and any(words) for words in always.values()):
         why = f", because {listed([f'{id} {words.pop()}' for id, words in always.items()])}"

@@ -7,6 +7,7 @@ the system wins. An assumption that would take away every trigger settles nothin
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import combinations, islice, permutations
 from typing import assert_never, cast
@@ -15,7 +16,9 @@ from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.counters import Counter
 from fretc.analysis.findings import Conflict, OpenQuestion, Repair
 from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.stage import Stage, stage
@@ -50,14 +53,28 @@ Rules = tuple[Formalized, ...]
 
 
 @dataclass(frozen=True, slots=True)
+class _Known:
+    """What the conflicts of a component share."""
+
+    triggered: dict[tuple[str, ...], frozenset[str]] = field(default_factory=dict)
+    """The ids of the rules whose triggers can come as things are, by the ids of those rules."""
+    fits: dict[object, bool] = field(default_factory=dict)
+    """Of rules with such bounds, under such assumptions: whether the system wins."""
+    assumptions: dict[tuple[str, ...], Rules | None] = field(default_factory=dict)
+    """By their wordings."""
+
+
+@dataclass(frozen=True, slots=True)
 class _Setting:
     """A component, one of its conflicts, and the time that is left."""
 
     whole: Stage
     rules: Rules
     """Those of the conflict."""
+    fought: Sequence[frozenset[str]]
+    """The ids of each conflict of the component."""
     budget: Budget
-    triggered: dict[str, frozenset[str]] = field(default_factory=dict)
+    known: _Known
 
     @property
     def longest(self) -> int:
@@ -75,12 +92,16 @@ def repairs(
         conflicts: some of its minimal ones.
         seconds: of a processor, for all of them.
     """
+    known = _Known()
+    fought = [frozenset(conflict.requirements) for conflict in conflicts]
     for conflict in conflicts:
         rules = tuple(rule for rule in setting.rules if rule.id in conflict.requirements)
         for family in (_changes, _promises):
             share = Budget(seconds / len(conflicts) / 2)
             try:
-                yield from family(_Setting(setting, rules, share), conflict.requirements)
+                yield from family(
+                    _Setting(setting, rules, fought, share, known), conflict.requirements
+                )
             except (OutOfTimeError, BeyondError) as error:
                 ids = ", ".join(conflict.requirements)
                 yield OpenQuestion(f"what else would settle {ids}", str(error))
@@ -91,7 +112,9 @@ def _changes(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
     for rule in setting.rules:
         changed = _least_change(setting, rule)
         if changed is not None:
-            settles = _fits(setting, _with(setting.whole.rules, changed), ())
+            settles = all(rule.id in ids for ids in setting.fought) and _fits(
+                setting, _with(setting.whole.rules, changed), ()
+            )
             yield Repair(tuple(conflict), rule.id, (printed(changed.written),), settles)
 
 
@@ -112,29 +135,60 @@ def _with(rules: Rules, changed: Formalized) -> Rules:
 
 def _fits(setting: _Setting, rules: Rules, assumed: Rules) -> bool:
     """Whether the system wins, for certain, and each rule can still be triggered."""
-    whole = setting.whole
-    there = stage(rules, (*whole.assumptions, *assumed), whole.roles, as_fret=whole.as_fret)
+    key = (
+        tuple((rule.id, rule.ticks) for rule in rules),
+        tuple(rule.requirement.wording.text for rule in assumed),
+    )
+    known = setting.known.fits
+    if key not in known:
+        known[key] = _is_shown_to_fit(setting, rules, assumed)
+    return known[key]
+
+
+def _is_shown_to_fit(setting: _Setting, rules: Rules, assumed: Rules) -> bool:
+    there, counters = _staged(setting, rules, assumed)
     if there.left_out is not None or there.of_outputs is not None:
         return False
-    if assumed and _triggered(setting, there) != _triggered_now(setting, rules):
+    if assumed and _triggered(setting, there, counters) != _triggered_now(setting, rules):
         return False
-    return there.game(there.arena.counters, setting.budget).solution().is_realizable
+    return there.game(counters, setting.budget).solution().is_realizable
+
+
+def _staged(setting: _Setting, rules: Rules, assumed: Rules) -> tuple[Stage, tuple[Counter, ...]]:
+    """Where the rules are under the assumptions, and their counters.
+
+    It is that of the component, where all are counted there and the assumptions count nothing: to
+    build another one takes longer than the game.
+    """
+    whole = setting.whole
+    is_there = set(map(id, rules)) <= set(map(id, whole.rules))
+    if (
+        is_there
+        and not whole.left_out
+        and not whole.of_outputs
+        and not any(rule.ticks for rule in assumed)
+    ):
+        with suppress(BeyondError):
+            there = whole.assuming(assumed).close(rule.id for rule in rules)
+            return there, there.counters(rule.id for rule in rules)
+    there = stage(rules, (*whole.assumptions, *assumed), whole.roles, as_fret=whole.as_fret)
+    there = there.close(rule.id for rule in rules)
+    return there, there.arena.counters
 
 
 def _triggered_now(setting: _Setting, rules: Rules) -> frozenset[str]:
     """The ids of the rules whose triggers can come, as things are."""
-    whole = setting.whole
-    key = " ".join(rule.id for rule in rules)
-    if key not in setting.triggered:
-        there = stage(rules, whole.assumptions, whole.roles, as_fret=whole.as_fret)
-        setting.triggered[key] = _triggered(setting, there)
-    return setting.triggered[key]
+    key = tuple(rule.id for rule in rules)
+    known = setting.known.triggered
+    if key not in known:
+        known[key] = _triggered(setting, *_staged(setting, rules, ()))
+    return known[key]
 
 
-def _triggered(setting: _Setting, there: Stage) -> frozenset[str]:
+def _triggered(setting: _Setting, there: Stage, counters: Sequence[Counter]) -> frozenset[str]:
     """The ids of the rules whose triggers can come, in a run that keeps the assumptions."""
     found: set[str] = set()
-    for counter in there.arena.counters:
+    for counter in counters:
         runs = there.runs((), setting.budget, watched=(counter,))
         lasting = runs.lasting()
         if (runs.transition.initial & lasting) == bdd.false():
@@ -159,9 +213,9 @@ def _least_change(setting: _Setting, rule: Formalized) -> Formalized | None:
 
     match timing:
         case Within():
-            least = _first(is_enough, rule.ticks + 1, rule.ticks + setting.longest)
+            least = _first(setting, is_enough, rule.ticks + 1, rule.ticks + setting.longest)
         case For():
-            least = _first(lambda less: is_enough(-less), 1 - rule.ticks, 0)
+            least = _first(setting, lambda less: is_enough(-less), 1 - rule.ticks, 0)
             least = None if least is None else -least
         case Immediately() | Next() | Finally() | Eventually() | Always() | Never():
             return None
@@ -172,16 +226,22 @@ def _least_change(setting: _Setting, rule: Formalized) -> Formalized | None:
     return None if least is None else _bounded(rule, least)
 
 
-def _first(is_enough: Callable[[int], bool], low: int, high: int) -> int | None:
-    """The first number of low..high from which on something monotone holds; None: none."""
+def _first(setting: _Setting, is_enough: Callable[[int], bool], low: int, high: int) -> int | None:
+    """The first number of low..high from which on something monotone holds; None: none.
+
+    It is most often a bound of the conflict, or next to one: these are tried before the others.
+    """
     if low > high or not is_enough(high):
         return None
+    near = {rule.ticks + more for rule in setting.rules if rule.ticks for more in (-1, 0, 1, 2)}
+    marks = sorted({*near, *(-each for each in near)}.intersection(range(low, high)))
     while low < high:
-        middle = (low + high) // 2
+        middle = marks[len(marks) // 2] if marks else (low + high) // 2
         if is_enough(middle):
             high = middle
         else:
             low = middle + 1
+        marks = [each for each in marks if low <= each < high]
     return low
 
 
@@ -200,6 +260,12 @@ def _assumptions(setting: _Setting) -> Iterator[Rules]:
     """Assumptions about the inputs of the conflict, each as weak as its family has it."""
     inputs = _inputs(setting)
     if len(inputs) > MOST_INPUTS:
+        return
+    lost = _lost(setting)
+    if lost is not None:
+        for (one, first), (other, second) in combinations(inputs.items(), 2):
+            if lost - (first & second) == bdd.false():
+                yield from _kept(setting, f"never satisfy {one} & {other}")
         return
     for name in inputs:
         yield from _kept(setting, f"immediately satisfy !{name}")
@@ -220,18 +286,29 @@ def _assumptions(setting: _Setting) -> Iterator[Rules]:
             yield from _distances(setting, (f"whenever {one}", other), (f"whenever {other}", one))
 
 
-def _inputs(setting: _Setting) -> list[str]:
+def _lost(setting: _Setting) -> Function | None:
+    """The inputs that lose any tick, where nothing is remembered; None: something is.
+
+    Then each tick is like the first one, and the environment wins by such inputs there. Only what
+    excludes all of them at every tick settles the conflict: of our families, two inputs at once.
+    """
+    there, counters = _staged(setting, setting.rules, ())
+    game = there.game(counters, setting.budget)
+    return game.legal - game.answered(bdd.true()) if game.is_memoryless else None
+
+
+def _inputs(setting: _Setting) -> dict[str, Function]:
     """The propositions of the conflict that the environment decides, as sentences spell them."""
-    roles = setting.whole.roles
-    found: dict[str, None] = {}
+    roles, alphabet = setting.whole.roles, setting.whole.arena.alphabet
+    found: dict[str, Function] = {}
     for rule in setting.rules:
-        for _, part in candidates(rule.sentence):
+        for atom, part in candidates(rule.sentence):
             names = [name.id for name in e.names(part)]
             calls = any(isinstance(each, e.Call) for each in e.parts(part))
             if names and not calls and all(roles.get(name) is Role.INPUT for name in names):
                 text = expression(part)
-                found[text if isinstance(part, e.Name) else f"({text})"] = None
-    return [*found]
+                found[text if isinstance(part, e.Name) else f"({text})"] = alphabet.atom(atom)
+    return found
 
 
 def _kept(setting: _Setting, *wordings: str) -> Iterator[Rules]:
@@ -250,20 +327,21 @@ def _distances(setting: _Setting, *sides: tuple[str, str]) -> Iterator[Rules]:
     def is_enough(ticks: int) -> bool:
         return next(_kept(setting, *wordings(ticks)), None) is not None
 
-    least = _first(is_enough, 0, setting.longest)
+    least = _first(setting, is_enough, 0, setting.longest)
     if least is not None:
         yield from _kept(setting, *wordings(least))
 
 
 def _assumed(setting: _Setting, wordings: Sequence[str]) -> Rules | None:
-    rules: list[Formalized] = []
-    for wording in wordings:
-        text = wording if " shall " in wording else f"the environment shall {wording}"
-        rule = _formalized(f"assumption {len(rules)}", text, setting.rules[0])
-        if rule is None:
-            return None
-        rules.append(rule)
-    return tuple(rules)
+    known, key = setting.known.assumptions, tuple(wordings)
+    if key not in known:
+        texts = (w if " shall " in w else f"the environment shall {w}" for w in wordings)
+        rules = [
+            _formalized(f"assumption {number}", text, setting.rules[0])
+            for number, text in enumerate(texts)
+        ]
+        known[key] = None if None in rules else tuple(filter(None, rules))
+    return known[key]
 
 
 def _formalized(id: str, text: str, like: Formalized) -> Formalized | None:

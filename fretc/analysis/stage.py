@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.letters import atoms_of, comparisons
+from compiler.formalization.letters import comparisons
 from compiler.formalization.resolution import candidates
+from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, numbers
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers, Tick, numbers
+from fretc.analysis.arena.counters import Counter, counter
 from fretc.analysis.arena.memory import side_by_side
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about
 from fretc.analysis.games.budget import Budget
-from fretc.analysis.games.game import Game, upheld
-from fretc.analysis.games.plays import Letter
+from fretc.analysis.games.game import Game, Letter, upheld
 from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
+
+_FEW = 5
+"""So many requirements and assumptions are looked at by themselves."""
+_LONG = 10
+"""Bits of a count that is worth an order of its own beside another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +39,9 @@ class Stage:
     as_fret: bool
     past: Role = Role.INPUT
     """Who chooses numbers of the tick before, as far as nothing is remembered of them."""
+    fresh: Numbers = field(default_factory=numbers, compare=False, repr=False)
+    """Variables that nothing of the stage has."""
+    _close: dict[frozenset[str], Stage] = field(default_factory=dict, compare=False, repr=False)
     _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
     """What each game of the stage needs of the assumptions, once it has been computed."""
 
@@ -41,6 +49,17 @@ class Stage:
         """Those of some requirements, in the order of the files."""
         wanted = set(ids)
         return tuple(each for each in self.arena.counters if each.id in wanted)
+
+    def close(self, ids: Iterable[str]) -> Stage:
+        """Where some of the requirements are best looked at: by themselves, if they count far."""
+        wanted = frozenset(ids)
+        members = (*self.counters(wanted), *self.arena.assumptions)
+        long = [each for each in members if each.longest >= _LONG]
+        if len(members) > _FEW or len(long) < 2 or self.arena.memory is not None:
+            return self
+        if wanted not in self._close:
+            self._close[wanted] = interleaved(self, wanted)
+        return self._close[wanted]
 
     def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
         """The game of some counters, under all assumptions."""
@@ -53,6 +72,24 @@ class Stage:
     @property
     def _memory(self) -> tuple[Counter, ...]:
         return () if self.arena.memory is None else (self.arena.memory,)
+
+    def assuming(self, more: Sequence[Formalized]) -> Stage:
+        """The same under further assumptions, whose bits come last in the order.
+
+        Raises:
+            BeyondError: they say something that the stage has no letters for.
+        """
+        alphabet, found = self.arena.alphabet, list(self.arena.assumptions)
+        for rule in more:
+            made = counter(rule, alphabet, self.fresh, {})
+            known = {*alphabet.inputs, *alphabet.outputs, *(bit.now for bit in made.bits)}
+            if not known.issuperset(bdd.support(made.safe)):
+                raise BeyondError(f"{rule.id} is about other atoms")
+            found.append(made)
+        arena = replace(self.arena, assumptions=tuple(found))
+        return replace(
+            self, assumptions=(*self.assumptions, *more), arena=arena, _close={}, _upheld=[]
+        )
 
     def generous(self) -> Stage | None:
         """The same where the system chooses numbers of the tick before; None: nobody does.
@@ -75,7 +112,7 @@ class Stage:
         """Letters as values of the variables of some requirements and of the assumptions."""
         wanted = set(ids)
         rules = [*(rule for rule in self.rules if rule.id in wanted), *self.assumptions]
-        names = {name for rule in rules for name in (*rule.variables, *atoms_of(rule.sentence))}
+        names = {name for rule in rules for name in (*rule.variables, *rule.propositions)}
         each = map(self.arena.alphabet.values, letters)
         return tuple({name: tick[name] for name in sorted(tick) if name in names} for tick in each)
 
@@ -150,7 +187,15 @@ def _built(
 ) -> Stage:
     alphabet = alphabet_of([*rules, *near], roles, fresh, past)
     built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
-    return Stage(tuple(rules), tuple(near), built, roles, as_fret, past)
+    return Stage(tuple(rules), tuple(near), built, roles, as_fret, past, fresh)
+
+
+def _has_numbers(rule: Formalized) -> bool:
+    """Whether it compares any, as far as its letters tell."""
+    declared = rule.declarations
+    if declared is None:
+        return bool(comparisons(rule))
+    return bool(rule.stated) or not declared.propositions.keys().isdisjoint(rule.variables)
 
 
 def alphabet_of(rules: Sequence[Formalized], roles: Roles, fresh: Numbers, past: Role) -> Alphabet:
@@ -158,7 +203,7 @@ def alphabet_of(rules: Sequence[Formalized], roles: Roles, fresh: Numbers, past:
 
     With the numbers that comparisons are about; z3 is imported where there are some.
     """
-    if not any(comparisons(rule) or rule.declarations for rule in rules):
+    if not any(map(_has_numbers, rules)):
         return Propositions(rules, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, repeat
 
 from compiler.formalization.formalized import Formalized
 from fretc.analysis.arena.alphabet import BeyondError
@@ -19,6 +20,7 @@ from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import Members, cores, minimal
 from fretc.analysis.games.plays import Counterstrategy
 from fretc.analysis.games.replay import broken
+from fretc.analysis.games.switches import switched
 from fretc.analysis.reasons import because, listed
 from fretc.analysis.stage import Stage, stage
 from fretish.bindings.declarations import Role
@@ -54,7 +56,7 @@ def component(
 def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
     """The verdict, and how it is known, or why it is not."""
     _check_assumptions(setting, budget)
-    if setting.game(setting.arena.counters, budget).solution().is_realizable:
+    if _is_kept(setting, [each.id for each in setting.arena.counters], budget):
         doubt = setting.left_out or setting.of_outputs
         if doubt is None:
             return Verdict.REALIZABLE, "the system has a strategy"
@@ -69,6 +71,11 @@ def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
         if answer is not None:
             return answer
     return Verdict.NOT_CHECKED, doubt
+
+
+def _is_kept(setting: Stage, ids: Sequence[str], budget: Budget) -> bool:
+    there = setting.close(ids)
+    return there.game(there.counters(ids), budget).solution().is_realizable
 
 
 def _unrolled(setting: Stage, budget: Budget) -> tuple[Verdict, str] | None:
@@ -142,7 +149,7 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
         return [counters[i] for i in sorted(members)]
 
     def is_conflict(members: Members) -> bool:
-        return not setting.game(chosen(members), budget).solution().is_realizable
+        return not _is_kept(setting, [each.id for each in chosen(members)], budget)
 
     def near(i: int, j: int) -> bool:
         return bool(read[counters[i].id] & read[counters[j].id])
@@ -150,8 +157,10 @@ def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completenes
     question = f"which others of {', '.join(rule.id for rule in setting.rules)} fight"
     try:
         _check_assumptions(setting, budget)
-        for members in cores(len(counters), is_conflict, near):
-            yield _conflict(setting, chosen(members), budget)
+        at_once = switched(setting.game(counters, budget), setting.fresh)
+        sets = at_once.cores(budget) if at_once else cores(len(counters), is_conflict, near)
+        for members in sets:
+            yield _conflict(setting, [each.id for each in chosen(members)], budget)
         if setting.of_inputs is not None:
             yield from _with_the_past(setting, budget)
     except OutOfTimeError as error:
@@ -219,9 +228,14 @@ def _hint(setting: Stage, seconds: float) -> str:
         return ""
 
 
-def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Conflict:
+_LONGEST = 200_000
+"""Ticks of a play that is written down."""
+
+
+def _conflict(whole: Stage, members: Sequence[str], budget: Budget) -> Conflict:
     """A minimal conflict, with a play that the formulas of its monitors confirm."""
-    ids = sorted(each.id for each in counters)
+    ids, setting = sorted(members), whole.close(members)
+    counters = setting.counters(ids)
     game = setting.game(counters, budget)
     try:
         play = Counterstrategy(game, game.solution(traps=True), budget).play()
@@ -232,9 +246,11 @@ def _conflict(setting: Stage, counters: Sequence[Counter], budget: Budget) -> Co
     lost = broken(rules, alphabet, play, as_fret=setting.as_fret)
     assert lost, f"the play of {', '.join(ids)} breaks none of them"
     assert not broken(setting.assumptions, alphabet, play), "the environment keeps its word"
-    return Conflict(
-        tuple(ids),
-        setting.ticks(ids, play.letters),
-        because(rules, counters, game, play),
-        play.loop,
+    why = because(rules, counters, game, play)
+    if play.ticks > _LONGEST:
+        return Conflict(tuple(ids), (), why)
+    each = setting.ticks(ids, (letter for letter, _ in play.runs))
+    shown = chain.from_iterable(
+        repeat(t, count) for t, (_, count) in zip(each, play.runs, strict=True)
     )
+    return Conflict(tuple(ids), tuple(shown), why, play.loop)

@@ -410,7 +410,8 @@ def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
     return {} if digest is None or changed else {"log": digest}
 
 
-def _named(claim: Claim) -> tuple[Situation, ...]:
+def named_situations(claim: Claim) -> tuple[Situation, ...]:
+    """What evidence says of the situations of a claim."""
     return tuple(Situation(each.key, each.words) for each in claim.situations)
 
 
@@ -428,7 +429,7 @@ def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estima
                 each.id,
                 each.sentence,
                 each.basis[SENTENCE],
-                situations=_named(each) if isinstance(each, Claim) else UNSET,
+                situations=named_situations(each) if isinstance(each, Claim) else UNSET,
             )
             for each in plan.named
         ),

@@ -76,7 +76,8 @@ def compile_(
     from compiler.project.paths import listed
 
     if one_file and not any(TARGETS[kind].joins for kind in kinds):
-        joining = " and ".join(f"`--emit {name}`" for name, each in TARGETS.items() if each.joins)
+        *most, last = (f"`--emit {name}`" for name, each in TARGETS.items() if each.joins)
+        joining = f"{', '.join(most)} and {last}"
         stop(Diagnostic(Code.BAD_USAGE, f"`--one-file` is for {joining}", help="add one of them"))
     if weaken:
         _check_weaken(kinds)

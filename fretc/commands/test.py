@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     "--time",
     "seconds",
     type=click.FloatRange(min=0, min_open=True),
-    default=20,
+    default=120,
     show_default=True,
     help="Seconds of a processor for each requirement.",
 )
@@ -213,4 +213,7 @@ def _lines(suite: Suite, rules: Sequence[Formalized], show: str | None) -> Itera
         return
     rule = next(each for each in rules if each.id == show)
     roles = {name: Role(own) for name, own in suite.roles.items()}
-    yield from shown(suite, show, [*rule.variables, *demands(rule).atoms], roles)
+    declared = rule.declarations.propositions if rule.declarations else {}
+    bound = (declared[name] for name in rule.watched if name in declared)
+    signals = (signal for each in bound for signal in each.signals)
+    yield from shown(suite, show, [*rule.variables, *demands(rule).atoms, *signals], roles)

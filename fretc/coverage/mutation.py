@@ -23,6 +23,7 @@ from fretc.audit.pool import Killed, each, was_killed
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.traces import Trace, trace
+from fretc.logs.storage.inputs import STDIN, shown
 from fretc.testing.suite import Fate, Suite
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -259,21 +260,38 @@ def survey(asked: Inquiry, logs: Sequence[str], jobs: int, tell: Callable[[str],
         jobs: processes.
         tell: is called with each log when it is done.
     """
-    found: dict[int, RunSurvey | Diagnostic] = {}
-    with closing(each(partial(of_run, asked), logs, jobs)) as done:
-        for place, one in done:
-            found[place] = was_killed(logs[place], str(one)) if isinstance(one, Killed) else one
-            tell(logs[place])
-    in_order = [(log, found[place]) for place, log in enumerate(logs)]
-    runs = [(log, one) for log, one in in_order if isinstance(one, RunSurvey)]
+    known: set[str] = set()
     first: dict[tuple[str, str], tuple[int, Difference]] = {}
-    for place, (_, one) in enumerate(runs):
+    unread: dict[int, Diagnostic] = {}
+    for place, one in _each_run(asked, logs, jobs):
+        tell(logs[place])
+        if isinstance(one, Diagnostic):
+            unread[place] = one
+            continue
+        known |= one.known
         for key, apart in one.noticed.items():
-            first.setdefault(key, (place, apart))
+            if key not in first or place < first[key][0]:
+                first[key] = place, apart
+    runs = [place for place in range(len(logs)) if place not in unread]
+    number = {place: run for run, place in enumerate(runs)}
     return Survey(
-        tuple(log for log, _ in runs),
+        tuple(shown(logs[place]) for place in runs),
         asked.suspects,
-        frozenset().union(*(one.known for _, one in runs)),
-        first,
-        tuple(one for _, one in in_order if isinstance(one, Diagnostic)),
+        frozenset(known),
+        {key: (number[place], apart) for key, (place, apart) in first.items()},
+        tuple(unread[place] for place in sorted(unread)),
     )
+
+
+def _each_run(
+    asked: Inquiry, logs: Sequence[str], jobs: int
+) -> Iterator[tuple[int, RunSurvey | Diagnostic]]:
+    """Each log, as it is done, by its place."""
+    files = [place for place, log in enumerate(logs) if log != STDIN]
+    if STDIN in logs:  # another process does not have it
+        yield logs.index(STDIN), of_run(asked, STDIN)
+    with closing(each(partial(of_run, asked), [logs[place] for place in files], jobs)) as done:
+        for number, one in done:
+            place = files[number]
+            log = shown(logs[place])
+            yield place, was_killed(log, str(one)) if isinstance(one, Killed) else one

@@ -25,7 +25,7 @@ from fretc.audit.evidence.estimates import estimates
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Document, Result
 from fretc.audit.evidence.schema import Finding as OfLog
-from fretc.audit.many_logs import Engine, audit_logs
+from fretc.audit.many_logs import Engine, audit_logs, named_situations
 from fretc.audit.plan import Plan
 from fretc.logs.labels import of_path
 from fretc.logs.reader import read
@@ -188,6 +188,8 @@ def _beginning(document: Document, plan: Plan, *, part: bool) -> Iterator[Rechec
             claim.basis[SENTENCE]
         }:
             yield differs(FILE, requirement.id, "the sentence has changed")
+        elif requirement.situations != named_situations(claim):
+            yield differs(FILE, requirement.id, "its situations are others")
 
 
 def _canonical_sha256(sentence: str) -> str:

@@ -6,6 +6,7 @@ and signals are read as in requirements.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -28,6 +29,8 @@ class Places:
     def __init__(self, rule: Formalized) -> None:
         self._rule = rule
         self._found: dict[e.Expression, Formalized | None] = {}
+        self.pinned: defaultdict[str, set[f.Formula]] = defaultdict(set)
+        """Of a signal what says its number, and that propositions agree with it."""
 
     @property
     def carriers(self) -> Iterator[Formalized]:
@@ -44,8 +47,10 @@ class Places:
         if place is None:
             return situation.formula
         read = {name.id for name in e.names(place.measured)}
-        agreements = [*self._agreements(read)]
-        return f.and_(situation.formula, self._carried(place.exact), *agreements)
+        pinned = f.and_(self._carried(place.exact), *self._agreements(read))
+        for name in read:
+            self.pinned[name].add(pinned)
+        return f.and_(situation.formula, pinned)
 
     def _agreements(self, signals: set[str]) -> Iterator[f.Formula]:
         """What propositions over these signals are, where each tick has one sample."""

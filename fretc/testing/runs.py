@@ -21,7 +21,7 @@ from fretc.testing.bench import Bench, Ids, demands
 from fretc.testing.places import Places
 from fretc.testing.search import Letter
 from fretc.testing.suite import Polarity
-from fretc.testing.words import Word, blotted, is_killed, judged, word
+from fretc.testing.words import Naming, Word, blotted, is_killed, judged, word
 from fretish import expressions as e
 
 T = TypeVar("T")
@@ -89,8 +89,9 @@ class Runs:
         more = [*(each.rule for each in self.mutants), *places.carriers]
         budget = Budget(seconds)
         self.bench = Bench(rule, others, more, budget)
-        self._shown = _atoms([rule, *others])
-        self._atoms = _atoms([rule, *others, *more])
+        every = [rule, *others]
+        signals = {name: read for name, read in _read(every).items() if name not in read}
+        self._naming = Naming(_atoms([*every, *more]), _atoms(every), signals, places.pinned)
         self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
         if (rule.ticks or 0) >= _LONG:
             self.bench = Bench(rule, others, more, budget, self.bench.order())
@@ -158,7 +159,7 @@ class Runs:
         Raises:
             BeyondError: it breaks another requirement, which has no counter.
         """
-        made = word(letters, self.bench.alphabet, self._atoms, self._shown)
+        made = word(letters, self.bench.alphabet, self._naming)
         key = (made.ticks, *made.columns.values())
         if key not in self._found:
             self._check_others(made)
@@ -200,7 +201,7 @@ class Runs:
         self, situation: Situation, atom: str, letters: Sequence[Letter], tick: int
     ) -> Run:
         """The run in which an atom is unknown at a tick, as is all that reads the same."""
-        made = word(letters, self.bench.alphabet, self._atoms, self._shown)
+        made = word(letters, self.bench.alphabet, self._naming)
         self._check_others(made)
         blank = blotted(made, tick, {atom, *self._linked(atom)})
         met = frozenset({situation.key})
@@ -208,15 +209,20 @@ class Runs:
 
     def _linked(self, atom: str) -> set[str]:
         """What an atom reads, and the other atoms that read some of it."""
-        readers: dict[str, frozenset[str]] = {}
-        for each in (self.rule, *self.others):
-            declared = each.declarations.propositions if each.declarations else {}
-            for name, part in candidates(each.sentence):
-                bound = declared.get(name)
-                signals = bound.signals if bound else (each.id for each in e.names(part))
-                readers[name] = frozenset(signals)
+        readers = _read([self.rule, *self.others])
         read = readers.get(atom, frozenset())
         return {*read, *(name for name, theirs in readers.items() if theirs & read)}
+
+
+def _read(rules: Iterable[Formalized]) -> dict[str, frozenset[str]]:
+    """The signals or variables that each atom reads."""
+    found: dict[str, frozenset[str]] = {}
+    for each in rules:
+        declared = each.declarations.propositions if each.declarations else {}
+        for name, part in candidates(each.sentence):
+            bound = declared.get(name)
+            found[name] = frozenset(bound.signals if bound else (n.id for n in e.names(part)))
+    return found
 
 
 def _atoms(rules: Iterable[Formalized]) -> tuple[str, ...]:

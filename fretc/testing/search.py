@@ -154,7 +154,7 @@ class Words:
             self._budget.check()
             known = bdd.point(state)
             safe = bdd.at(self._safe, known)
-            by_end = safe & self._moved(endings, left, known)
+            by_end = safe & bdd.at(endings.way(left), known)
             if not is_past_goal:
                 by_goal = by_end & bdd.at(goal, known)
                 allowed = by_goal | (safe & transition.moved_from(layers.fresh[left], known))
@@ -165,9 +165,6 @@ class Words:
             is_past_goal = is_past_goal or bdd.at(by_goal, chosen) == bdd.true()
             yield letter
             state = transition.next(bdd.point({**state, **letter}))
-
-    def _moved(self, endings: Endings, left: int, known: Function) -> Function:
-        return bdd.at(endings.way(left), known)
 
 
 def nearest(allowed: Function, wanted: Letter) -> Letter:

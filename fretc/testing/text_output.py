@@ -174,8 +174,9 @@ def _test(test: Test, names: Sequence[str], roles: Mapping[str, Role]) -> Iterat
     sign = _SIGNS[test.verdict]
     yield f"{sign.glyph} {test.name}: {test.verdict}", sign.colour
     yield f"  {test.words}", None
+    lanes = [name for name in names if any(name in row.values for row in test.rows)]
     play = [
-        {name: row.values[name] for name in names if name in row.values}
+        {name: row.values.get(name, "") for name in lanes}
         for row in test.rows
         for _ in range(row.count)
     ]

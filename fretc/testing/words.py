@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import groupby
@@ -15,8 +15,9 @@ from compiler.formalization.predicates import Past
 from compiler.formalization.reference import Letter as Parts
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
+from compiler.logic.decision_diagrams import Function
 from compiler.logic.evaluation import evaluate
-from fretc.analysis.arena.alphabet import Alphabet, Value
+from fretc.analysis.arena.alphabet import Alphabet, Tick, Value
 from fretc.testing.search import Letter
 from fretc.testing.suite import Repeat
 from fretish import syntax as s
@@ -37,36 +38,60 @@ class Word:
     """Where atoms are unknown, whatever their columns say; of all others nothing is."""
 
 
-def word(
-    letters: Sequence[Letter], alphabet: Alphabet, atoms: Iterable[str], shown: Collection[str]
-) -> Word:
-    """The word of some letters.
+@dataclass(frozen=True, slots=True)
+class Naming:
+    """What the rows of a word have."""
 
-    Args:
-        letters: tick by tick.
-        alphabet: of the letters.
-        atoms: whose columns it has.
-        shown: those of them that its rows have, beside numbers that make comparisons so.
-    """
-    functions = {name: alphabet.atom(name) for name in atoms}
+    atoms: Sequence[str]
+    """Of which the word has columns."""
+    shown: Collection[str]
+    """Those of them that its rows have, beside numbers that make comparisons so."""
+    signals: Mapping[str, Collection[str]]
+    """What each atom reads that is a proposition of the bindings."""
+    pinned: Mapping[str, Collection[f.Formula]]
+    """Of a signal what says its number, and that propositions agree with it."""
+
+    def numbers(self, values: Tick, true: Collection[str]) -> dict[str, Value | None]:
+        """The numbers of a letter, but for those that no truth value of a proposition follows from.
+
+        Args:
+            values: of the letter, atoms that are independent of numbers among them.
+            true: the atoms that are true in it.
+        """
+        known = {name: int(name in true) for name in self.atoms}
+        loose = {signal for name in values for signal in self.signals.get(name, ())}
+        return {
+            name: value
+            for name, value in values.items()
+            if name not in self.atoms
+            and (
+                name not in loose
+                or any(evaluate(each, known, 1) for each in self.pinned.get(name, ()))
+            )
+        }
+
+
+def word(letters: Sequence[Letter], alphabet: Alphabet, naming: Naming) -> Word:
+    """The word of some letters."""
+    functions = {name: alphabet.atom(name) for name in naming.atoms}
     columns = dict.fromkeys(functions, 0)
     rows: list[Repeat] = []
     ticks = 0
     for letter, equal in groupby(letters):
         count = sum(1 for _ in equal)
         known = bdd.point(letter)
-        values: dict[str, Value | None] = {
-            name: value for name, value in alphabet.values(letter).items() if name not in functions
-        }
-        for name, function in functions.items():
-            truth = bdd.at(function, known) == bdd.true()
-            if truth:
-                columns[name] |= ((1 << count) - 1) << ticks
-            if name in shown:
-                values[name] = truth
+        true = {name for name, function in functions.items() if _holds(function, known)}
+        for name in true:
+            columns[name] |= ((1 << count) - 1) << ticks
+        values = naming.numbers(alphabet.values(letter), true)
+        values |= {name: name in true for name in naming.shown}
         rows.append(Repeat(count, {name: values[name] for name in sorted(values)}))
         ticks += count
     return Word(tuple(rows), columns, ticks)
+
+
+def _holds(function: Function, letter: Function) -> bool:
+    return bool(bdd.at(function, letter) == bdd.true())
 
 
 def blotted(word: Word, tick: int, names: Collection[str]) -> Word:

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.obligation import Kind, Obligation, obligation
-from compiler.formalization.predicates import Past as PastWords
+from compiler.formalization.obligation import Kind, Obligation
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers
@@ -88,7 +87,7 @@ def counter(
     """
     if rule.sentence.probability is not None:
         raise BeyondError("it states a probability")
-    demanded = obligation(rule.sentence, rule.ticks or 0, PastWords())
+    demanded = rule.demanded
     memory = Memory(fresh, shared)
     past = Past(alphabet.atom, memory)
     tick = _Tick(demanded, memory, past.value)

@@ -24,10 +24,12 @@ LONGEST_DELAY = 256
 
 @dataclass(frozen=True, slots=True)
 class Bit:
-    """One bit of a state: its value before a tick, and a variable of the same place after it."""
+    """One bit of a state: its value before a tick, and variables of the same place after it."""
 
     now: int
     after: int
+    later: int
+    """After some more ticks."""
 
 
 class Memory:
@@ -43,7 +45,7 @@ class Memory:
 
     def bit(self) -> Bit:
         """A new one, whose step is to be set."""
-        self.bits.append(Bit(next(self._fresh), next(self._fresh)))
+        self.bits.append(Bit(*(next(self._fresh) for _ in range(3))))
         return self.bits[-1]
 
     def word(self, most: int) -> tuple[list[Bit], Word]:
@@ -89,7 +91,7 @@ def side_by_side(words: Iterable[tuple[Bit, ...]], count: int) -> Numbers:
         number: weight
         for word in words
         for weight, bit in enumerate(word)
-        for number in (bit.now, bit.after)
+        for number in (bit.now, bit.after, bit.later)
     }
     order = sorted(range(count), key=lambda number: (-weights.get(number, count), number))
     places = {number: place for place, number in enumerate(order)}

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Bit
 
 State = Mapping[int, bool]
 """A value of each bit."""
@@ -16,11 +17,13 @@ class Transition:
     """The product of some counters: next-state functions, no relation."""
 
     def __init__(self, counters: Sequence[Counter]) -> None:
-        self._after: dict[int, int] = {}
+        by_number: dict[int, Bit] = {}
         self._steps: dict[int, Function] = {}
         for counter in counters:
             for bit, step in zip(counter.bits, counter.steps, strict=True):
-                self._after[bit.now], self._steps[bit.now] = bit.after, step
+                by_number[bit.now], self._steps[bit.now] = bit, step
+        self.bits = tuple(by_number.values())
+        self._after = {bit.now: bit.after for bit in self.bits}
         self.start: State = dict.fromkeys(self._steps, False)
 
     def needed(self, *functions: Function) -> Transition:
@@ -57,6 +60,20 @@ class Transition:
         for number in read:
             states = bdd.composed(states, self._after[number], self._steps[number])
         return states
+
+    def relation(self, ticks: Function, letters: Function, known: Function) -> Function:
+        """Over states and those after them: which ones some of these ticks lead to.
+
+        Args:
+            ticks: over a state and a letter.
+            letters: cube of the variables of a letter.
+            known: cube of those whose values are known.
+        """
+        found = bdd.at(ticks, known)
+        for bit in sorted(self.bits, key=lambda bit: -bit.now):
+            step = bdd.at(self._steps[bit.now], known)
+            found = found & -(bdd.variable(bit.after) ^ step)
+        return bdd.some(found, letters)
 
     def moved_from(self, states: Function, known: Function) -> Function:
         """The same where a cube holds the whole state: over what it leaves open of the letter."""

@@ -1,8 +1,8 @@
 """All minimal conflicts of some requirements.
 
 Source: Liffiton, Previti, Malik, Marques-Silva, Fast, flexible MUS enumeration, Constraints 21
-(2016): a map of the sets that are not decided yet, here a decision diagram; each seed of it grows
-or shrinks to a border, which takes everything beyond it off the map.
+(2016): a map of the sets that are not decided yet, here a decision diagram; each seed of it is a
+border, or shrinks to one, which takes everything beyond it off the map.
 """
 
 from __future__ import annotations
@@ -34,12 +34,11 @@ def cores(
     while open_sets != bdd.false():
         seed = _largest(open_sets, size)
         if is_conflict(seed):
-            core = _shrunk(seed, is_conflict)
+            core = _shrunk(seed, size, open_sets, is_conflict)
             yield core
             open_sets = open_sets - bdd.point(dict.fromkeys(core, True))
         else:
-            border = _grown(seed, size, is_conflict)
-            rest = set(range(size)) - border
+            rest = set(range(size)) - seed
             open_sets = open_sets - bdd.point(dict.fromkeys(rest, False))
 
 
@@ -58,24 +57,26 @@ def _small(
 
 
 def _largest(open_sets: bdd.Function, size: int) -> Members:
-    """A set on the map with many members."""
+    """A set on the map, none of whose supersets is: with each it would hold a known conflict."""
     values = bdd.witness(open_sets, prefer=True)
     return frozenset(i for i in range(size) if values.get(i, True))
 
 
-def _shrunk(members: Members, is_conflict: Callable[[Members], bool]) -> Members:
-    """A minimal conflict among the members of one."""
+def _shrunk(
+    members: Members,
+    size: int,
+    open_sets: bdd.Function,
+    is_conflict: Callable[[Members], bool],
+) -> Members:
+    """A minimal conflict among the members of one; what is off the map below it is known to fit."""
+
+    def is_open(some: Members) -> bool:
+        return bool(bdd.at(open_sets, bdd.point({i: i in some for i in range(size)})) == bdd.true())
+
     for each in sorted(members):
-        if is_conflict(members - {each}):
-            members = members - {each}
-    return members
-
-
-def _grown(members: Members, size: int, is_conflict: Callable[[Members], bool]) -> Members:
-    """A maximal set without a conflict that holds the members."""
-    for each in range(size):
-        if each not in members and not is_conflict(members | {each}):
-            members = members | {each}
+        fewer = members - {each}
+        if is_open(fewer) and is_conflict(fewer):
+            members = fewer
     return members
 
 

@@ -9,7 +9,7 @@ Zielonka, Infinite games on finitely coloured graphs, TCS 200 (1998) (strategies
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from compiler.logic import decision_diagrams as bdd
@@ -19,7 +19,10 @@ from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.runs import Runs
+from fretc.analysis.games.squaring import Leaps, Relation, identity
 
+Letter = Mapping[int, bool]
+"""A value of each input and output."""
 Chain = tuple[tuple[Function, Function], ...]
 """Of each link what is left, and an escape: from states of a trap that are not left the environment
 can see to it that none of the escape comes next. So it comes, link by link, to where its promise is
@@ -34,6 +37,8 @@ class Trap:
     """The states that are left to the system once those of the trap are taken away."""
     chains: tuple[Chain, ...]
     """One, or one for each promise of the environment, which it keeps in turn."""
+    inputs: Letter | None = None
+    """What the environment repeats until the state is in an earlier trap; None: as chains say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,15 +117,42 @@ class Game:
         self.promises = [each.fair for each in assumptions if each.fair is not None]
         self.duties = [each.fair for each in counters if each.fair is not None]
 
-    def forced(self, states: Function) -> Function:
-        """The states from which the system can see to it that one of these comes next."""
+    @property
+    def is_memoryless(self) -> bool:
+        """Whether each tick is like the first one, whatever was done before it."""
+        asked = (self.legal, self.reachable, self.safe, self.kept)
+        read = {number for each in asked for number in bdd.support(each)}
+        return not self.duties and not self.promises and read.isdisjoint(self.transition.start)
+
+    def forced(self, states: Function, safe: Function | None = None) -> Function:
+        """The states from which the system can see to it that one of these comes next.
+
+        Args:
+            states: those.
+            safe: ticks that break nothing; None: those of the game.
+        """
+        return bdd.every_implied(self.legal, self.answered(states, safe), self._inputs)
+
+    def answered(self, states: Function, safe: Function | None = None) -> Function:
+        """States and inputs to which the system has an answer that leads to one of these states."""
         moved = self.transition.moved(states)
+        answer = bdd.some_of_both(self.safe if safe is None else safe, moved, self._outputs)
         if self.kept == bdd.true():
-            answer = bdd.some_of_both(self.safe, moved, self._outputs)
-        else:
-            free = bdd.some_of_both(self.reachable, -self.kept, self._outputs)
-            answer = free | bdd.some_of_both(self.safe, moved, self._outputs)
-        return bdd.every_implied(self.legal, answer, self._inputs)
+            return answer
+        return answer | bdd.some_of_both(self.reachable, -self.kept, self._outputs)
+
+    def surviving(self, states: Function, inputs: Letter) -> Function:
+        """From where the system can stay in these states, while the environment repeats inputs.
+
+        Raises:
+            TooLargeError: their diagrams grow.
+            OutOfTimeError: it takes too long.
+        """
+        known, bits = bdd.point(inputs), self.transition.bits
+        free = bdd.some_of_both(self.reachable, -self.kept, self._outputs) | -self.legal
+        moves = self.transition.relation(states & self.safe, self._outputs, known)
+        moves = moves | (states & bdd.at(free, known) & identity(bits))
+        return Relation(bits, moves, self._budget).lasting()
 
     def solution(self, *, traps: bool = False) -> Solution:
         """Who wins.
@@ -139,6 +171,7 @@ class _Search:
         self._game, self._budget, self._keeps = game, budget, traps
         self._initial = game.transition.initial
         self._traps: list[Trap] = []
+        self._leaps = Leaps([*game.counters, *game.assumptions])
 
     def solution(self, duties: Sequence[Function], promises: Sequence[Function]) -> Solution:
         states = self._safe()
@@ -169,9 +202,21 @@ class _Search:
             if left == states:
                 return states
             self._trapped(left, ((left, states),))
-            states = left
-            if not self._holds(states):
-                return states
+            if not self._holds(left):
+                return left
+            states = self._leapt(left, states) if self._leaps.is_due() else left
+
+    def _leapt(self, left: Function, before: Function) -> Function:
+        """What is left where the environment repeats the inputs by which it has won last."""
+        game = self._game
+        lost = (before - left) & (game.legal - game.answered(before))
+        inputs = whole(lost, game.alphabet.inputs)
+        states = left
+        with self._leaps.trial():
+            states = left & game.surviving(left, inputs)
+        if self._keeps and states != left:
+            self._traps.append(Trap(states, (((states, states),),), inputs))
+        return states
 
     def _goal(self, fair: Function, states: Function, promises: Sequence[Function]) -> Goal:
         """How the system reaches `fair` from states without leaving them."""
@@ -218,3 +263,9 @@ class _Search:
                 return tuple(links)
             links.append((left, escape))
             states = left
+
+
+def whole(options: Function, variables: Sequence[int]) -> dict[int, bool]:
+    """A value of each variable, as one of the options has them; false where none asks for more."""
+    values = bdd.witness(options)
+    return {number: values.get(number, False) for number in variables}

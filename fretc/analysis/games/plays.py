@@ -2,28 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.transition import State
 from fretc.analysis.games.budget import Budget
-from fretc.analysis.games.game import Game, Goal, Solution, Trap
+from fretc.analysis.games.game import Game, Goal, Letter, Solution, Trap, whole
+from fretc.analysis.games.squaring import Relation, TooLargeError
 
-Letter = Mapping[int, bool]
-"""A value of each input and output."""
+Run = tuple[Letter, int]
+"""A letter, and for how many ticks it stays."""
 
 
 @dataclass(frozen=True, slots=True)
 class Play:
     """Letters, tick by tick."""
 
-    letters: tuple[Letter, ...]
+    runs: tuple[Run, ...]
     loop: int | None
     """The tick to which the last one leads back for ever; None: the last tick breaks something."""
     state: State
     """Before the last tick."""
+
+    @property
+    def ticks(self) -> int:
+        """How many it has, up to the breach, or the end of the loop."""
+        return sum(count for _, count in self.runs)
+
+    @property
+    def letters(self) -> tuple[Letter, ...]:
+        """One for each tick."""
+        return tuple(letter for letter, count in self.runs for _ in range(count))
+
+    def repeated(self, rounds: int) -> tuple[Run, ...]:
+        """The runs, with the loop so many times."""
+        if self.loop is None:
+            return self.runs
+        again: list[Run] = []
+        end = 0
+        for letter, count in self.runs:
+            end += count
+            if end > self.loop:
+                again.append((letter, min(count, end - self.loop)))
+        return (*self.runs, *again * (rounds - 1))
 
 
 class Counterstrategy:
@@ -44,25 +67,38 @@ class Counterstrategy:
         """
         state: State = self._game.transition.start
         promise, trap = 0, len(self._traps) - 1
-        letters: list[Letter] = []
+        runs = _Runs()
         seen: dict[tuple[object, ...], int] = {}
         before = state
         while True:
             self._budget.check()
             key = (promise, *state.values())
             if key in seen:
-                return Play(tuple(letters), seen[key], before)
-            seen[key] = len(letters)
+                return Play(runs.all, seen[key], before)
+            seen[key] = runs.ticks
             trap = self._number(bdd.point(state), trap)
             inputs = self._inputs(state, promise, self._traps[trap])
             options = self._options(state, inputs)
             if options == bdd.false():
-                letters.append(inputs | self._breach(state, inputs))
-                return Play(tuple(letters), None, state)
-            letter = inputs | self._resistance(options, state, inputs, trap)
-            letters.append(letter)
+                runs.add({**inputs, **self._breach(state, inputs)})
+                return Play(runs.all, None, state)
+            letter = {**inputs, **self._resistance(options, state, inputs, trap)}
             before, state = state, self._game.transition.next(bdd.point({**state, **letter}))
+            if runs.add(letter) > _LONG and self._traps[trap].inputs is not None:
+                ticks, state = self._while_repeated(letter, state, trap)
+                runs.add(letter, ticks)
             promise = self._following(state, promise)
+
+    def _while_repeated(self, letter: Letter, state: State, trap: int) -> tuple[int, State]:
+        """How many ticks more the letter can be repeated before the state leaves the trap."""
+        game, known = self._game, bdd.point(letter)
+        left = self._traps[trap - 1].left  # of the trap itself, none of it is left
+        stays = game.safe & left & game.transition.moved(left)
+        moves = game.transition.relation(stays, bdd.true(), known)
+        try:
+            return Relation(game.transition.bits, moves, self._budget).longest(state)
+        except TooLargeError:
+            return 0, state
 
     def _following(self, state: State, promise: int) -> int:
         """The promise that the environment keeps next, once it is in a state."""
@@ -73,13 +109,15 @@ class Counterstrategy:
 
     def _inputs(self, state: State, promise: int, trap: Trap) -> dict[int, bool]:
         """What the environment does in a state that a trap holds, to keep a promise next."""
+        if trap.inputs is not None:
+            return {**trap.inputs}
         game, known = self._game, bdd.point(state)
         chain = trap.chains[promise] if len(trap.chains) > 1 else trap.chains[0]
         escape = next(e for left, e in chain if bdd.at(left, known) == bdd.false())
         moved = game.transition.moved_from(escape, known)
         free = (bdd.at(game.safe, known) & moved) | bdd.at(game.reachable - game.kept, known)
         answer = bdd.some(free, bdd.cube(game.alphabet.outputs))
-        return _whole(bdd.at(game.legal, known) - answer, game.alphabet.inputs)
+        return whole(bdd.at(game.legal, known) - answer, game.alphabet.inputs)
 
     def _number(self, known: Function, near: int) -> int:
         """The first trap that holds the state; often one that is near, or the one before it."""
@@ -108,11 +146,12 @@ class Counterstrategy:
             return options & self._game.transition.moved_from(left, known)
 
         if trap >= 2 and self._game.duties == []:
-            best = ways(trap - 2)
-            if best != bdd.false():
-                return _whole(best, variables)
+            for number in (trap - 1, trap - 2):  # within this one, where inputs are repeated
+                best = ways(number)
+                if best != bdd.false():
+                    return whole(best, variables)
         none_left = _first(lambda number: ways(number) == bdd.false(), len(self._traps))
-        return _whole(ways(none_left - 1) if none_left else options, variables)
+        return whole(ways(none_left - 1) if none_left else options, variables)
 
     def _breach(self, state: State, inputs: Letter) -> dict[int, bool]:
         """Outputs that break as few requirements as can be."""
@@ -121,7 +160,30 @@ class Counterstrategy:
         for counter in self._game.counters:
             kept = options & bdd.at(counter.safe, known)
             options = kept if kept != bdd.false() else options
-        return _whole(options, self._game.alphabet.outputs)
+        return whole(options, self._game.alphabet.outputs)
+
+
+class _Runs:
+    """The letters of a play that goes on."""
+
+    def __init__(self) -> None:
+        self._runs: list[Run] = []
+        self.ticks = 0
+
+    @property
+    def all(self) -> tuple[Run, ...]:
+        return tuple(self._runs)
+
+    def add(self, letter: Letter, ticks: int = 1) -> int:
+        """One more letter; for how many ticks it stays now."""
+        before = self._runs.pop()[1] if self._runs and self._runs[-1][0] == letter else 0
+        self._runs.append((letter, before + ticks))
+        self.ticks += ticks
+        return before + ticks
+
+
+_LONG = 16
+"""Ticks of one letter, after which it is looked at how long it stays."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,7 +214,7 @@ class Strategy:
         state = dict(zip(self._bits, place.state, strict=True))
         known = bdd.point({**state, **inputs})
         options, goal = self._options(place, known)
-        outputs = _whole(options, game.alphabet.outputs)
+        outputs = whole(options, game.alphabet.outputs)
         after = game.transition.next(bdd.point({**state, **inputs, **outputs}))
         return outputs, Place(tuple(after[bit] for bit in self._bits), goal)
 
@@ -203,8 +265,3 @@ def _first(holds: Callable[[int], bool], size: int) -> int:
         else:
             low = middle + 1
     return low
-
-
-def _whole(options: Function, variables: Sequence[int]) -> dict[int, bool]:
-    """A value of each variable; false where nothing asks for more."""
-    return {**dict.fromkeys(variables, False), **bdd.witness(options)}

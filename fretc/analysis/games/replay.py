@@ -13,20 +13,21 @@ from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
-from fretc.analysis.games.plays import Letter, Play
+from fretc.analysis.games.game import Letter
+from fretc.analysis.games.plays import Play, Run
 
 ROUNDS = 3
 """How often a loop is read: a demand that stays open that long stays open."""
 
 
-def columns(alphabet: Alphabet, letters: Sequence[Letter], atoms: Iterable[str]) -> dict[str, int]:
+def columns(alphabet: Alphabet, runs: Sequence[Run], atoms: Iterable[str]) -> dict[str, int]:
     """Each atom over time, bit i for tick i."""
     functions = {name: alphabet.atom(name) for name in atoms}
     bits: dict[str, list[str]] = {name: [] for name in functions}
-    for letter in reversed(letters):
+    for letter, count in reversed(runs):
         known = bdd.point(letter)
         for name, function in functions.items():
-            bits[name].append("1" if bdd.at(function, known) == bdd.true() else "0")
+            bits[name].append(("1" if bdd.at(function, known) == bdd.true() else "0") * count)
     return {name: int("".join(values) or "0", 2) for name, values in bits.items()}
 
 
@@ -41,27 +42,26 @@ def broken(
         play: up to the first breach, or an endless one.
         as_fret: whether nothing may be owed at the end of any tick.
     """
-    letters = list(play.letters)
-    if play.loop is not None:
-        letters += letters[play.loop :] * (ROUNDS - 1)
+    runs = play.repeated(ROUNDS)
     return tuple(
-        rule.id for rule in rules if _is_broken(rule, alphabet, letters, play.loop, as_fret=as_fret)
+        rule.id for rule in rules if _is_broken(rule, alphabet, runs, play.loop, as_fret=as_fret)
     )
 
 
 def _is_broken(
     rule: Formalized,
     alphabet: Alphabet,
-    letters: Sequence[Letter],
+    runs: Sequence[Run],
     loop: int | None,
     *,
     as_fret: bool,
 ) -> bool:
-    breach, fails = _watched((rule.watch.breach, rule.watch.fails), alphabet, letters)
-    last = 1 << len(letters) - 1
+    ticks = sum(count for _, count in runs)
+    breach, fails = _watched((rule.watch.breach, rule.watch.fails), alphabet, runs)
+    last = 1 << ticks - 1
     if loop is None:
         return bool((breach | (fails if as_fret else 0)) & last)
-    rounds = ((1 << len(letters)) - 1) >> loop << loop
+    rounds = ((1 << ticks) - 1) >> loop << loop
     return breach == 0 and fails & rounds == rounds
 
 
@@ -88,7 +88,7 @@ def kept(
     end = ((1 << tail) - 1) << len(letters) - tail
     for rule in rules:
         signals = (rule.watch.breach, rule.watch.doom, rule.watch.fails)
-        breach, doom, fails = _watched(signals, alphabet, letters)
+        breach, doom, fails = _watched(signals, alphabet, [(letter, 1) for letter in letters])
         is_open = rule.id in waiting and fails & end == end
         if breach or (fails if as_fret else doom or is_open):
             return False
@@ -96,12 +96,12 @@ def kept(
 
 
 def _watched(
-    signals: Sequence[f.Formula], alphabet: Alphabet, letters: Sequence[Letter]
+    signals: Sequence[f.Formula], alphabet: Alphabet, runs: Sequence[Run]
 ) -> Iterator[int]:
     """Each signal over time, bit i for tick i."""
     atoms = dict.fromkeys(name for signal in signals for name in f.atoms(signal))
-    known = columns(alphabet, letters, atoms)
-    return (evaluate(signal, known, len(letters)) for signal in signals)
+    known, ticks = columns(alphabet, runs, atoms), sum(count for _, count in runs)
+    return (evaluate(signal, known, ticks) for signal in signals)
 
 
 def first_breaches(

@@ -14,6 +14,7 @@ from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.budget import Budget
+from fretc.analysis.games.squaring import Leaps, Relation
 
 
 class Runs:
@@ -27,6 +28,7 @@ class Runs:
         watched: Sequence[Counter] = (),
     ) -> None:
         self._kept, self._budget = kept, budget
+        self._counters = (*kept, *watched)
         self.transition = Transition([*kept, *watched])
         self._letters = bdd.cube([*alphabet.inputs, *alphabet.outputs])
         self.safe = alphabet.legal & alphabet.reachable
@@ -38,6 +40,11 @@ class Runs:
         """Ticks that break nothing and lead to one of the states."""
         return self.safe & self.transition.moved(states)
 
+    def _paths(self, through: Function) -> Relation:
+        """The steps of runs that break nothing, from such states."""
+        steps = self.transition.relation(self.safe & through, self._letters, bdd.true())
+        return Relation(self.transition.bits, steps, self._budget)
+
     def preceding(self, states: Function) -> Function:
         """The states from which a tick that breaks nothing leads to one of these."""
         return bdd.some_of_both(self.safe, self.transition.moved(states), self._letters)
@@ -48,9 +55,12 @@ class Runs:
         Args:
             within: states that such a run never leaves; None: all.
         """
-        states = bdd.true() if within is None else within
+        states, leaps = bdd.true() if within is None else within, Leaps(self._counters)
         while True:
             self._budget.check()
+            if leaps.is_due():
+                with leaps.trial():
+                    states = states & self._paths(states).lasting()
             left = states & self.preceding(states)
             for fair in self._fair:
                 left = left & self._leading(fair & left, left)
@@ -60,9 +70,12 @@ class Runs:
 
     def _leading(self, target: Function, through: Function) -> Function:
         """The states from which a run comes to a target, and nowhere but `through` before it."""
-        found = bdd.false()
+        found, leaps = bdd.false(), Leaps(self._counters)
         while True:
             self._budget.check()
+            if leaps.is_due():
+                with leaps.trial():
+                    found = found | (through & self._paths(through).reaching(found))
             more = found | (through & self.preceding(target | found))
             if more == found:
                 return found
@@ -86,8 +99,12 @@ class Runs:
         """
         initial, moved = self.transition.initial, self.transition.moved
         found = bdd.some_of_both(self.safe & ticks, moved(lasting), self._letters)
+        leaps = Leaps(self._counters)
         while True:
             self._budget.check()
+            if leaps.is_due():
+                with leaps.trial():
+                    found = self._paths(bdd.true()).reaching(found)
             if (initial & found) != bdd.false():
                 return True
             more = found | self.preceding(found)  # what leads to such a state can last, too

@@ -11,8 +11,10 @@ import pytest
 from compiler.formalization.formalized import Formalized
 from fretc.analysis import verdicts
 from fretc.analysis.analysis import analyze
-from fretc.analysis.findings import OpenQuestion, Verdict
+from fretc.analysis.findings import Conflict, OpenQuestion, Verdict
 from fretc.analysis.games.budget import Budget
+from fretc.analysis.games.squaring import Leaps
+from fretc.analysis.verdicts import Completeness
 from fretish.bindings.declarations import Role
 from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, roles, rule, staged
 from tests.requirement_sets import named as named_true
@@ -186,6 +188,23 @@ def test_scaled_durations_give_the_same_answers(scale: int) -> None:
     assert conflicts(analyzed(answered[0], held, after)) == [("R3",), ("R1", "R2")]
 
 
+@pytest.mark.parametrize("ticks", [10, 1_000_000])
+def test_a_million_ticks_are_answered_as_ten_are(ticks: int) -> None:
+    """The trigger comes at the first tick at the earliest, and the hold is over `held` later."""
+    soon = f"upon a the sw shall within {ticks} ticks satisfy x"
+    for held, verdict in ((ticks - 1, REALIZABLE), (ticks, UNREALIZABLE)):
+        setting = staged(soon, f"the sw shall for {held} ticks satisfy !x")
+        (found,) = verdicts.verdict(setting, 60)
+        assert found.verdict is verdict
+    conflict, complete = verdicts.conflicts(setting, 60)
+    assert isinstance(conflict, Conflict)
+    assert isinstance(complete, Completeness)
+    assert conflict.because == (
+        f"at tick {ticks} R1 demands `x` (since tick 0, by tick {ticks}), and R2 forbids it"
+    )
+    assert len(conflict.play) == (ticks + 1 if ticks == 10 else 0), "a million are not written down"
+
+
 # Reasons, roles and readings ----------------------------------------------------------------------
 
 
@@ -322,7 +341,8 @@ def test_the_environment_keeps_its_promises_while_it_wins() -> None:
     }
 
 
-def test_what_takes_too_long_comes_with_a_clue() -> None:
+def test_what_takes_too_long_comes_with_a_clue(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Leaps, "is_due", lambda self: False)
     setting = staged(
         "whenever a the sw shall within 1000000 ticks satisfy x",
         "whenever b the sw shall for 1000001 ticks satisfy !x",

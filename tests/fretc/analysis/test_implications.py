@@ -9,6 +9,7 @@ import spot
 
 from compiler.logic import printing
 from fretc.analysis.findings import Analysis, Inconsistency
+from fretc.analysis.games.squaring import Leaps
 from fretc.analysis.implications import inconsistencies
 from tests.requirement_sets import analyzed, drawn, rules, staged, terse
 
@@ -183,3 +184,17 @@ def test_a_scope_that_never_is_is_told_with_what_excludes_it() -> None:
     assert [(each.requirement, each.by, each.what) for each in found.vacuous] == [
         ("R3", ("R1",), "scope"), ("R4", (), "trigger"),
     ]  # fmt: skip
+
+
+@pytest.mark.slow
+def test_leaps_over_many_ticks_change_no_finding(monkeypatch: pytest.MonkeyPatch) -> None:
+    for seed in range(SETS):
+        sentences = (terse if seed % 2 else drawn)(("leaps", seed), most=3)
+        before = analyzed(*sentences)
+        with monkeypatch.context() as patched:
+            patched.setattr(Leaps, "is_due", lambda self: True)
+            after = analyzed(*sentences)
+        for name in ("consistent", "always", "never", "redundant", "removable", "vacuous"):
+            assert getattr(after, name) == getattr(before, name), (name, sentences)
+        shown = [[each.requirements for each in found.inconsistent] for found in (before, after)]
+        assert shown[0] == shown[1], sentences

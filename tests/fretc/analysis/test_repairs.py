@@ -55,6 +55,16 @@ def test_the_least_change_of_each_bound_is_suggested(within: int, hold: int) -> 
         assert synthesized(*changed(sentences, repair)), repair
 
 
+def test_long_bounds_are_repaired_as_short_ones_are() -> None:
+    assert suggested(
+        "upon a the sw shall within 4000 ticks satisfy x",
+        "the sw shall for 4000 ticks satisfy !x",
+    )[:2] == [
+        ("R1", ("upon a the sw shall within 4001 ticks satisfy x",)),
+        ("R2", ("the sw shall for 3999 ticks satisfy !x",)),
+    ]
+
+
 def ticks(number: int) -> str:
     return f"{number} tick" if number == 1 else f"{number} ticks"
 

@@ -148,3 +148,21 @@ def test_bad_use_and_bad_input_are_told_from_what_is_not_seen(robot: Fretc) -> N
     write("requirements/r1.fret", "the robot shall")
     assert robot("coverage", "late.mcap").status == 2
     assert robot("mutate", "--against", "late.mcap").status == 2
+
+
+def test_the_first_run_that_notices_is_named_whatever_else_could_not_be_read(robot: Fretc) -> None:
+    write("cut.mcap", "no log")
+    logs_in_order = [f"--against={name}" for name in ("cut.mcap", "idle.mcap", "late.mcap")]
+    run = robot("mutate", *logs_in_order, "--format", "json", "--jobs", "2")
+    found = json.loads(run.out)
+    assert found["runs"] == ["idle.mcap", "late.mcap"]
+    (one,) = found["requirements"]
+    alone = [
+        {m["key"] for m in json.loads(text)["requirements"][0]["mutants"] if m["notice"]}
+        for text in (
+            robot("mutate", "--against", name, "--format", "json").out for name in found["runs"]
+        )
+    ]
+    for mutant in one["mutants"]:
+        by = [place for place, keys in enumerate(alone) if mutant["key"] in keys]
+        assert (mutant["notice"] and mutant["notice"]["run"]) == (by[0] if by else None)

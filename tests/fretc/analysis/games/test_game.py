@@ -6,10 +6,13 @@ from collections.abc import Sequence
 import pytest
 from hypothesis import settings
 
+from compiler.logic.decision_diagrams import Function
 from compiler.logic.formula import atoms
 from compiler.logic.spot import holds_on
+from fretc.analysis.games import plays, squaring
 from fretc.analysis.games.budget import Budget, OutOfTimeError
-from fretc.analysis.games.plays import Counterstrategy, Letter, Place, Strategy
+from fretc.analysis.games.game import Game, Letter
+from fretc.analysis.games.plays import Counterstrategy, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches
 from fretc.analysis.stage import Stage
 from tests.requirement_sets import (
@@ -41,7 +44,7 @@ def assert_lost(setting: Stage) -> None:
 
 def known(setting: Stage, letters: Sequence[Letter]) -> dict[str, int]:
     names = {name for rule in setting.rules for s in rule.watch.signals for name in atoms(s)}
-    return columns(setting.arena.alphabet, letters, names)
+    return columns(setting.arena.alphabet, [(letter, 1) for letter in letters], names)
 
 
 def assert_won(setting: Stage, choose: random.Random) -> None:
@@ -81,6 +84,38 @@ def test_the_game_is_spot_s_and_both_players_do_win() -> None:
             assert_lost(setting)
             lost += 1
     assert SETS / 8 < lost < SETS / 2, "both verdicts come often"
+
+
+@pytest.mark.slow
+def test_leaps_over_many_ticks_change_no_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Here they begin at once, where they never do with such small bounds."""
+    monkeypatch.setattr(squaring.Leaps, "is_due", lambda self: True)
+    monkeypatch.setattr(plays, "_LONG", 0)
+    leaps, surviving = 0, Game.surviving
+
+    def counted(game: Game, states: Function, inputs: Letter) -> Function:
+        nonlocal leaps
+        found = surviving(game, states, inputs)
+        leaps += found != states
+        return found
+
+    monkeypatch.setattr(Game, "surviving", counted)
+    for seed in range(SETS // 2):
+        sentences, given = (
+            drawn(("leap", seed), most=4),
+            [assumed(("leap", seed))] if seed % 2 else [],
+        )
+        setting = staged(*sentences, assumed=given)
+        assumptions = [rule("A1", sentence) for sentence in given]
+        if given and not satisfiable(assumptions):
+            continue
+        is_realizable = setting.game(setting.arena.counters, ENDLESS).solution().is_realizable
+        assert is_realizable is synthesized(setting.rules, assumptions), (sentences, given)
+        if not is_realizable:
+            assert_lost(setting)
+        elif not given:
+            assert_won(setting, random.Random(seed))
+    assert leaps > SETS / 10
 
 
 @pytest.mark.slow

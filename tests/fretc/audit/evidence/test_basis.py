@@ -151,6 +151,9 @@ class Change:
     touches: frozenset[str] = frozenset()
     of_audit: bool = False
     """It is undone by a new audit."""
+    respelt: str = ""
+    """The requirement of which a threshold is written otherwise: it means the same, and its digits
+    say where beside it runs are looked through."""
 
     def stale(self, audited: bool) -> set[str]:
         """Requirements whose evidence is about something else than what is here."""
@@ -169,7 +172,8 @@ class Change:
 
         Another log than the reviewed one stays another one, whatever it is audited with.
         """
-        return ids(reached({t for t in self.touches if not audited or t == "log"}), "verdict")
+        own = ids(reached({t for t in self.touches if not audited or t == "log"}), "verdict")
+        return own | ({self.respelt} if self.respelt and not audited else set())
 
 
 # The changes ------------------------------------------------------------------------------------
@@ -195,8 +199,14 @@ def append(file: str, text: str) -> Callable[[], None]:
     return make
 
 
-def changed(name: str, make: Callable[[], None], *touches: str, of_audit: bool = False) -> Change:
-    return Change(name, make, frozenset(touches), of_audit)
+def changed(
+    name: str,
+    make: Callable[[], None],
+    *touches: str,
+    of_audit: bool = False,
+    respelt: str = "",
+) -> Change:
+    return Change(name, make, frozenset(touches), of_audit, respelt)
 
 
 def evidence(edit: Callable[[dict[str, object]], None], id: str = "R1") -> Callable[[], None]:
@@ -340,10 +350,10 @@ PROPOSITIONS = [
     changed("its role", put(BINDINGS, '"input"', '"internal"'), "words R1"),
     changed("its kind", after(BINDINGS, Q, 'kind = "belief"'), "words R1"),
     changed("its modality", after(BINDINGS, "[proposition.fine]", 'modality = "G"'), "artefact R3"),
-    changed("the bound in metres", put(BINDINGS, "50 cm", "0.5 m")),
-    changed("the bound in km", put(BINDINGS, "50 cm", "0.0005 km")),
-    changed("the bound as a sum", put(BINDINGS, "50 cm", "500 mm")),
-    changed("more digits", put(BINDINGS, "1 m for", "1.00 m for")),
+    changed("the bound in metres", put(BINDINGS, "50 cm", "0.5 m"), respelt="R1"),
+    changed("the bound in km", put(BINDINGS, "50 cm", "0.0005 km"), respelt="R1"),
+    changed("the bound as a sum", put(BINDINGS, "50 cm", "500 mm"), respelt="R1"),
+    changed("more digits", put(BINDINGS, "1 m for", "1.00 m for"), respelt="R1"),
     changed("seconds", put(BINDINGS, "for 100 ms", "for 0.1 s")),
     changed("the default of agg", after(BINDINGS, P, 'agg = "last"')),
     changed("the default of on_unknown", after(BINDINGS, P, 'on_unknown = "unknown"')),

@@ -1,0 +1,247 @@
+"""A program as languages without objects need it: the size of every cell is known beforehand.
+
+A window is a ring of bits: `guard S[lo,hi] witness` holds when the latest witness that is `lo`
+ticks old or older, with the guard true ever since, became that old at most `hi - lo` ticks ago. So
+the ring keeps the witnesses of `lo` ticks, one counter the ticks in a row with the guard, and one
+the ticks since then. What outcomes remember is cells, too: what was broken, how old a demand is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from compiler.program.instructions import (
+    Advance,
+    Assign,
+    Choose,
+    Count,
+    Instruction,
+    Shift,
+    Slide,
+)
+from compiler.program.program import Block, Counter, Flag, Program, Requirement, Window
+from compiler.program.values import (
+    FALSE,
+    TRUE,
+    Age,
+    Comparison,
+    Literal,
+    Value,
+    Variable,
+    both,
+    either,
+    parts,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Ring:
+    """The truth values of the last `length` ticks; false before tick 0."""
+
+    name: str
+    length: int
+    comment: str
+
+
+@dataclass(frozen=True, slots=True)
+class Delay:
+    """The variable gets the oldest value of the ring, which takes this one in its place."""
+
+    name: str
+    ring: str
+    value: Value
+
+
+Cell = Flag | Counter | Ring
+Step = Assign | Shift | Count | Advance | Delay | Choose
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """Steps that belong together, below a comment."""
+
+    comment: str
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Deadline:
+    """Of a demand that is open: `horizon` less the counter, where that is not negative."""
+
+    counter: str
+    horizon: int
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What one rail tells of a requirement after a tick."""
+
+    id: str
+    prefix: str
+    truths: Mapping[str, Value]
+    deadline: Deadline | None
+    """None: no demand has one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rail:
+    """A program whose cells are flags, counters and rings."""
+
+    literals: tuple[Literal, ...]
+    cells: tuple[Cell, ...]
+    stages: tuple[Stage, ...]
+    readings: tuple[Reading, ...]
+
+
+def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
+    """The program without what no signal needs, with rings for windows, and with marks as cells.
+
+    Args:
+        program: of any requirements.
+        prefixes: of each requirement's id, what the names of its own cells begin with.
+    """
+    blocks = _needed(program)
+    names = {name for block in blocks for name in _cells(block)}
+    windows = {cell.name: cell for cell in program.cells if isinstance(cell, Window)}
+    cells: list[Cell] = [
+        cell for cell in program.cells if cell.name in names and not isinstance(cell, Window)
+    ]
+    stages, readings = list[Stage](), list[Reading]()
+    for block in blocks:
+        steps = list[Step]()
+        for instruction in block.instructions:
+            made, moves = _static(instruction, windows)
+            cells.extend(made)
+            steps.extend(moves)
+        stages.append(Stage(block.comment, tuple(steps)))
+    for requirement in program.requirements:
+        marks, stage, reading = _remembered(requirement, prefixes[requirement.id])
+        cells.extend(marks)
+        stages.extend([stage] if stage.steps else [])
+        readings.append(reading)
+    return Rail(_literals(program, blocks), tuple(cells), tuple(stages), tuple(readings))
+
+
+def _literals(program: Program, blocks: Iterable[Block]) -> tuple[Literal, ...]:
+    """Those that are read."""
+    values = [*_told(program), *(value for block in blocks for value in _values(block))]
+    used = {value for value in values if isinstance(value, Literal)}
+    return tuple(literal for literal in program.literals if literal in used)
+
+
+def _told(program: Program) -> Iterator[Value]:
+    """The signals, and all values within them."""
+    for requirement in program.requirements:
+        for signal in requirement.signals:
+            yield from parts(signal)
+
+
+def _needed(program: Program) -> tuple[Block, ...]:
+    """The blocks that signals depend on."""
+    blocks = {block.name: block for block in program.blocks if block.instructions}
+    waiting = [*_told(program)]
+    found: set[str] = set()
+    while waiting:
+        value = waiting.pop()
+        match value:
+            case Variable(name) | Age(name) if name not in found:
+                found.add(name)
+                waiting.extend(_values(blocks[name]))
+            case _:
+                continue
+    return tuple(block for name, block in blocks.items() if name in found)
+
+
+def _values(block: Block) -> Iterator[Value]:
+    """Whatever its instructions read, but the cells that they move."""
+    for instruction in block.instructions:
+        for value in _read(instruction):
+            yield from parts(value)
+
+
+def _read(instruction: Instruction) -> Iterable[Value]:
+    match instruction:
+        case Assign(_, value) | Shift(_, _, value):
+            return (value,)
+        case Slide(_, _, guard, witness):
+            return (guard, witness)
+        case Choose(branches):
+            return (condition for condition, _ in branches)
+        case Count() | Advance():
+            return ()
+
+
+def _cells(block: Block) -> Iterator[str]:
+    """Names of cells that a block may have."""
+    yield block.name
+    for instruction in block.instructions:
+        if isinstance(instruction, Shift):
+            yield instruction.cell
+
+
+def _static(
+    instruction: Instruction, windows: Mapping[str, Window]
+) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
+    """The instruction without windows, and the cells that it needs for that."""
+    if isinstance(instruction, Slide):
+        return _slid(instruction, windows[instruction.window])
+    return (), (instruction,)
+
+
+def _slid(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, ...]]:
+    """A window as a ring and counters, and its step."""
+    name, lo, none = slide.name, window.lo, window.hi - window.lo + 1
+    past, guarded = Variable(f"past_{name}"), slide.guard != TRUE
+    ring = Ring(f"ring_{name}", lo, f"the witnesses of {lo} ticks, for {window.comment}")
+    note = f"ticks since a witness became {lo} ticks old; {none}: none"
+    age = Counter(f"age_{name}", none, 0, none, note)
+    clear = Counter(f"clear_{name}", 0, 0, lo, "ticks in a row with the guard")
+    old = both([past, Age(clear.name, Comparison.AT_LEAST, lo)]) if guarded else past
+    grown, lost = Advance(age.name, none), Count(age.name, none)
+    older = Choose(((old, Count(age.name, 0)), (slide.guard, grown)), lost)
+    row = Choose(((slide.guard, Advance(clear.name, lo)),), Count(clear.name, 0))
+    comparison = Comparison.MORE if slide.negated else Comparison.AT_MOST
+    steps: tuple[Step, ...] = (
+        *((row,) if guarded else ()),
+        Delay(past.name, ring.name, slide.witness),
+        older if guarded else Choose(((old, Count(age.name, 0)),), grown),
+        Assign(name, Age(age.name, comparison, none - 1)),
+    )
+    return (ring, *((clear,) if guarded else ()), age), steps
+
+
+def _remembered(requirement: Requirement, prefix: str) -> tuple[list[Cell], Stage, Reading]:
+    """The cells of a requirement's own, how they move, and what is read of them."""
+    signals, cells, steps = requirement.signals, list[Cell](), list[Step]()
+    latches: dict[str, Value] = {}
+    for name, signal in (("broken", signals.breach), ("doomed", signals.doom)):
+        flag = Flag(f"{prefix}_{name}", False, f"{requirement.id} was {name} up to here")
+        latches[name] = Variable(flag.name) if signal != FALSE else FALSE
+        if signal != FALSE:
+            cells.append(flag)
+            steps.append(Assign(flag.name, either([Variable(flag.name), signal])))
+    deadline = None
+    if requirement.horizon is not None and signals.owed != FALSE:
+        deadline = Deadline(f"{prefix}_age", requirement.horizon)
+        most, none = requirement.horizon + 1, Count(deadline.counter, -1)
+        note = f"ticks since the trigger of the open demand of {requirement.id}; -1: none"
+        cells.append(Counter(deadline.counter, -1, -1, most, note))
+        grown = Advance(deadline.counter, most)
+        if requirement.renewed:
+            open_ = Age(deadline.counter, Comparison.AT_LEAST, 0)
+            born = Count(deadline.counter, 0)
+            steps.append(Choose(((signals.trigger, born), (open_, grown)), none))
+        else:
+            steps.append(Choose(((signals.owed, grown),), none))
+    truths = {
+        "violated": either(latches.values()),
+        "failed": either([latches["broken"], signals.fails]),
+        "trigger": signals.trigger,
+        "breach": signals.breach,
+        "open": signals.owed,
+        "settled": signals.settled,
+        "answer": signals.answer,
+    }
+    stage = Stage(f"{requirement.id}: what is remembered", tuple(steps))
+    return cells, stage, Reading(requirement.id, prefix, truths, deadline)

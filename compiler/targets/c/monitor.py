@@ -1,0 +1,167 @@
+"""`--emit c`: a monitor for controllers, in C99 that needs no library, no heap and no loop.
+
+It is the program of `--emit monitor`, on two rails at every tick: what holds for certain, and what
+may hold. Its state is a struct; a step takes the same time whatever was unknown, and for any bound.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import PurePosixPath
+from typing import Any
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.logic.identifiers import legal_names
+from compiler.program.lowering import program
+from compiler.program.program import Counter
+from compiler.program.rails import Rail, Reading, Ring, rail
+from compiler.targets.c.printer import Printer
+from compiler.targets.comparison_names import comparison_names, in_words
+from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
+from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.reading.recursion import deep
+
+_RESERVED = frozenset(
+    """
+    alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto bitand bitor
+    bool break case catch char char8_t char16_t char32_t class co_await co_return co_yield compl
+    concept const const_cast consteval constexpr constinit continue decltype default delete do
+    double dynamic_cast else enum explicit export extern false float for friend goto if inline int
+    long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
+    public reflexpr register reinterpret_cast requires restrict return short signed sizeof static
+    static_assert static_cast struct switch synchronized template this thread_local throw true try
+    typedef typeid typename typeof union unsigned using virtual void volatile wchar_t while xor
+    xor_eq
+    NULL EOF TRUE FALSE IN OUT ERROR INFINITY NAN I errno assert stdin stdout stderr offsetof
+    signbit near far small interface min max linux unix i386 arm mips sparc sun vax hpux sgi none
+    """.split()
+)
+"""Key words of C and C++; names that compilers and usual headers have as macros."""
+_TAKEN = re.compile(r"U?INT\w*_(MAX|MIN|C|WIDTH)|u?int\w*_t|fretc_\w+|FRETC_\w+")
+"""What `stdint.h` and our own header name."""
+_MOST_BITS = 2**23
+"""Of a ring: a mebibyte on each rail."""
+
+
+def refuse(rule: Formalized) -> Diagnostic | None:
+    """As a monitor in Python; and F601 for bounds beyond what a controller can keep."""
+    return refusal(rule, "C") or too_large(rule, "C")
+
+
+@deep
+def too_large(rule: Formalized, language: str) -> Diagnostic | None:
+    """F601 where a counter or a ring is beyond what a controller can keep."""
+    cells = rail(program({rule.id: rule.watch}), {rule.id: "r"}).cells
+    if any(isinstance(cell, Counter) and cell.most >= 2**31 for cell in cells):
+        what, mend = "a bound of 2^31 ticks or more", "counters have 32 bits: choose a longer tick"
+    elif any(isinstance(cell, Ring) and cell.length > _MOST_BITS for cell in cells):
+        what = f"a demand about one time more than {_MOST_BITS} ticks ago"
+        mend = "it would keep more than a mebibyte: choose a longer tick"
+    else:
+        return None
+    return not_expressible(f"a monitor in {language}", rule, what, mend)
+
+
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """`<id>_monitor.h` and `.c` for each rule, or `monitors.h` and `.c` for all."""
+    if options.one_file:
+        return _files("monitors", "monitors", rules)
+    bases = prefixes_of([rule.id for rule in rules])
+    return tuple(
+        file
+        for rule in rules
+        for file in _files(f"{module(stem(rule))}_monitor", bases[rule.id], [rule])
+    )
+
+
+@deep
+def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
+    """The header and the source of one monitor for all of the rules."""
+    propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
+    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
+    meanings = {each: text for rule in rules for each, text in in_words(rule).items()}
+    guard = f"{name.upper()}_H"
+    reserved = _RESERVED | {guard, *filter(_TAKEN.fullmatch, propositions)}
+    names = legal_names(propositions, reserved, names=spoken)
+    prefixes = prefixes_of([rule.id for rule in rules])
+    members = legal_names(prefixes, reserved, names=prefixes)
+    made = rail(program({rule.id: rule.watch for rule in rules}), members)
+    printer = Printer.of(made, names)
+    values = _values(made, printer) | {"base": base, "header": f"{name}.h"}
+    values["title"] = ", ".join(rule.id for rule in rules)
+    source = render("c/monitor.c.j2", **values)
+    header = render(
+        "c/monitor.h.j2",
+        **values,
+        guard=guard,
+        rules=[described(rule) for rule in rules],
+        tick=str(rules[0].clock) if rules[0].clock else "not declared",
+        version=__version__,
+        inputs=[{"name": names[each], "text": meanings.get(each, each)} for each in propositions],
+        bytes=2 * printer.bytes,
+        operations=_operations(source, len(rules)),
+    )
+    return tuple(
+        Artifact(PurePosixPath(f"{name}.{ending}"), text)
+        for ending, text in (("c", source), ("h", header))
+    )
+
+
+def _values(made: Rail, printer: Printer) -> dict[str, Any]:
+    """What both templates place."""
+    return {
+        "members": printer.members(),
+        "literals": [*printer.literals()],
+        "rings": [
+            {"name": cell.name, "words": -(-cell.length // 32)}
+            for cell in made.cells
+            if isinstance(cell, Ring)
+        ],
+        "stages": [
+            {"comment": each.comment, "lines": [*printer.lines(each)]} for each in made.stages
+        ],
+        "readings": [_reading(each, printer) for each in made.readings],
+    }
+
+
+def _reading(reading: Reading, printer: Printer) -> Mapping[str, Any]:
+    return {
+        "id": reading.id,
+        "prefix": reading.prefix,
+        "left": printer.left(reading.deadline, reading.truths["open"]),
+        "truths": {name: printer.value(value) for name, value in reading.truths.items()},
+    }
+
+
+_OPERATOR = re.compile(r"&&|\|\||[<>=!]=|<<|>>|[|&]=|[-+<>=!~%/?&|\[]")
+_FUNCTION = re.compile(r"^(?:static )?(?:inline )?void \w+_(?:advance|judge|step)\b", re.M)
+_COMMENT = re.compile(r"/\*.*?\*/|->")
+
+
+def _operations(source: str, requirements: int) -> int:
+    """The operators of all statements of a step: an upper bound, as none is executed twice.
+
+    Args:
+        source: the text of the C file.
+        requirements: how many there are.
+    """
+    text = _COMMENT.sub("", source)
+    _, advance, judge, step = _FUNCTION.split(text)
+    often = {advance: 2, judge: requirements, step: 1}
+    return sum(times * len(_OPERATOR.findall(part)) for part, times in often.items())
+
+
+TARGET = Target(
+    "c",
+    "a runtime monitor in C99 for controllers: a header and a source",
+    emit,
+    refuse,
+    remark,
+    joins=True,
+    next_step="`cc -std=c99 -c {}` compiles it",
+)

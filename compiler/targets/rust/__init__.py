@@ -1,0 +1,1 @@
+"""Rust without a standard library."""

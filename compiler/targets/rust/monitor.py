@@ -1,0 +1,99 @@
+"""`--emit rust`: a crate with a monitor for controllers, without a standard library or a heap.
+
+It is the program of `--emit monitor`, on two rails at every tick: what holds for certain, and what
+may hold. A step takes the same time whatever was unknown, and for any bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import PurePosixPath
+from typing import Any
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.logic.identifiers import legal_names
+from compiler.program.lowering import program
+from compiler.program.rails import Reading, rail
+from compiler.targets.c.monitor import too_large
+from compiler.targets.comparison_names import comparison_names, in_words
+from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
+from compiler.targets.rust.printer import Printer
+from compiler.targets.rust.words import words
+from compiler.targets.target import DEFAULT, Options, Target, stem
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.reading.recursion import deep
+
+_KEY_WORDS = frozenset(
+    """
+    as async await break const continue crate dyn else enum extern false fn for if impl in let loop
+    match mod move mut pub ref return self Self static struct super trait true type unsafe use where
+    while abstract become box do final gen macro override priv try typeof unsized virtual yield
+    """.split()
+)
+
+
+def refuse(rule: Formalized) -> Diagnostic | None:
+    """As a monitor in Python; and F601 for bounds beyond what a controller can keep."""
+    return refusal(rule, "Rust") or too_large(rule, "Rust")
+
+
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """A crate for each rule, or one for all: `Cargo.toml`, `src/lib.rs` and `tests/words.rs`."""
+    if options.one_file:
+        return _crate("monitors", rules)
+    return tuple(file for rule in rules for file in _crate(f"{module(stem(rule))}_monitor", [rule]))
+
+
+@deep
+def _crate(name: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
+    """The files of a crate with one monitor for all of the rules."""
+    name = name if name[0].isalpha() else f"r{name}"
+    propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
+    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
+    meanings = {each: text for rule in rules for each, text in in_words(rule).items()}
+    names = legal_names(propositions, _KEY_WORDS, names=spoken)
+    prefixes = prefixes_of([rule.id for rule in rules])
+    members = legal_names(prefixes, _KEY_WORDS, names=prefixes)
+    made = rail(program({rule.id: rule.watch for rule in rules}), members)
+    printer = Printer.of(made, names)
+    library = render(
+        "rust/lib.rs.j2",
+        title=", ".join(rule.id for rule in rules),
+        rules=[described(rule) for rule in rules],
+        tick=str(rules[0].clock) if rules[0].clock else "not declared",
+        version=__version__,
+        inputs=[{"name": names[each], "text": meanings.get(each, each)} for each in propositions],
+        literals=[*printer.literals()],
+        fields=[*printer.fields()],
+        stages=[{"comment": each.comment, "lines": [*printer.lines(each)]} for each in made.stages],
+        readings=[_reading(each, printer) for each in made.readings],
+    )
+    found = {members[rule.id]: words(rule) for rule in rules}
+    tests = render("rust/words.rs.j2", crate=name, names=names, words=found)
+    manifest = render("rust/Cargo.toml.j2", crate=name)
+    files = {"Cargo.toml": manifest, "src/lib.rs": library}
+    files |= {"tests/words.rs": tests} if any(found.values()) else {}
+    return tuple(Artifact(PurePosixPath(f"{name}/{path}"), text) for path, text in files.items())
+
+
+def _reading(reading: Reading, printer: Printer) -> Mapping[str, Any]:
+    return {
+        "id": reading.id,
+        "prefix": reading.prefix,
+        "left": printer.left(reading.deadline, reading.truths["open"]),
+        "truths": {name: printer.value(value) for name, value in reading.truths.items()},
+    }
+
+
+TARGET = Target(
+    "rust",
+    "a runtime monitor in Rust for controllers: a crate without the standard library",
+    emit,
+    refuse,
+    remark,
+    joins=True,
+    next_step="`cargo test --manifest-path {}` builds it and runs its tests",
+)

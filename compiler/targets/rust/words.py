@@ -1,0 +1,100 @@
+"""Shortest runs to each kind of verdict, for the tests of a crate: words of the reference."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import MOST_ATOMS, atoms_of, meanings, temporal_predicate
+from compiler.formalization.reference import (
+    BROKEN,
+    Automaton,
+    TooManyStatesError,
+    accepts,
+    explore,
+    template,
+)
+
+_MOST_STATES = 2_000
+
+
+@dataclass(frozen=True, slots=True)
+class Ticks:
+    """Equal ticks, one after the other, after each of which the verdicts are the same."""
+
+    count: int
+    values: dict[str, bool]
+    verdict: str
+    finite: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """A run to a verdict."""
+
+    name: str
+    ticks: tuple[Ticks, ...]
+
+
+def words(rule: Formalized) -> tuple[Word, ...]:
+    """The shortest run to each verdict that there is, and to the state that is the last to reach.
+
+    There is none where the reference does not know the sentence, or is too large.
+    """
+    atoms = atoms_of(rule.sentence)
+    if temporal_predicate(rule.sentence) is not None or len(atoms) > MOST_ATOMS:
+        return ()
+    known = meanings(rule.sentence, atoms)
+    letters = {letter: values for values, letter in reversed([*known.items()])}
+    try:
+        counted = explore(template(rule.sentence, rule.ticks or 0), letters, _MOST_STATES)
+    except TooManyStatesError:
+        return ()
+    valuations = [letters[each] for each in counted.letters]
+    return tuple(
+        Word(name, tuple(_ticks(counted, [(valuations[place], place) for place in run], atoms)))
+        for name, run in _runs(counted)
+    )
+
+
+def _runs(counted: Automaton) -> Iterator[tuple[str, tuple[int, ...]]]:
+    """Places of letters, by breadth first search."""
+    runs: dict[int, tuple[int, ...]] = {0: ()}
+    broken: tuple[int, ...] | None = None
+    for state in range(len(counted.states)):  # in the order in which they were found
+        for place, after in enumerate(counted.moves[state]):
+            run = (*runs[state], place)
+            if after != BROKEN:
+                runs.setdefault(after, run)
+            elif broken is None or len(run) < len(broken):
+                broken = run
+    yield from ([("soonest_breach", broken)] if broken else [])
+    told: dict[tuple[str, bool], tuple[int, ...]] = {}
+    for state, run in runs.items():
+        if run:
+            finite = accepts(counted.template, counted.states[state])
+            told.setdefault((counted.verdicts[state], finite), run)
+    for (verdict, finite), run in told.items():
+        yield f"soonest_{verdict}{'' if finite else '_unmet'}", run
+    latest = max(runs.values(), key=len)
+    if latest not in told.values():
+        yield "latest_state", latest
+
+
+def _ticks(
+    counted: Automaton, run: Sequence[tuple[tuple[bool, ...], int]], atoms: Sequence[str]
+) -> Iterator[Ticks]:
+    """The run with the verdicts after each of its ticks."""
+    state, told = 0, list[tuple[tuple[bool, ...], str, bool]]()
+    for values, place in run:
+        state = counted.moves[state][place]
+        if state == BROKEN:
+            told.append((values, "violated", False))
+        else:
+            finite = accepts(counted.template, counted.states[state])
+            told.append((values, counted.verdicts[state], finite))
+    for (values, verdict, finite), some in groupby(told):
+        named = dict(zip(atoms, values, strict=True))
+        yield Ticks(len([*some]), named, verdict, finite)

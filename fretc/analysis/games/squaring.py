@@ -1,0 +1,162 @@
+"""Where long paths of a relation lead, without following them tick by tick.
+
+A relation that is composed with itself is about twice as many ticks: a million ticks are twenty
+such steps. That pays where counts go on by themselves, which keeps the diagrams small.
+
+Source: Burch, Clarke, McMillan, Dill, Hwang, Symbolic model checking: 10^20 states and beyond,
+Information and Computation 98 (1992), iterative squaring.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import pairwise
+
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Bit
+from fretc.analysis.arena.transition import State
+from fretc.analysis.games.budget import Budget
+
+MOST_NODES = 10_000
+"""Of a relation; larger ones take longer than the ticks that they stand for."""
+
+
+class TooLargeError(Exception):
+    """The relation has no small diagram."""
+
+
+_PATIENCE = 16
+"""Ticks that are looked at one by one, before the first leap over many."""
+
+
+class Leaps:
+    """When many ticks are looked at in one, which takes as long as some hundred single ones.
+
+    Each leap is a patience later than the one before it: a fixpoint that is near is not held up,
+    and one that takes n ticks has no more than the root of n leaps.
+    """
+
+    def __init__(self, counters: Iterable[Counter]) -> None:
+        """Of a question about such counters."""
+        self._ticks = 0
+        self._wait = _PATIENCE if _are_side_by_side(counters) else None
+
+    def is_due(self) -> bool:
+        """After each tick that is looked at: whether a leap comes next."""
+        self._ticks += 1
+        if self._wait is None or self._ticks < self._wait:
+            return False
+        self._ticks, self._wait = 0, self._wait + _PATIENCE
+        return True
+
+    @contextmanager
+    def trial(self) -> Iterator[None]:
+        """A leap, which finds nothing where a relation is too large; then it was the last one."""
+        try:
+            yield
+        except TooLargeError:
+            self._wait = None
+
+
+def _are_side_by_side(counters: Iterable[Counter]) -> bool:
+    """Whether no long count stands above another one in the order of variables.
+
+    Sums of such counts have no small diagrams.
+    """
+    words = [[bit.now for bit in word] for each in counters for word in each.words]
+    spans = sorted((min(word), max(word)) for word in words if len(word) >= _LONG)
+    return all(start < end for (_, end), (start, _) in pairwise(spans))
+
+
+_LONG = 6
+"""Bits of a count that is not small."""
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """States and those that come after them, over the bits `now` and `after`."""
+
+    bits: tuple[Bit, ...]
+    function: Function
+    budget: Budget
+
+    def lasting(self) -> Function:
+        """The states from which a path never ends.
+
+        Raises:
+            TooLargeError: the diagrams grow.
+            OutOfTimeError: it takes too long.
+        """
+        relation, after = self.function, bdd.cube(bit.after for bit in self.bits)
+        states = bdd.some(relation, after)
+        while True:
+            relation = self._squared(relation)
+            left = bdd.some(relation, after)
+            if left == states:  # what has a path of n ticks has one of 2n
+                return states
+            states = left
+
+    def reaching(self, goal: Function) -> Function:
+        """The states from which a path leads into the goal, those of the goal among them.
+
+        Raises:
+            TooLargeError: the diagrams grow.
+            OutOfTimeError: it takes too long.
+        """
+        after = bdd.cube(bit.after for bit in self.bits)
+        relation, found = self.function | identity(self.bits), goal
+        while True:
+            more = bdd.some_of_both(relation, _renamed(found, self.bits), after)
+            if more == found:
+                return found
+            relation, found = self._squared(relation), more
+
+    def longest(self, state: State) -> tuple[int, State]:
+        """How many ticks the path from a state has, and where it ends.
+
+        The relation is a function, and the path does end.
+
+        Raises:
+            TooLargeError: the diagrams grow.
+            OutOfTimeError: it takes too long.
+        """
+        powers = [self.function]
+        while bdd.at(powers[-1], bdd.point(state)) != bdd.false():
+            powers.append(self._squared(powers[-1]))
+        ticks = 0
+        for exponent, power in reversed([*enumerate(powers)]):
+            there = bdd.at(power, bdd.point(state))
+            if there != bdd.false():
+                values = bdd.witness(there)
+                state = {bit.now: values[bit.after] for bit in self.bits}
+                ticks += 1 << exponent
+        return ticks, state
+
+    def _squared(self, relation: Function) -> Function:
+        """Two steps of it in one."""
+        self.budget.check()
+        if bdd.size(relation) > MOST_NODES:
+            raise TooLargeError
+        first, then = relation, relation
+        for bit in self.bits:
+            first = bdd.composed(first, bit.after, bdd.variable(bit.later))
+            then = bdd.composed(then, bit.now, bdd.variable(bit.later))
+        return bdd.some_of_both(first, then, bdd.cube(bit.later for bit in self.bits))
+
+
+def identity(bits: tuple[Bit, ...]) -> Function:
+    """The relation of each state with itself."""
+    found = bdd.true()
+    for bit in sorted(bits, key=lambda bit: -bit.now):
+        found = -(bdd.variable(bit.now) ^ bdd.variable(bit.after)) & found
+    return found
+
+
+def _renamed(states: Function, bits: tuple[Bit, ...]) -> Function:
+    for bit in bits:
+        states = bdd.composed(states, bit.now, bdd.variable(bit.after))
+    return states

@@ -1,0 +1,55 @@
+"""All minimal conflicts at once, of requirements that remember nothing.
+
+Each requirement gets a switch, which turns it off. One tick of the game of all of them then says
+for which switches the system wins: what hundreds of games would say one after the other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.alphabet import Numbers
+from fretc.analysis.games.budget import Budget
+from fretc.analysis.games.cores import Members
+from fretc.analysis.games.game import Game
+
+MOST_NODES = 100_000
+"""Of the diagram of requirements and switches; one that is larger is not worth its time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Switched:
+    """Requirements with switches."""
+
+    switches: tuple[int, ...]
+    """One variable for each requirement."""
+    lost: Function
+    """The switches that are on where the environment wins."""
+
+    def cores(self, budget: Budget) -> Iterator[Members]:
+        """Each minimal conflict: a witness that prefers `off` has no other below it.
+
+        Raises:
+            OutOfTimeError: there are too many.
+        """
+        rest = self.lost
+        while rest != bdd.false():
+            budget.check()
+            on = [switch for switch, value in bdd.witness(rest).items() if value]
+            yield frozenset(self.switches.index(switch) for switch in on)
+            rest = rest - bdd.cube(on)
+
+
+def switched(game: Game, fresh: Numbers) -> Switched | None:
+    """The requirements of a game with switches; None: they remember something, or are too many."""
+    if not game.is_memoryless:
+        return None
+    safe, switches = game.reachable, [next(fresh) for _ in game.counters]
+    for counter, switch in zip(game.counters, switches, strict=True):
+        safe = safe & (counter.safe | -bdd.variable(switch))
+        if bdd.size(safe) > MOST_NODES:
+            return None
+    return Switched(tuple(switches), -game.forced(bdd.true(), safe))

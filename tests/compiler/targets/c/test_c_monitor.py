@@ -1,0 +1,258 @@
+"""Monitors in C, compiled and stepped: at each tick they tell what those in Python tell."""
+
+import random
+import re
+import subprocess
+from collections.abc import Iterator
+from functools import cache
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+from compiler.formalization.formalized import Formalized
+from compiler.targets.c.monitor import TARGET
+from compiler.targets.python.monitor import text
+from monitors.kernel import Monitor
+from monitors.kernel.columns import columns_of, pieces_of
+from monitors.kernel.stepping import literals_of
+from monitors.kernel.verdicts import Signals
+from monitors.loading import load
+from tests import meaning
+from tests.c_monitors import (
+    STRICT,
+    Program,
+    Rows,
+    Source,
+    compiled,
+    compiler,
+    of_python,
+    write,
+)
+from tests.each import each
+from tests.emitting import refused
+from tests.monitoring import rule
+from tests.strategies import templates
+
+SIGNALS = {name: name for name in ("trigger", "breach", "settled", "answer")} | {"open": "owed"}
+ROOT = Path(__file__).parents[4]
+WITHIN = "whenever p the sw shall within 100 ticks satisfy q"
+
+
+def rows(choose: random.Random, width: int, length: int) -> Rows:
+    """A value stays for some ticks; some traces have unknown values, first or later."""
+    stays = choose.choice([0.0, 0.5, 0.9])
+    unknown = choose.choice([0.0, 0.0, 0.02, 0.3])
+    shares = [choose.choice([0.1, 0.5, 0.9]) for _ in range(width)]
+    values: list[bool | None] = [choose.random() < share for share in shares]
+    found = []
+    for _ in range(length):
+        for i, share in enumerate(shares):
+            if choose.random() >= stays:
+                values[i] = None if choose.random() < unknown else choose.random() < share
+        found.append(tuple(values))
+    return found
+
+
+def columns(machine: Monitor, trace: Rows, doubt: bool) -> tuple[Signals[int], ...]:
+    """The signals of the monitor's columns on one rail."""
+    every = (1 << len(trace)) - 1
+    _, made = columns_of(pieces_of(trace), len(machine.PROPOSITIONS))
+    named = dict(zip(machine.PROPOSITIONS, made, strict=True))
+    return machine.columns(every, **literals_of(machine, named, every, doubt))
+
+
+def hold(machine: Monitor, program: Program, *traces: Rows, place: int = 0) -> None:
+    """C, the steps of Python and its columns tell the same at each tick of all traces."""
+    _, found = program.run(*((place, trace) for trace in traces))
+    for trace, outcomes in zip(traces, found, strict=True):
+        certain, possible = (columns(machine, trace, doubt) for doubt in (False, True))
+        for tick, (expected, told) in enumerate(
+            zip(of_python(machine, trace), outcomes, strict=True)
+        ):
+            assert told == expected, (tick, trace)
+            for one, must, may in zip(told, certain, possible, strict=True):
+                for reading, signals in ((one.certain, must), (one.possible, may)):
+                    for name, signal in SIGNALS.items():
+                        column = getattr(signals, signal)
+                        assert getattr(reading, name) is bool(column >> tick & 1), (name, tick)
+
+
+@cache
+def of_requirements() -> list[Formalized]:
+    """Requirements of each form: a latch, counters, the tick before, a deadline, a ring."""
+    return [
+        rule(WITHIN, "R1"),
+        rule("in m mode whenever p the sw shall eventually satisfy q", "R2"),
+        rule("only before m whenever p the sw shall for 3 ticks satisfy q", "R3"),
+        rule("upon p the sw shall after 2 ticks satisfy (p xor preBool(true, s))", "R4"),
+        rule("whenever p the sw shall immediately satisfy occurred(33, 35, q)", "R5"),
+        rule("whenever p the sw shall immediately satisfy persisted(2, 4, !q)", "R6"),
+        rule("the sw shall until s satisfy q", "R7"),
+        rule("the sw shall always satisfy true", "R8"),
+    ]
+
+
+def monitors(rules: list[Formalized]) -> Monitor:
+    return load("monitors.py", text(*rules))
+
+
+@cache
+def of_templates() -> list[Formalized]:
+    return [rule(template.sentence, f"R{i}") for i, template in enumerate(templates())]
+
+
+@pytest.mark.slow
+@each("scope", meaning.SCOPES)
+def test_every_template_tells_the_same_at_each_tick(scope: str, tmp_path: Path) -> None:
+    """Those of a scope in one file, which computes what they share once."""
+    mine = [template.sentence for template in templates() if template.scope == scope]
+    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(mine)]
+    machine, source = monitors(rules), Source.of(*rules)
+    assert source.inputs == (*machine.PROPOSITIONS,)
+    program, choose = compiled(tmp_path, "gcc", source), random.Random(scope)
+    width = len(source.inputs)
+    hold(machine, program, *(rows(choose, width, choose.choice([6, 12, 60])) for _ in range(24)))
+
+
+_EXPRESSIONS = (
+    "p", "!q", "(p & s)", "(m xor q)", "(p <-> s)", "preBool(true, q)", "persisted({hi}, q)",
+    "occurred({hi}, (p | m))", "persisted({lo}, {hi}, p)", "occurred({lo}, {hi}, s)",
+)  # fmt: skip
+
+
+def drawn(choose: random.Random) -> Iterator[str]:
+    """Sentences of any shape, with bounds as large as their traces are long, and larger."""
+    shapes = [*templates((0,))]
+    while True:
+        n = choose.choice([1, 7, 40, 1000, 10**6])
+        sentence = choose.choice(shapes).sentence.replace(" 0 ticks", f" {n} ticks")
+        names = {name: choose.choice(_EXPRESSIONS) for name in "mpqs"}
+        free = re.sub("(before|after) m mode", r"\1 m", sentence)
+        words = free.replace("m mode", "m\tmode").split(" ")
+        words = [names[w] if w in names and choose.random() < 0.6 else w for w in words]
+        lo = choose.choice([0, 1, 2, 9, 33, 64])
+        yield " ".join(words).format(lo=lo, hi=lo + choose.choice([0, 1, 5, 70]))
+
+
+@pytest.mark.slow
+@each("seed", range(2))
+def test_any_sentence_tells_the_same_at_each_tick(seed: int, tmp_path: Path) -> None:
+    choose = random.Random(seed)
+    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(islice(drawn(choose), 40))]
+    machine, source = monitors(rules), Source.of(*rules)
+    program = compiled(tmp_path, "gcc", source)
+    width = len(source.inputs)
+    hold(machine, program, *(rows(choose, width, choose.choice([20, 150, 300])) for _ in range(3)))
+
+
+def test_monitors_in_one_file_tell_the_same(tmp_path: Path) -> None:
+    machine, source = monitors(of_requirements()), Source.of(*of_requirements())
+    program = compiled(tmp_path, "gcc", source, flags=[*STRICT, "-O0"])
+    choose, width = random.Random(1), len(source.inputs)
+    hold(machine, program, rows(choose, width, 60), rows(choose, width, 9))
+
+
+@pytest.mark.slow
+@each("cc", ["gcc", "clang"])
+def test_monitors_in_files_of_their_own_tell_the_same(cc: str, tmp_path: Path) -> None:
+    """Made faster by the compiler; their state is as large as their headers say."""
+    sources = [Source.of(each) for each in of_requirements()]
+    program, choose = compiled(tmp_path, cc, *sources, flags=[*STRICT, "-O2"]), random.Random(cc)
+    sizes, _ = program.run()
+    for place, (one, source) in enumerate(zip(of_requirements(), sources, strict=True)):
+        machine = monitors([one])
+        width = len(machine.PROPOSITIONS)
+        traces = rows(choose, width, 90), rows(choose, width, 9)
+        hold(machine, program, *traces, place=place)
+        header = next(text for name, text in source.texts.items() if name.endswith(".h"))
+        assert f" * State: {sizes[place]} bytes," in header
+
+
+CLASHES = (
+    "class", "now", "rail", "state", "since_1", "is_p", "not_p", "INT32_MAX", "true_", "linux",
+    "near", "C1_MONITOR_H", "UINT32_C", "c1_step", "c1_inputs", "x > 3", "x_gt_3", "a*/b",
+    "reading", "_A", "__cplusplus", "p??/", "certain", "uint8_t", "fretc_truth", "FRETC_TRUE",
+    "errno", "_Bool",
+)  # fmt: skip
+
+
+def clashing(id: str) -> Source:
+    """A monitor whose propositions are called as what is generated is, and as key words are."""
+    quoted = (name if re.fullmatch(r"x > 3", name) else f'"{name}"' for name in CLASHES)
+    sentence = f"whenever p & !q the sw shall within 3 ticks satisfy {' | '.join(quoted)}"
+    return Source.of(rule(sentence, id))
+
+
+DIALECTS = {
+    "gcc": STRICT,
+    "clang": [*STRICT, "-Wcomment"],
+    "g++": "-x c++ -std=c++17 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split(),
+    "clang++": "-x c++ -std=c++17 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split(),
+    "gcc for 32 bits": [*STRICT, "-m32", "-ffreestanding", "-fno-pic", "-O2"],
+    "clang for ARM": [*STRICT, "--target=arm-none-eabi", "-ffreestanding", "-nostdlib", "-O2"],
+}
+
+
+@pytest.mark.slow
+@each("dialect", DIALECTS)
+def test_every_dialect_takes_it_without_a_warning_and_needs_nothing_else(
+    dialect: str, tmp_path: Path
+) -> None:
+    sources = [Source.of(*of_requirements()), *map(clashing, ("C1", "class", "fretc"))]
+    files = write(tmp_path, *sources)
+    cc = compiler(dialect.split()[0])
+    objects = [path.with_suffix(".o") for path in files]
+    for path, made in zip(files, objects, strict=True):
+        subprocess.run([cc, *DIALECTS[dialect], "-c", path, "-o", made], check=True)
+    undefined = subprocess.run([compiler("nm"), "-u", *objects], capture_output=True, check=True)
+    assert not re.search(rb"\bU\b", undefined.stdout), undefined.stdout.decode()
+
+
+def test_headers_stand_side_by_side(tmp_path: Path) -> None:
+    sources = [Source.of(each) for each in of_requirements()]
+    write(tmp_path, *sources)
+    names = [name for each in sources for name in each.texts if name.endswith(".h")]
+    both = "".join(f'#include "{name}"\n' for name in (*names, *names))
+    tmp_path.joinpath("both.c").write_text(both, encoding="utf-8")
+    subprocess.run([compiler("gcc"), *STRICT, "-fsyntax-only", tmp_path / "both.c"], check=True)
+
+
+def test_bounds_that_a_controller_cannot_keep_are_refused() -> None:
+    assert refused("c", f"the sw shall within {2**31} ticks satisfy q").splitlines() == [
+        "F601 a monitor in C cannot express a bound of 2^31 ticks or more of R1",
+        "  --> r.fret:1:1",
+        "   | the sw shall within 2147483648 ticks satisfy q",
+        f"   | {'^' * 46}",
+        "help: counters have 32 bits: choose a longer tick",
+    ]
+    sentence = "the sw shall immediately satisfy occurred(9000000, 9000001, q)"
+    assert "more than 8388608 ticks ago" in refused("c", sentence)
+    assert TARGET.refuse(rule(f"the sw shall within {2**31 - 3} ticks satisfy q")) is None
+
+
+def test_the_example_of_the_documentation_compiles(tmp_path: Path) -> None:
+    page = ROOT.joinpath("docs/targets.md").read_text("utf-8")
+    section = page.partition("## `--emit c`\n")[2].partition("\n## ")[0]
+    example = "\n".join(re.findall(r"^(?:    (.*)|)$", section, re.MULTILINE))
+    assert "r1_step" in example
+    write(tmp_path, Source.of(rule("whenever too_close sw shall eventually satisfy stopped")))
+    tmp_path.joinpath("example.c").write_text(example, encoding="utf-8")
+    subprocess.run([compiler("gcc"), *STRICT, "-fsyntax-only", tmp_path / "example.c"], check=True)
+
+
+def test_the_work_of_a_step_does_not_depend_on_the_bound() -> None:
+    """What a step does is its text: it has no loop, and calls nothing but its own functions."""
+
+    def work(n: int) -> tuple[str, int]:
+        texts = Source.of(rule(f"in m mode the sw shall within {n} ticks satisfy q")).texts
+        header, source = texts["r1_monitor.h"], texts["r1_monitor.c"]
+        operations = re.search(r"at most (\d+) operations", header)
+        assert operations is not None
+        return source[source.index("static inline void r1_advance") :], int(operations[1])
+
+    (step, operations), (larger, same) = work(10), work(100_000)
+    assert operations == same > 50
+    assert re.sub(r"\d\d+", "", step) == re.sub(r"\d\d+", "", larger)
+    assert set(re.findall(r"(\w+)\(", step)) == {"r1_advance", "r1_judge", "r1_step"}
+    assert not re.search(r"\b(for|while|goto)\b", step)

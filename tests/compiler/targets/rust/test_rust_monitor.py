@@ -1,0 +1,111 @@
+"""Monitors in Rust, compiled and stepped: at each tick they tell what those in Python tell."""
+
+from __future__ import annotations
+
+import random
+import subprocess
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+from compiler.targets.rust.words import words
+from monitors.kernel import Monitor
+from tests.c_monitors import of_python
+from tests.compiler.targets.c.test_c_monitor import CLASHES, drawn, monitors, of_requirements, rows
+from tests.each import each
+from tests.emitting import refused
+from tests.meaning import SCOPES
+from tests.monitoring import rule
+from tests.rust_monitors import crate, fields, library, outcomes, program, write
+from tests.strategies import templates
+
+WITHIN = "whenever p the sw shall within 100 ticks satisfy q"
+
+
+@pytest.mark.slow
+@each("scope", SCOPES)
+def test_every_template_tells_the_same_at_each_tick(tmp_path: Path, scope: str) -> None:
+    mine = [template.sentence for template in templates() if template.scope == scope]
+    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(mine)]
+    machine, text = monitors(rules), library(crate(*rules))
+    choose = random.Random(scope)
+    traces = [rows(choose, len(machine.PROPOSITIONS), length) for length in (6, 12, 12, 60)]
+    told = outcomes(tmp_path, [text], [(0, trace) for trace in traces])
+    for trace, found in zip(traces, told, strict=True):
+        assert found == [*of_python(machine, trace)]
+
+
+@pytest.mark.slow
+def test_any_sentence_tells_the_same_at_each_tick(tmp_path: Path) -> None:
+    choose = random.Random("sentences")
+    some = [rule(sentence, f"R{i}") for i, sentence in enumerate(islice(drawn(choose), 40))]
+    groups = [some, of_requirements(), *([one] for one in of_requirements()[:4])]
+    machines: list[Monitor] = [monitors(group) for group in groups]
+    traces = [
+        (place, rows(choose, len(machine.PROPOSITIONS), length))
+        for place, machine in enumerate(machines)
+        for length in (20, 200)
+    ]
+    told = outcomes(tmp_path, [library(crate(*group)) for group in groups], traces)
+    for (place, trace), found in zip(traces, told, strict=True):
+        assert found == [*of_python(machines[place], trace)], place
+
+
+@pytest.mark.slow
+def test_clippy_finds_nothing_and_the_tests_of_crates_pass(tmp_path: Path) -> None:
+    quoted = " | ".join(f'"{name}"' for name in (*CLASHES, "fn", "match", "Monitor", "Truth"))
+    odd = rule(f"whenever p & !q the sw shall within 3 ticks satisfy {quoted}", "fn")
+    cargo = program("cargo")
+    write(tmp_path, crate(odd))
+    write(tmp_path, crate(*of_requirements()))
+    write(tmp_path, crate(rule(WITHIN)))
+    for name in ("fn_monitor", "monitors", "r1_monitor"):
+        command = [cargo, "clippy", "--offline", "--quiet", "--all-targets"]
+        subprocess.run([*command, "--", "-D", "warnings"], cwd=tmp_path / name, check=True)
+        assert passes(cargo, tmp_path / name)
+    path = tmp_path / "r1_monitor/src/lib.rs"
+    sound = path.read_text("utf-8")
+    for text, fault in (
+        (">= 100;", ">= 99;"),
+        (">= 100;", ">= 101;"),
+        ("oldest_1 = 0;", "oldest_1 = 1;"),
+    ):
+        assert sound.count(text) == 1
+        path.write_text(sound.replace(text, fault), encoding="utf-8")
+        assert not passes(cargo, tmp_path / "r1_monitor"), fault
+
+
+def passes(cargo: str, folder: Path) -> bool:
+    """Whether the tests of a crate pass."""
+    done = subprocess.run(
+        [cargo, "test", "--offline", "--quiet"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert "test result: " in done.stdout, done.stderr
+    return done.returncode == 0
+
+
+def test_words_reach_each_verdict_and_the_deadline() -> None:
+    found = {word.name: word for word in words(rule(WITHIN))}
+    assert [*found] == ["soonest_breach", "soonest_pending", "latest_state"]
+    assert sum(ticks.count for ticks in found["latest_state"].ticks) == 100
+    assert found["soonest_breach"].ticks[-1].verdict == "violated"
+    assert sum(ticks.count for ticks in found["soonest_breach"].ticks) == 101
+    assert not words(rule("whenever persisted(3, p) the sw shall immediately satisfy q"))
+
+
+def test_a_bound_changes_nothing_but_numbers() -> None:
+    small, large = (library(crate(rule(WITHIN.replace("100", str(n))))) for n in (10, 10**6))
+    assert len(small.splitlines()) == len(large.splitlines())
+    assert fields(small, "Inputs") == ["p", "q"]
+    assert "#![no_std]" in small
+    assert "#![forbid(unsafe_code)]" in small
+
+
+def test_bounds_that_a_controller_cannot_keep_are_refused() -> None:
+    found = refused("rust", f"the sw shall within {2**31} ticks satisfy q")
+    assert found.startswith("F601 a monitor in Rust cannot express a bound of 2^31 ticks or more")

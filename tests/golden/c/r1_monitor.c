@@ -1,0 +1,69 @@
+/* Runtime monitor of R1: what it says and needs stands in r1_monitor.h */
+#include "r1_monitor.h"
+
+/* Each proposition that is true, and each that is false: unknown ones are both on one rail, and neither on the other. */
+typedef struct {
+    bool is_too_close;
+    bool not_stopped;
+    bool is_stopped;
+} r1_literals;
+
+static void r1_clear(r1_rail *rail)
+{
+    rail->since_1 = false;
+}
+
+void r1_init(r1_state *state)
+{
+    r1_clear(&state->certain);
+    r1_clear(&state->possible);
+}
+
+static inline void r1_advance(r1_rail *rail, const r1_literals *now, r1_outcomes *outcomes, bool possible)
+{
+    fretc_reading *reading;
+    /* !stopped S (too_close & !stopped) */
+    rail->since_1 = (now->is_too_close && now->not_stopped) || (now->not_stopped && rail->since_1);
+    /* R1 */
+    reading = possible ? &outcomes->r1.possible : &outcomes->r1.certain;
+    reading->left = -1;
+    reading->violated = false;
+    reading->failed = rail->since_1;
+    reading->trigger = now->is_too_close;
+    reading->breach = false;
+    reading->open = rail->since_1;
+    reading->settled = false;
+    reading->answer = now->is_stopped;
+}
+
+static void r1_judge(fretc_outcome *outcome)
+{
+    if (outcome->certain.violated) {
+        outcome->verdict = FRETC_VIOLATED;
+    } else if (outcome->certain.settled && !outcome->possible.violated) {
+        outcome->verdict = FRETC_SATISFIED;
+    } else {
+        outcome->verdict = FRETC_PENDING;
+    }
+    if (outcome->certain.failed) {
+        outcome->finite = FRETC_FALSE;
+    } else if (outcome->possible.failed) {
+        outcome->finite = FRETC_UNKNOWN;
+    } else {
+        outcome->finite = FRETC_TRUE;
+    }
+}
+
+void r1_step(r1_state *state, const r1_inputs *inputs, r1_outcomes *outcomes)
+{
+    r1_literals now;
+    now.is_too_close = inputs->too_close == FRETC_TRUE;
+    now.not_stopped = inputs->stopped == FRETC_FALSE;
+    now.is_stopped = inputs->stopped == FRETC_TRUE;
+    r1_advance(&state->certain, &now, outcomes, false);
+    now.is_too_close = inputs->too_close != FRETC_FALSE;
+    now.not_stopped = inputs->stopped != FRETC_TRUE;
+    now.is_stopped = inputs->stopped != FRETC_FALSE;
+    r1_advance(&state->possible, &now, outcomes, true);
+    r1_judge(&outcomes->r1);
+}

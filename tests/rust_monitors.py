@@ -1,0 +1,138 @@
+"""Monitors in Rust, compiled into one program that steps them over traces."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import struct
+import subprocess
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import pytest
+
+from compiler.formalization.formalized import Formalized
+from compiler.targets.rust.monitor import TARGET
+from compiler.targets.target import Options
+from tests.c_monitors import VERDICTS, Outcome, Reading, Rows
+
+STRICT = ["--edition", "2021", "-D", "warnings", "-C", "debug-assertions=on"]
+_TRUTHS = (False, True, None)
+
+
+def program(name: str) -> str:
+    """Its path; the test is skipped where it is not installed."""
+    found = shutil.which(name)
+    if found is None:
+        pytest.skip(f"needs {name}")
+    return found
+
+
+def crate(*rules: Formalized) -> Mapping[str, str]:
+    """The files of one crate."""
+    assert [TARGET.refuse(rule) for rule in rules] == [None] * len(rules)
+    files = TARGET.emit(rules, Options(one_file=len(rules) > 1))
+    return {str(file.path): file.text for file in files}
+
+
+def write(folder: Path, files: Mapping[str, str]) -> None:
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+
+
+def library(files: Mapping[str, str]) -> str:
+    return next(text for name, text in files.items() if name.endswith("src/lib.rs"))
+
+
+def fields(text: str, struct_: str) -> list[str]:
+    body = text.partition(f"pub struct {struct_} {{\n")[2].partition("\n}\n")[0]
+    return re.findall(r"^    pub (\w+):", body, re.M)
+
+
+def outcomes(
+    folder: Path, libraries: Sequence[str], traces: Sequence[tuple[int, Rows]]
+) -> list[list[list[Outcome]]]:
+    """Of each trace all outcomes at each tick.
+
+    Args:
+        folder: for what is compiled.
+        libraries: texts of `lib.rs`.
+        traces: the place of a library, and rows in the order of its inputs.
+    """
+    rustc = program("rustc")
+    for place, text in enumerate(libraries):
+        (folder / f"m{place}.rs").write_text(text, encoding="utf-8")
+        kind = ["--crate-type", "rlib", "--crate-name", f"m{place}"]
+        subprocess.run([rustc, *STRICT, *kind, f"m{place}.rs"], cwd=folder, check=True)
+    (folder / "main.rs").write_text(_main(libraries), encoding="utf-8")
+    externs = [f"--extern=m{place}=libm{place}.rlib" for place in range(len(libraries))]
+    subprocess.run([rustc, "--edition", "2021", *externs, "main.rs"], cwd=folder, check=True)
+    data = b"".join(
+        struct.pack("=II", place, len(rows))
+        + bytes(_TRUTHS.index(value) for row in rows for value in row)
+        for place, rows in traces
+    )
+    done = subprocess.run([folder / "main"], input=data, capture_output=True, check=True)
+    readings = struct.iter_unpack("=i7?i7?BB", done.stdout)
+    found = (
+        Outcome(Reading(*r[:8]), Reading(*r[8:16]), VERDICTS[r[16]], _TRUTHS[r[17]])
+        for r in readings
+    )
+    sizes = [len(fields(text, "Outcomes")) for text in libraries]
+    told = [[[next(found) for _ in range(sizes[p])] for _ in rows] for p, rows in traces]
+    assert next(found, None) is None
+    return told
+
+
+def _main(libraries: Sequence[str]) -> str:
+    cases = "".join(_case(place, text) for place, text in enumerate(libraries))
+    return f"""use std::io::{{Read, Write}};
+
+macro_rules! put {{
+    ($out:expr, $o:expr) => {{{{
+        let o = $o;
+        for r in [o.certain, o.possible] {{
+            $out.extend(r.left.map_or(-1, |left| left as i32).to_ne_bytes());
+            let bits = [r.violated, r.failed, r.trigger, r.breach, r.open, r.settled, r.answer];
+            $out.extend(bits.map(u8::from));
+        }}
+        $out.push(o.verdict as u8);
+        $out.push(o.finite.map_or(2, u8::from));
+    }}}};
+}}
+
+fn main() {{
+    let mut data = Vec::new();
+    std::io::stdin().read_to_end(&mut data).unwrap();
+    let (mut at, mut out) = (0, Vec::new());
+    while at < data.len() {{
+        let word = |at: usize| u32::from_ne_bytes(data[at..at + 4].try_into().unwrap());
+        let (place, ticks) = (word(at), word(at + 4));
+        at += 8;
+        let mut next = || {{
+            at += 1;
+            [Some(false), Some(true), None][usize::from(data[at - 1])]
+        }};
+        let _ = &mut next;
+        match place {{
+{cases}            _ => unreachable!(),
+        }}
+    }}
+    std::io::stdout().write_all(&out).unwrap();
+}}
+"""
+
+
+def _case(place: int, text: str) -> str:
+    inputs = "".join(f"{name}: next(), " for name in fields(text, "Inputs"))
+    puts = "".join(f"put!(out, o.{name}); " for name in fields(text, "Outcomes"))
+    return f"""            {place} => {{
+                let mut monitor = m{place}::Monitor::new();
+                for _ in 0..ticks {{
+                    let o = monitor.step(&m{place}::Inputs {{ {inputs}}});
+                    {puts}
+                }}
+            }}
+"""
