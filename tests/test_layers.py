@@ -27,7 +27,7 @@ fretc.verification.engines  fretc.verification.monitor  fretc.verification.inter
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis.controllers
 fretc.analysis
-fretc.testing  fretc.coverage
+fretc.testing  fretc.testing.exports  fretc.testing.conformance  fretc.coverage
 fretc.report.traceability  fretc.attestation  fretc.reproduction
 fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front

@@ -137,6 +137,9 @@ def test(
     sources = [requirement.wording.source.name for requirement in project.requirements]
     protected = [*sources, *companions(sources), *filter(None, [bindings])]
     if against is not None:
+        if emitted is not None or show is not None:
+            clash = "`--against` tests a program, and makes no tests to emit or show"
+            stop(Diagnostic(Code.BAD_USAGE, clash, help="ask for one of them"))
         place = output or "build/tests/conformance.json"
         test_against.against(against, rules, assumed, seconds, line_time, form, place, protected)
     output = output or "build/tests/suite.json"
@@ -197,7 +200,7 @@ def _files(suite: Suite, rules: Sequence[Formalized], emitted: str, output: str)
     for why in dict.fromkeys(left.values()):
         names = [name for name in left if left[name] == why]
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-        say_line(visible(f"not written for FRET: {names[0]}{more}: {why}"))
+        say_line(visible(f"not written: {names[0]}{more}: {why}"))
     if output == "-":
         return {Path("-"): "".join(each.text for each in artifacts)}
     return {Path(output) / emitted / each.path: each.text for each in artifacts}

@@ -23,6 +23,10 @@ from fretc.testing.conformance.shrinking import Shrinking
 from fretc.testing.suite import Polarity, Repeat
 from fretish.printer import sentence as printed
 
+_ROAMING = 24
+"""Runs with any inputs, after those with an aim: faults may lie between two requirements."""
+_CHANGES = (0.5, 0.2, 0.05)
+"""How likely an input changes at a tick of these, in turn."""
 _PATIENCE, _EXTRA = 2, 8
 """A run may be so many times as long as the shortest way to its aim, and so many ticks longer."""
 
@@ -64,7 +68,8 @@ class Campaign:
         self._failures: dict[str, Failure] = {}
         self._outcomes: dict[Aim, tuple[Outcome, str]] = {}
         self._triggered: set[str] = set()
-        self._runs = self._ticks = 0
+        self._runs = self._ticks = self._longest = 0
+        self._is_whole = False
 
     def run(self, start: Start, progress: Callable[[str], None]) -> None:
         """All of them.
@@ -84,41 +89,71 @@ class Campaign:
                     if aim.rule.id not in self._failures and aim not in self._outcomes:
                         progress(f"{aim.rule.id}: {aim.situation.words}; {aim.polarity}")
                         self._go_for(aim, field, driver)
+            self._roam(driver, progress)
+            self._is_whole = True
         finally:
             self._runs, self._ticks = driver.runs, driver.ticks
 
     def _go_for(self, aim: Aim, field: Field, driver: Driver) -> None:
-        """Once without any needless change of an input, and once with any inputs."""
+        """Without any needless change of an input, and with any inputs."""
         try:
             plan = field.plan(aim, Budget(self._seconds))
             if plan is None:
                 return
-            for choose in (None, Random(aim.name)):
-                self._try(aim, field, plan, choose, driver)
+            run = None
+            for choose in self._choices(aim):
+                run = self._try(aim, field, plan, choose, driver)
                 if aim in self._outcomes or aim.rule.id in self._failures:
                     return
         except OutOfTimeError as error:
             self._outcomes[aim] = Outcome.NOT_SEARCHED, str(error)
             return
         _, is_forced = plan.distance(field.transition.start) or (0, False)
-        self._outcomes[aim] = (Outcome.NOT_REACHED if is_forced else Outcome.UP_TO_PROGRAM), ""
+        first = f"it violates {', '.join(run.broken)} before" if run and run.broken else ""
+        self._outcomes[aim] = (
+            Outcome.NOT_REACHED if is_forced else Outcome.UP_TO_PROGRAM,
+            first,
+        )
+
+    def _roam(self, driver: Driver, progress: Callable[[str], None]) -> None:
+        """As long as there is a requirement of which no violation is known."""
+        for number in range(_ROAMING):
+            if len(self._failures) < len(self._rules):
+                progress(f"any inputs: run {number + 1} of {_ROAMING}")
+                change = _CHANGES[number % len(_CHANGES)]
+                ticks = _PATIENCE * self._longest + _EXTRA
+                run = driver.anywhere(Random(number), change, ticks)
+                self._look(run, None, driver)
+
+    def _choices(self, aim: Aim) -> Iterator[Random | None]:
+        """By which inputs are chosen that do not matter, run by run."""
+        if aim.polarity is Polarity.KEPT:
+            yield None
+        yield Random(aim.name)
 
     def _try(
         self, aim: Aim, field: Field, plan: Plan, choose: Random | None, driver: Driver
-    ) -> None:
+    ) -> Run:
         ticks, _ = plan.distance(field.transition.start) or (0, False)
+        self._longest = max(self._longest, ticks)
         run = driver.towards(field, plan, choose, _PATIENCE * ticks + _EXTRA)
+        self._look(run, aim, driver)
+        if _shows(run, aim, plan.shown):
+            self._outcomes[aim] = Outcome.REACHED, ""
+        return run
+
+    def _look(self, run: Run, aim: Aim | None, driver: Driver) -> None:
+        """What a run shows of all requirements."""
         self._triggered |= run.triggered
         for id in run.broken:
             if id not in self._failures:
                 self._failures[id] = self._failure(aim, self._rules[id], run, driver)
         for each in self._fields:
             for other in each.aims:
-                shown = plan.shown if other is aim else other.shown[0]
-                if other not in self._outcomes and _shows(run, other, shown):
+                if _shows(run, other, other.shown[0]):
                     self._outcomes[other] = Outcome.REACHED, ""
 
-    def _failure(self, aim: Aim, rule: Formalized, run: Run, driver: Driver) -> Failure:
+    def _failure(self, aim: Aim | None, rule: Formalized, run: Run, driver: Driver) -> Failure:
         shrinking = Shrinking(rule.id, self.referee.inputs, driver.again, run)
         again = shrinking.again()
         best = shrinking.shrink() if again else run
@@ -127,8 +162,7 @@ class Campaign:
             sentence=printed(rule.written),
             because=reason(rule, best),
             rows=tuple(_repeats(best.rows)),
-            situation=aim.situation.key,
-            polarity=aim.polarity,
+            situation="" if aim is None else aim.situation.key,
             ticks=len(run.rows),
             tries=shrinking.tries,
             again=again,
@@ -146,6 +180,7 @@ class Campaign:
             situations=tuple(self._situated()),
             failures=tuple(self._failures[id] for id in self._rules if id in self._failures),
             untried=tuple(id for id in self._rules if id not in self._triggered),
+            whole=self._is_whole,
             not_judged=self._not_judged,
         )
 

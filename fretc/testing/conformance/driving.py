@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from random import Random
 
 from compiler.logic import decision_diagrams as bdd
@@ -45,20 +45,29 @@ class Driver:
 
         def inputs(tick: int) -> Tick | None:
             options = plan.options(own.state) if tick < most else None
-            if options is None:
-                return None
-            found: Tick = {}
-            for side in sides:
-                values = side.values(options if side is own else side.options())
-                if values is None:
-                    return None
-                found = {**found, **values}
-            return found
+            return None if options is None else _joined(sides, {own: options})
 
         def goes_on(truths: Truths) -> bool:
             return all(side.moves(truths) for side in sides) and not plan.is_reached(own.last)
 
         return self._run(inputs, goes_on)
+
+    def anywhere(self, choose: Random, change: float, most: int) -> Run:
+        """A run with any inputs that keep the assumptions.
+
+        Args:
+            choose: the inputs.
+            change: how likely each of them changes at a tick.
+            most: ticks.
+
+        Raises:
+            BeyondError: as `towards`; ProgramError, too.
+        """
+        sides = [_Side(each, choose, change) for each in self._fields]
+        return self._run(
+            lambda tick: _joined(sides, {}) if tick < most else None,
+            lambda truths: all(side.moves(truths) for side in sides),
+        )
 
     def again(self, rows: Sequence[Tick]) -> Run:
         """A run with these inputs, up to the first violation.
@@ -94,8 +103,8 @@ class Driver:
 class _Side:
     """Where a run is in one field."""
 
-    def __init__(self, field: Field, choose: Random | None) -> None:
-        self.field, self._choose = field, choose
+    def __init__(self, field: Field, choose: Random | None, change: float = 0.5) -> None:
+        self.field, self._choose, self._change = field, choose, change
         self.state: State = field.transition.start
         self.last: Letter = {}
         """The last tick: the state before it, and what was chosen by both."""
@@ -111,7 +120,8 @@ class _Side:
             return None
         wanted = self._inputs
         if self._choose is not None:
-            wanted = {bit: self._choose.random() < _HALF for bit in wanted}
+            drawn = self._choose.random
+            wanted = {bit: value ^ (drawn() < self._change) for bit, value in wanted.items()}
         self._inputs = self.field.inputs(options, wanted)
         return self.field.values(self._inputs)
 
@@ -125,4 +135,12 @@ class _Side:
         return True
 
 
-_HALF = 0.5
+def _joined(sides: Sequence[_Side], options: Mapping[_Side, Function]) -> Tick | None:
+    """What is given to the program, from the options of each side; None: one has none."""
+    found: Tick = {}
+    for side in sides:
+        values = side.values(options.get(side, side.options()))
+        if values is None:
+            return None
+        found = {**found, **values}
+    return found

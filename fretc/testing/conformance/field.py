@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 
 from compiler.formalization.formalized import Formalized
@@ -34,7 +34,7 @@ from fretc.testing.suite import Polarity
 from fretish.bindings.declarations import Role
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Aim:
     """What a run is to lead to."""
 
@@ -44,7 +44,7 @@ class Aim:
     shown: tuple[f.Formula, ...]
     """Of the past: a run has come to the aim where this holds, as far as the program keeps all; the
     next one is enough where no run comes to the one before."""
-    goals: tuple[Function, ...] = field(compare=False, repr=False)
+    goals: tuple[Function, ...]
     """The same over a state and a letter: what the tester goes for."""
 
     @property
@@ -117,8 +117,8 @@ class Field:
         if rule.id not in self._counters:
             return
         for situation in situations(rule):
-            if situation.unknown is not None:
-                continue  # a program is given values
+            if situation.unknown is not None or situation.place is not None:
+                continue  # a program is given values, and those that a strategy has no say in
             try:
                 yield self._kept_aim(rule, situation)
                 yield self._broken_aim(rule, situation)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Annotated, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
-from compiler.files.records import Count, Name, Ordinal, Record, about
-from fretc.testing.suite import Polarity, Repeat
+from compiler.files.records import Count, Name, Ordinal, Record, about, json_schema
+from fretc.testing.suite import Repeat
 
 SCHEMA: Final = "fretc-conformance-1"
 
@@ -29,7 +29,7 @@ class Situated(Record, frozen=True):
     situation: Name
     words: str
     outcome: Outcome
-    why: Annotated[str, about("why it was not searched; empty: it was")] = ""
+    why: Annotated[str, about("why it was not reached or not searched, if that is known")] = ""
 
 
 class Failure(Record, frozen=True):
@@ -39,8 +39,7 @@ class Failure(Record, frozen=True):
     sentence: Name
     because: Annotated[str, about("the reason, in words")]
     rows: Annotated[tuple[Repeat, ...], about("inputs and outputs; the last tick violates it")]
-    situation: Annotated[Name, about("what the run was to show")]
-    polarity: Polarity
+    situation: Annotated[str, about("what the run was to show; empty: its inputs had no aim")]
     ticks: Annotated[Ordinal, about("of the run on which it was found")]
     tries: Annotated[Count, about("runs by which that one was made shorter")]
     again: Annotated[bool, about("whether the program did the same with the same inputs")]
@@ -58,6 +57,7 @@ class Conformance(Record, frozen=True):
     situations: tuple[Situated, ...]
     failures: tuple[Failure, ...]
     untried: Annotated[tuple[Name, ...], about("requirements of which no run began a demand")]
+    whole: Annotated[bool, about("whether all runs were made; a mistake or Ctrl-C ends them")]
     not_judged: Annotated[dict[str, str], about("why a requirement has no monitor, by its id")]
 
     @property
@@ -65,4 +65,14 @@ class Conformance(Record, frozen=True):
         """Whether all was searched, all was reached that can be forced, and all was asked for."""
         left = (Outcome.NOT_REACHED, Outcome.NOT_SEARCHED)
         reached = all(each.outcome not in left for each in self.situations)
-        return reached and not self.untried and not self.not_judged
+        return self.whole and reached and not self.untried and not self.not_judged
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of what was seen."""
+    return json_schema(
+        Conformance,
+        SCHEMA,
+        "A program under test, as `fretc test --against` saw it",
+        "Nothing depends on when it was made.",
+    )

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from shlex import join
 
 from fretc.analysis.reasons import listed
 from fretc.analysis.text_output import Line, drawn
-from fretc.testing.conformance.findings import Conformance, Failure, Outcome
+from fretc.testing.conformance.findings import Conformance, Failure, Outcome, Situated
 from fretish.bindings.declarations import Role
 from fretish.diagnostics import signs
 
@@ -54,7 +54,7 @@ def _table(found: Conformance) -> Iterator[Line]:
         own = [each for each in found.situations if each.requirement == id]
         counts = {kind: sum(each.outcome is kind for each in own) for kind in Outcome}
         shown = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
-        sign = signs.BAD if id in broken else signs.GOOD
+        sign = signs.BAD if id in broken else signs.GOOD if found.whole else signs.UNKNOWN
         if id in found.not_judged:
             sign, shown = signs.UNKNOWN, f"not judged: {found.not_judged[id]}"
         elif id in broken:
@@ -77,20 +77,25 @@ def _failure(failure: Failure, roles: Mapping[str, Role]) -> Iterator[Line]:
         yield "  once more with the same inputs, the program did something else", None
     elif ticks < failure.ticks:
         yield (
-            f"  found on {_some(failure.ticks, 'tick')}, made shorter by {failure.tries} runs",
+            f"  found on {_some(failure.ticks, 'tick')}, shortened by {failure.tries} runs",
             None,
         )
 
 
 def _rest(found: Conformance) -> Iterator[Line]:
-    """What was not reached, in words."""
-    for each in found.situations:
-        text = f"{each.requirement}: {each.outcome}: {each.words}"
-        match each.outcome:
-            case Outcome.UP_TO_PROGRAM:
-                yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
-            case Outcome.NOT_REACHED | Outcome.NOT_SEARCHED:
-                why = f": {each.why}" if each.why else ""
-                yield f"{signs.UNKNOWN.glyph} {text}{why}", signs.UNKNOWN.colour
-            case Outcome.REACHED:
-                pass
+    """What was not reached, in words; of what is up to the program the keys."""
+    for id in found.requirements:
+        own = [each for each in found.situations if each.requirement == id]
+        free = [each.situation for each in own if each.outcome is Outcome.UP_TO_PROGRAM]
+        if free:
+            text = f"{id}: up to the program, and not seen: {', '.join(free)}"
+            yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
+        yield from _missing(own)
+
+
+def _missing(own: Sequence[Situated]) -> Iterator[Line]:
+    for each in own:
+        if each.outcome in (Outcome.NOT_REACHED, Outcome.NOT_SEARCHED):
+            why = f": {each.why}" if each.why else ""
+            text = f"{each.requirement}: {each.outcome}: {each.words}{why}"
+            yield f"{signs.UNKNOWN.glyph} {text}", signs.UNKNOWN.colour

@@ -43,22 +43,29 @@ def files(
         form: of the files.
     """
     by_id = {rule.id: rule for rule in rules}
-    left: Left = {}
+    why = simulator.refusal if form is Form.FRET else _no_monitor
+    reasons = ((test.name, why(by_id[test.requirement], test)) for test in suite.tests)
+    left = {name: reason for name, reason in reasons if reason is not None}
+    tests = [test for test in suite.tests if test.name not in left]
+    tested = [by_id[id] for id in dict.fromkeys(test.requirement for test in tests)]
     match form:
         case Form.PYTEST:
-            tested = [rule for rule in rules if _tests(suite, rule)]
             made = [*emitted.emit(tested), *(_pytest(rule, suite) for rule in tested)]
         case Form.CSV:
-            tested = [rule for rule in rules if _tests(suite, rule)]
-            tables = {test.name: table(by_id[test.requirement], test) for test in suite.tests}
+            tables = {test.name: table(by_id[test.requirement], test) for test in tests}
             made = [*emitted.emit(tested), *(_csv(name, each) for name, each in tables.items())]
-            made.append(_index(suite, tables))
+            made.append(_index(tests, tables))
         case Form.FRET:
-            left = dict(_left(suite, by_id))
-            made = [*_fret([test for test in suite.tests if test.name not in left], by_id)]
+            made = [*_fret(tests, by_id)]
         case _:
             assert_never(form)
     return tuple(made), left
+
+
+def _no_monitor(rule: Formalized, test: Test) -> str | None:
+    """Why there is no monitor for a test; None: there is one."""
+    wrong = emitted.refuse(rule)
+    return None if wrong is None else wrong.message
 
 
 def _tests(suite: Suite, rule: Formalized) -> list[Test]:
@@ -95,7 +102,7 @@ def _csv(name: str, own: Table) -> Artifact:
 _COLUMNS = ("file", "requirement", "ticks", "verdict", "finite", "decided", "first_violation")
 
 
-def _index(suite: Suite, tables: Mapping[str, Table]) -> Artifact:
+def _index(tests: Sequence[Test], tables: Mapping[str, Table]) -> Artifact:
     """What is expected of each table, and the option with which a monitor reads it."""
     rows = (
         (
@@ -109,16 +116,9 @@ def _index(suite: Suite, tables: Mapping[str, Table]) -> Artifact:
             "--propositions" if tables[test.name].of_truths else "",
             test.words,
         )
-        for test in suite.tests
+        for test in tests
     )
     return Artifact(PurePosixPath(INDEX), csv_text((*_COLUMNS, "option", "words"), rows))
-
-
-def _left(suite: Suite, rules: Mapping[str, Formalized]) -> Iterator[tuple[str, str]]:
-    for test in suite.tests:
-        why = simulator.refusal(rules[test.requirement], test)
-        if why is not None:
-            yield test.name, why
 
 
 def _fret(tests: Sequence[Test], rules: Mapping[str, Formalized]) -> Iterator[Artifact]:

@@ -68,7 +68,7 @@ def _trace(rule: Formalized, test: Test) -> dict[str, Any]:
 
 def _description(test: Test) -> str:
     held = "true" if test.finite else "false"
-    shown = f"{test.words}. The formulas are {held} on its {test.ticks} ticks: {test.because}"
+    shown = f"{test.words}. The formulas are {held} up to tick {test.ticks - 1}: {test.because}"
     if test.ticks < LEAST:
         last = test.ticks - 1
         return f"{shown}. It ends at tick {last}, which is repeated here: look at the past formula"
