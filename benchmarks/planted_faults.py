@@ -21,7 +21,7 @@ from fretc.analysis.games.budget import Budget
 from fretc.campaigns.experiment import SafetyFunction, interceptor_text, monitor_text
 from fretc.testing.assembly import jobs
 from fretc.testing.bench import Bench
-from fretc.testing.words import judged, word
+from fretc.testing.words import Naming, judged, word
 from fretish.bindings.reader import read_bindings
 from fretish.diagnostics.source import Source
 from monitors.interceptor import Options
@@ -36,7 +36,7 @@ Program = Callable[[Row], Row]
 """One tick: inputs to outputs."""
 WARM_UP = 6
 """Ordinary ticks before each run of each suite."""
-SEEDS = 10
+SEEDS = 20
 """Random suites."""
 
 
@@ -113,10 +113,6 @@ INTERCEPTOR = Subject(
         "whenever request the gate shall until release satisfy zero",
         "whenever persisted(0, 20, !request) & occurred(0, 20, release) & occurred(0, 8, command) "
         "the gate shall immediately satisfy passed",
-        "whenever occurred(6, 6, request) & persisted(0, 5, !request) & persisted(0, 6, !release) "
-        "the gate shall immediately satisfy zero",
-        "whenever occurred(21, 25, request) & persisted(0, 20, !request) & occurred(0, 20, release)"
-        " & occurred(0, 8, command) the gate shall immediately satisfy passed",
         "whenever persisted(0, 9, !command) the gate shall immediately satisfy zero",
         "whenever persisted(0, 23, !request & !release) the gate shall immediately satisfy zero",
     ),
@@ -281,7 +277,8 @@ def by_flips(subject: Subject) -> list[Run]:
             if found is None:
                 continue
             letters, tick = found
-            made = word(letters, bench.alphabet, each.watched, each.watched)
+            naming = Naming(each.watched, each.watched, {}, {})
+            made = word(letters, bench.alphabet, naming)
             rows = [dict(row.values) for row in made.rows for _ in range(row.count)]
             if not judged(each, made).accepted >> made.ticks - 1 & 1:
                 rows[tick] = {**rows[tick], atom: not rows[tick][atom], "clearance": None}
