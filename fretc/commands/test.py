@@ -13,6 +13,7 @@ import click
 from fretc.terminal.options import (
     PATH,
     format_option,
+    jobs_option,
     output_option,
     path_option,
     requirements_option,
@@ -56,12 +57,21 @@ if TYPE_CHECKING:
 @click.option(
     "--emit",
     "emitted",
-    type=click.Choice(("pytest", "csv", "fret")),
-    help="Write the tests: for pytest, as tables for monitors, or for the simulator of FRET.",
+    type=click.Choice(("pytest", "csv", "fret", "mcap", "scenario")),
+    help="Write the tests: for pytest, as tables for monitors, for the simulator of FRET, as logs "
+    "of messages for audits, or as missions of the simulated robot that show the same.",
 )
 @path_option(
     "--emit-to", default="build/tests", show_default=True, help="Folder for `--emit`; `-` prints."
 )
+@click.option(
+    "--runs",
+    type=click.IntRange(min=1),
+    default=40,
+    show_default=True,
+    help="Missions that are simulated for `--emit scenario`, at most.",
+)
+@jobs_option
 @click.option(
     "--against",
     metavar="CMD",
@@ -88,6 +98,8 @@ def test(
     seconds: float,
     emitted: str | None,
     emit_to: str,
+    runs: int,
+    jobs: int,
     against: str | None,
     line_time: float,
     requirements: str,
@@ -111,7 +123,7 @@ def test(
     from compiler.files.templating import to_json
     from compiler.project.paths import companions
     from fretc.analysis.assumptions import assumptions
-    from fretc.commands import test_against
+    from fretc.commands import test_against, test_staging
     from fretc.commands.analyze import in_force, project_of
 
     project, first = project_of(files, requirements, bindings)
@@ -131,6 +143,9 @@ def test(
         place = output or "build/tests/conformance.json"
         test_against.against(against, rules, assumed, seconds, line_time, form, place, protected)
     output = output or "build/tests/suite.json"
+    on_stage = emitted if emitted in test_staging.FORMS else None
+    if on_stage is not None:
+        test_staging.check(on_stage, emit_to)
     suite, stopped = _made(rules, assumed, seconds)
     text = f"{to_json(plain(suite))}\n"
     if emitted is not None and emit_to == "-":
@@ -140,11 +155,15 @@ def test(
     else:
         click.echo(coloured([*_lines(suite, rules, show)]), nl=False)
     outputs: dict[Path, str] = {} if output == "-" else {Path(output): text}
-    if emitted is not None:
+    if emitted is not None and on_stage is None:
         outputs |= _files(suite, rules, emitted, emit_to)
     deliver(outputs, protected)
     if stopped:
         raise SystemExit(INTERRUPTED)
+    if on_stage is not None:
+        status = test_staging.staged(project, suite, on_stage, emit_to, runs, jobs)
+        if status != SHOWN:
+            raise SystemExit(status)
     raise SystemExit(SHOWN if suite.is_complete else NOT_SHOWN)
 
 
