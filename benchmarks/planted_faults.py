@@ -17,7 +17,7 @@ from typing import Any
 from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
 from compiler.targets.python import monitor as monitors
-from fretc.analysis.games.budget import Budget
+from fretc.analysis.arena.budget import Budget
 from fretc.campaigns.experiment import SafetyFunction, interceptor_text, monitor_text
 from fretc.testing.assembly import jobs
 from fretc.testing.bench import Bench
