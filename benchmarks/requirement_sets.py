@@ -9,8 +9,8 @@ import spot
 
 from compiler.logic import printing
 from fretc.analysis.analysis import analyze
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import Roles
-from fretc.analysis.games.budget import Budget
 from tests.requirement_sets import ROLES, drawn, roles, rules, staged
 
 LIMIT = 60
@@ -22,8 +22,9 @@ def ours(sentences: Sequence[str], named: Roles = ROLES) -> tuple[bool, float]:
     rules(*sentences)
     start = time.process_time()
     setting = staged(*sentences, roles=named)
-    there = setting.close(rule.id for rule in setting.rules)
-    game = there.game(there.arena.counters, Budget(LIMIT))
+    budget = Budget(LIMIT)
+    there = setting.close((rule.id for rule in setting.rules), budget)
+    game = there.game(there.arena.counters, budget)
     return game.solution().is_realizable, time.process_time() - start
 
 

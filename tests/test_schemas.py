@@ -13,11 +13,14 @@ from fretc.audit.evidence import schema
 from fretc.audit.store import manifest
 from fretc.coverage import mutation_record, record
 from fretc.testing import suite
+from fretc.testing.conformance import findings as conformance
 
 SCHEMAS = {"evidence": schema.schema(), "verification": claims.schema()}
 SCHEMAS |= {"store": manifest.schema(), "analysis": findings.schema()}
 SCHEMAS |= {"analyzed-set": evidence.schema(), "tests": suite.schema()}
 SCHEMAS |= {"coverage": record.schema(), "mutation": mutation_record.schema()}
+
+SCHEMAS |= {"conformance": conformance.schema()}
 
 
 @pytest.mark.parametrize(("name", "made"), SCHEMAS.items())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import TypeVar
 
 from compiler.files.edition import __version__
@@ -13,6 +13,7 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import comparisons, temporal_predicate
 from fretc.analysis import implications as of_runs
 from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import by_outputs, by_variables
 from fretc.analysis.controllers.circuit import Circuit
@@ -98,7 +99,7 @@ def analyze(
     return assembled(rules, roles, assumptions, options, found)
 
 
-Question = Callable[[Stage, float], Iterator[Finding]]
+Question = Callable[[Stage, Budget], Iterator[Finding]]
 _OF_GROUPS: Mapping[str, Question] = {
     "does each of {} say anything?": of_runs.constants,
     "is each of {} ever triggered?": of_runs.vacuities,
@@ -142,8 +143,9 @@ def _promises(assumptions: Sequence[Formalized], roles: Roles, options: Options)
 
     def ask(known: Sequence[Finding]) -> Iterator[Finding]:
         for group in by_variables(assumptions, (), roles):
-            setting = stage(group, (), roles)
-            for each in of_runs.consistency(setting, options.seconds):
+            budget = Budget(options.seconds)
+            setting = stage(group, (), roles, budget=budget)
+            for each in of_runs.consistency(setting, budget):
                 if isinstance(each, Consistency) and each.holds is False:
                     ids = ", ".join(each.requirements)
                     yield OpenQuestion("what follows from the assumptions", f"no run keeps {ids}")
@@ -182,10 +184,16 @@ class _Setting:
             f"{ids[0]} and {len(ids) - 1} others" if len(ids) > _MOST_NAMES else ", ".join(ids)
         )
         self._ids = tuple(ids)
+        self._built: Stage | None = None
 
-    @cached_property
-    def _stage(self) -> Stage:
-        return stage(self._rules, self._assumptions, self._roles, as_fret=self._options.as_fret)
+    def _stage(self, budget: Budget) -> Stage:
+        """The arena, whose comparisons are sorted out in the time of the first question."""
+        if self._built is None:
+            as_fret = self._options.as_fret
+            self._built = stage(
+                self._rules, self._assumptions, self._roles, as_fret=as_fret, budget=budget
+            )
+        return self._built
 
     def verdict(self) -> Job:
         """Whether a component can be kept."""
@@ -194,9 +202,11 @@ class _Setting:
             return component(self._rules, self._roles, Verdict.NOT_CHECKED, why)
 
         def ask(known: Sequence[Finding]) -> Iterator[Finding]:
+            budget = Budget(self._options.seconds)
             try:
-                yield from verdict(self._stage, self._options.seconds)
-            except BeyondError as error:
+                found, self._built = verdict(self._stage(budget), budget)
+                yield found
+            except (BeyondError, OutOfTimeError) as error:
                 yield not_checked(str(error))
 
         return Job(f"can {self._name} be kept together?", ask, not_checked)
@@ -256,7 +266,7 @@ class _Setting:
                 if isinstance(each, Conflict) and set(each.requirements) <= set(self._ids)
             ]
             if mine:
-                yield from repairs(self._stage, mine, self._options.seconds)
+                yield from self._answers(title, lambda there, budget: repairs(there, mine, budget))
 
         return Job(title, ask, partial(OpenQuestion, title))
 
@@ -277,9 +287,10 @@ class _Setting:
         )
 
     def _answers(self, title: str, question: Question) -> Iterator[Finding]:
+        budget = Budget(self._options.seconds)
         try:
-            yield from question(self._stage, self._options.seconds)
-        except BeyondError as error:
+            yield from question(self._stage(budget), budget)
+        except (BeyondError, OutOfTimeError) as error:
             yield OpenQuestion(title, str(error))
 
 

@@ -10,9 +10,9 @@ from operator import attrgetter
 from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vacuity
-from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import minimal
 from fretc.analysis.reasons import listed
 from fretc.analysis.stage import Stage
@@ -46,19 +46,22 @@ class Removable:
     requirements: tuple[str, ...]
 
 
-def consistency(setting: Stage, seconds: float) -> Iterator[Consistency | OpenQuestion]:
+def consistency(setting: Stage, budget: Budget) -> Iterator[Consistency | OpenQuestion]:
     """Whether any run keeps all requirements."""
     ids = tuple(rule.id for rule in setting.rules)
     question = f"whether any run keeps {listed(ids)}"
+    doubt = setting.left_out or setting.of_inputs or setting.of_outputs
     try:
-        there = setting.close(ids)
-        runs = there.runs(there.counters(ids), Budget(seconds))
-        is_possible = runs.is_possible()
+        there = setting.close(ids, budget)
+        counters = there.counters(ids)
+        is_possible = there.runs(counters, budget).is_possible()
+        if is_possible and setting.left_out is None and doubt is not None:
+            is_certain = there.runs(counters, budget, certain=True).is_possible()
+            doubt = None if is_certain else doubt
     except OutOfTimeError as error:
         yield Consistency(ids, None)
         yield OpenQuestion(question, str(error))
         return
-    doubt = setting.left_out or setting.of_inputs or setting.of_outputs
     if is_possible and doubt is not None:
         yield Consistency(ids, None)
         yield OpenQuestion(question, doubt)
@@ -66,26 +69,26 @@ def consistency(setting: Stage, seconds: float) -> Iterator[Consistency | OpenQu
         yield Consistency(ids, is_possible)
 
 
-def constants(setting: Stage, seconds: float) -> Iterator[Constant | OpenQuestion]:
+def constants(setting: Stage, budget: Budget) -> Iterator[Constant | OpenQuestion]:
     """Requirements that say nothing, or ask for what cannot be."""
     for counter in setting.arena.counters:
         try:
-            if not setting.runs((counter,), Budget(seconds)).is_possible():
+            if not setting.runs((counter,), budget.again()).is_possible():
                 yield Constant(counter.id, always=False)
-            elif _is_implied(setting, counter, (), Budget(seconds)):
+            elif _is_implied(setting, counter, (), budget.again()):
                 yield Constant(counter.id, always=True)
         except OutOfTimeError as error:
             yield OpenQuestion(f"whether {counter.id} says anything", str(error))
 
 
-def redundancies(setting: Stage, seconds: float) -> Iterator[Redundancy | Removable | OpenQuestion]:
+def redundancies(setting: Stage, budget: Budget) -> Iterator[Redundancy | Removable | OpenQuestion]:
     """Requirements that others imply, one at a time; then those that go together."""
     counters = setting.arena.counters
     found: list[str] = []
     for counter in counters:
         others = [each for each in counters if each is not counter]
         try:
-            by = _implying(setting, counter, others, Budget(seconds))
+            by = _implying(setting, counter, others, budget.again())
         except OutOfTimeError as error:
             yield OpenQuestion(f"whether others imply {counter.id}", str(error))
             continue
@@ -93,7 +96,7 @@ def redundancies(setting: Stage, seconds: float) -> Iterator[Redundancy | Remova
             found.append(counter.id)
             yield Redundancy(counter.id, tuple(sorted(by)))
     try:
-        yield Removable(_removable(setting, found, Budget(seconds)))
+        yield Removable(_removable(setting, found, budget.again()))
     except OutOfTimeError as error:
         yield OpenQuestion(f"which of {listed(found)} may go together", str(error))
 
@@ -127,7 +130,7 @@ def _is_implied(
     setting: Stage, counter: Counter, others: Sequence[Counter], budget: Budget
 ) -> bool:
     """Whether there are runs that keep the others, and none of them breaks the counter."""
-    setting = setting.close(each.id for each in (counter, *others))
+    setting = setting.close((each.id for each in (counter, *others)), budget)
     (counter,) = setting.counters([counter.id])
     kept = setting.counters(each.id for each in others)
     runs = setting.runs(kept, budget, watched=(counter,))
@@ -137,13 +140,13 @@ def _is_implied(
     return not runs.can_break(counter, lasting)
 
 
-def vacuities(setting: Stage, seconds: float) -> Iterator[Vacuity | OpenQuestion]:
+def vacuities(setting: Stage, budget: Budget) -> Iterator[Vacuity | OpenQuestion]:
     """Requirements of which a scope or a trigger never comes, in runs that keep the others."""
     rules = {rule.id: rule for rule in setting.rules}
     for counter in setting.arena.counters:
         others = [each.id for each in setting.arena.counters if each is not counter]
         try:
-            found = _vacuity(setting, rules[counter.id], counter, others, Budget(seconds))
+            found = _vacuity(setting, rules[counter.id], counter, others, budget.again())
         except OutOfTimeError as error:
             yield OpenQuestion(f"whether {counter.id} is ever triggered", str(error))
             continue
@@ -155,7 +158,7 @@ def _vacuity(
     setting: Stage, rule: Formalized, counter: Counter, others: Sequence[str], budget: Budget
 ) -> Vacuity | None:
     def excluded(ids: Sequence[str], ticks: Callable[[Counter], Function]) -> bool:
-        there = setting.close([*ids, counter.id])
+        there = setting.close([*ids, counter.id], budget)
         (watched,) = there.counters([counter.id])
         runs = there.runs(there.counters(ids), budget, watched=(watched,))
         lasting = runs.lasting()
@@ -174,7 +177,7 @@ def _vacuity(
     return None
 
 
-def inconsistencies(setting: Stage, seconds: float) -> Iterator[Inconsistency | OpenQuestion]:
+def inconsistencies(setting: Stage, budget: Budget) -> Iterator[Inconsistency | OpenQuestion]:
     """Pairs and triples that can be led to where they cannot be kept; the whole, where none is.
 
     Source: Post, Hoenicke, Podelski, rt-Inconsistency: a new property for real-time requirements,
@@ -190,7 +193,6 @@ def inconsistencies(setting: Stage, seconds: float) -> Iterator[Inconsistency | 
     if doubt is not None:
         yield OpenQuestion(question, doubt)
         return
-    budget = Budget(seconds)
     found: list[frozenset[str]] = []
     try:
         alone = {each.id: setting.runs((each,), budget).lasting() for each in counters}
@@ -231,7 +233,7 @@ def _inconsistency(
     setting: Stage, members: Sequence[Counter], alone: Mapping[str, Function], budget: Budget
 ) -> Inconsistency | None:
     ids = sorted(each.id for each in members)
-    there = setting.close(ids)
+    there = setting.close(ids, budget)
     if there is not setting:
         setting, members = there, there.counters(ids)
         alone = {each.id: setting.runs((each,), budget).lasting() for each in members}
@@ -245,4 +247,4 @@ def _inconsistency(
     letters = runs.path(clash, each_alone)
     if letters is None:
         return None
-    return Inconsistency(tuple(ids), setting.ticks(ids, letters))
+    return Inconsistency(tuple(ids), setting.ticks(ids, [(letter, 1) for letter in letters]))

@@ -18,9 +18,9 @@ from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.findings import Conflict, OpenQuestion, Repair
-from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.stage import Stage, stage
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
@@ -83,21 +83,21 @@ class _Setting:
 
 
 def repairs(
-    setting: Stage, conflicts: Sequence[Conflict], seconds: float
+    setting: Stage, conflicts: Sequence[Conflict], budget: Budget
 ) -> Iterator[Repair | OpenQuestion]:
     """What would settle each conflict of a component.
 
     Args:
         setting: of the component.
         conflicts: some of its minimal ones.
-        seconds: of a processor, for all of them.
+        budget: for all of them.
     """
     known = _Known()
     fought = [frozenset(conflict.requirements) for conflict in conflicts]
     for conflict in conflicts:
         rules = tuple(rule for rule in setting.rules if rule.id in conflict.requirements)
         for family in (_changes, _promises):
-            share = Budget(seconds / len(conflicts) / 2)
+            share = Budget(budget.seconds / len(conflicts) / 2)
             try:
                 yield from family(
                     _Setting(setting, rules, fought, share, known), conflict.requirements
@@ -160,7 +160,8 @@ def _staged(setting: _Setting, rules: Rules, assumed: Rules) -> tuple[Stage, tup
     It is that of the component, where all are counted there and the assumptions count nothing: to
     build another one takes longer than the game.
     """
-    whole = setting.whole
+    whole, budget = setting.whole, setting.budget
+    ids = [rule.id for rule in rules]
     is_there = set(map(id, rules)) <= set(map(id, whole.rules))
     if (
         is_there
@@ -169,10 +170,11 @@ def _staged(setting: _Setting, rules: Rules, assumed: Rules) -> tuple[Stage, tup
         and not any(rule.ticks for rule in assumed)
     ):
         with suppress(BeyondError):
-            there = whole.assuming(assumed).close(rule.id for rule in rules)
-            return there, there.counters(rule.id for rule in rules)
-    there = stage(rules, (*whole.assumptions, *assumed), whole.roles, as_fret=whole.as_fret)
-    there = there.close(rule.id for rule in rules)
+            there = whole.assuming(assumed).close(ids, budget)
+            return there, there.counters(ids)
+    near = (*whole.assumptions, *assumed)
+    there = stage(rules, near, whole.roles, as_fret=whole.as_fret, budget=budget)
+    there = there.close(ids, budget)
     return there, there.arena.counters
 
 
@@ -287,14 +289,16 @@ def _assumptions(setting: _Setting) -> Iterator[Rules]:
 
 
 def _lost(setting: _Setting) -> Function | None:
-    """The inputs that lose any tick, where nothing is remembered; None: something is.
+    """The inputs that lose any tick, where nothing is remembered; None: something may be.
 
     Then each tick is like the first one, and the environment wins by such inputs there. Only what
     excludes all of them at every tick settles the conflict: of our families, two inputs at once.
     """
     there, counters = _staged(setting, setting.rules, ())
     game = there.game(counters, setting.budget)
-    return game.legal - game.answered(bdd.true()) if game.is_memoryless else None
+    if there.arena.alphabet is not setting.whole.arena.alphabet or not game.is_memoryless:
+        return None
+    return game.legal - game.answered(bdd.true())
 
 
 def _inputs(setting: _Setting) -> dict[str, Function]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain, repeat
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import comparisons
@@ -11,14 +12,16 @@ from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers, Tick, numbers
+from fretc.analysis.arena.budget import ENDLESS, Budget
 from fretc.analysis.arena.counters import Counter, counter
 from fretc.analysis.arena.memory import side_by_side
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about
-from fretc.analysis.games.budget import Budget
-from fretc.analysis.games.game import Game, Letter, upheld
+from fretc.analysis.games.game import Game, upheld
+from fretc.analysis.games.plays import Run
+from fretc.analysis.games.replay import remembering
 from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
 
@@ -37,8 +40,11 @@ class Stage:
     arena: Arena
     roles: Roles
     as_fret: bool
-    past: Role = Role.INPUT
-    """Who chooses numbers of the tick before, as far as nothing is remembered of them."""
+    favoured: Role = Role.INPUT
+    """Who chooses what nothing is known of: a number of the tick before, a signal that may be
+    unknown, what was before the first tick. Whoever loses even so loses."""
+    steps: int = 0
+    """How many ticks before a bound of a number it is remembered whether that is within reach."""
     fresh: Numbers = field(default_factory=numbers, compare=False, repr=False)
     """Variables that nothing of the stage has."""
     _close: dict[frozenset[str], Stage] = field(default_factory=dict, compare=False, repr=False)
@@ -50,28 +56,64 @@ class Stage:
         wanted = set(ids)
         return tuple(each for each in self.arena.counters if each.id in wanted)
 
-    def close(self, ids: Iterable[str]) -> Stage:
-        """Where some of the requirements are best looked at: by themselves, if they count far."""
+    def close(self, ids: Iterable[str], budget: Budget) -> Stage:
+        """Where some of the requirements are best looked at: by themselves, if they count far.
+
+        What is remembered of numbers depends on all requirements; there it is the stage itself.
+
+        Raises:
+            OutOfTimeError: it takes longer than the budget to sort out their comparisons.
+        """
         wanted = frozenset(ids)
         members = (*self.counters(wanted), *self.arena.assumptions)
         long = [each for each in members if each.longest >= _LONG]
-        if len(members) > _FEW or len(long) < 2 or self.arena.memory is not None:
+        remembers = bool(self._memory) or self.arena.alphabet.is_refinable
+        if len(members) > _FEW or len(long) < 2 or remembers:
             return self
         if wanted not in self._close:
-            self._close[wanted] = interleaved(self, wanted)
+            self._close[wanted] = self._apart(wanted, budget)
         return self._close[wanted]
+
+    def _apart(self, ids: frozenset[str], budget: Budget) -> Stage:
+        """Some of the requirements by themselves; the stage itself, if less is known of them so."""
+        try:
+            found = interleaved(self, ids, budget)
+        except BeyondError:
+            return self
+        counted = [{each.id for each in there.counters(ids)} for there in (self, found)]
+        mine, its = self.arena.alphabet, found.arena.alphabet
+        is_known = all(
+            its.doubtful(role) <= mine.doubtful(role) for role in (Role.INPUT, Role.OUTPUT)
+        )
+        return found if is_known and counted[0] == counted[1] else self
 
     def game(self, counters: Sequence[Counter], budget: Budget) -> Game:
         """The game of some counters, under all assumptions."""
         kept, assumptions = [*counters], [*self.arena.assumptions]
-        (kept if self.past is Role.OUTPUT else assumptions).extend(self._memory)
+        (kept if self.favoured is Role.OUTPUT else assumptions).extend(self._memory)
         if not self._upheld:
             self._upheld.append(upheld(self.arena.alphabet, assumptions, budget))
         return Game(self.arena.alphabet, kept, assumptions, budget, self._upheld[0])
 
     @property
     def _memory(self) -> tuple[Counter, ...]:
-        return () if self.arena.memory is None else (self.arena.memory,)
+        memory = self.arena.alphabet.memory()
+        return () if memory is None else (memory,)
+
+    def generous(self, budget: Budget) -> Stage:
+        """The same where the system is favoured: what cannot be kept even so cannot be kept."""
+        if self.arena.alphabet.open is None:
+            return self
+        return _built(
+            self.rules,
+            self.assumptions,
+            self.roles,
+            numbers(),
+            budget,
+            as_fret=self.as_fret,
+            favoured=Role.OUTPUT,
+            steps=self.steps,
+        )
 
     def assuming(self, more: Sequence[Formalized]) -> Stage:
         """The same under further assumptions, whose bits come last in the order.
@@ -83,7 +125,8 @@ class Stage:
         for rule in more:
             made = counter(rule, alphabet, self.fresh, {})
             known = {*alphabet.inputs, *alphabet.outputs, *(bit.now for bit in made.bits)}
-            if not known.issuperset(bdd.support(made.safe)):
+            read = (bdd.support(each) for each in (made.safe, made.triggered, *made.steps))
+            if not known.issuperset(chain.from_iterable(read)):
                 raise BeyondError(f"{rule.id} is about other atoms")
             found.append(made)
         arena = replace(self.arena, assumptions=tuple(found))
@@ -91,35 +134,60 @@ class Stage:
             self, assumptions=(*self.assumptions, *more), arena=arena, _close={}, _upheld=[]
         )
 
-    def generous(self) -> Stage | None:
-        """The same where the system chooses numbers of the tick before; None: nobody does.
-
-        What cannot be kept even so cannot be kept.
-        """
-        if self.arena.memory is None:
+    def finer(self, budget: Budget) -> Stage | None:
+        """The same with twice as much remembered of numbers; None: that tells nothing more."""
+        if not self.arena.alphabet.is_refinable or self.steps >= _MOST_STEPS:
             return None
-        rules, near = self.rules, self.assumptions
-        return _built(rules, near, self.roles, numbers(), as_fret=self.as_fret, past=Role.OUTPUT)
+        steps, near = 2 * self.steps or 1, self.assumptions
+        found = _built(
+            self.rules, near, self.roles, numbers(), budget, as_fret=self.as_fret, steps=steps
+        )
+        if (found.left_out, found.of_outputs) != (self.left_out, self.of_outputs):
+            return None  # it is more than can be sorted out
+        return None if found.arena.size == self.arena.size else found
 
     def runs(
-        self, kept: Sequence[Counter], budget: Budget, watched: Sequence[Counter] = ()
+        self,
+        kept: Sequence[Counter],
+        budget: Budget,
+        watched: Sequence[Counter] = (),
+        *,
+        certain: bool = False,
     ) -> Runs:
         """The runs that keep some counters, and all assumptions."""
         counters = [*kept, *self.arena.assumptions, *self._memory]
-        return Runs(self.arena.alphabet, counters, budget, watched)
+        return Runs(self.arena.alphabet, counters, budget, watched, certain=certain)
 
-    def ticks(self, ids: Iterable[str], letters: Iterable[Letter]) -> tuple[Tick, ...]:
-        """Letters as values of the variables of some requirements and of the assumptions."""
+    def ticks(
+        self, ids: Iterable[str], runs: Iterable[Run], numbers: Sequence[Tick] = ()
+    ) -> tuple[Tick, ...]:
+        """Letters as values of the variables of some requirements and of the assumptions.
+
+        Args:
+            ids: of the requirements.
+            runs: letters from the first tick on.
+            numbers: of each tick, where they depend on those of the tick before.
+        """
         wanted = set(ids)
         rules = [*(rule for rule in self.rules if rule.id in wanted), *self.assumptions]
         names = {name for rule in rules for name in (*rule.variables, *rule.propositions)}
-        each = map(self.arena.alphabet.values, letters)
-        return tuple({name: tick[name] for name in sorted(tick) if name in names} for tick in each)
+
+        def shown(tick: Tick) -> Tick:
+            return {name: tick[name] for name in sorted(tick) if name in names}
+
+        alphabet = self.arena.alphabet
+        ticks = chain.from_iterable(
+            repeat(shown(alphabet.values(letter)), count)
+            for letter, count in remembering(alphabet, runs)
+        )
+        if not numbers:
+            return tuple(ticks)
+        return tuple(shown(tick | more) for tick, more in zip(ticks, numbers, strict=True))
 
     @property
     def certain(self) -> tuple[Counter, ...]:
-        """The counters of requirements whose letters are just those that there can be."""
-        doubtful = self.arena.alphabet.doubtful
+        """The counters of requirements of which the environment has no letter too many."""
+        doubtful = self.arena.alphabet.doubtful(Role.INPUT)
         if any(not doubtful.isdisjoint(_atoms(rule)) for rule in self.assumptions):
             return ()
         return self.counters(rule.id for rule in self.rules if doubtful.isdisjoint(_atoms(rule)))
@@ -150,17 +218,19 @@ def stage(
     roles: Roles,
     *,
     as_fret: bool = False,
+    budget: Budget = ENDLESS,
 ) -> Stage:
     """The stage of some requirements.
 
     Raises:
         BeyondError: an assumption has no counter.
+        OutOfTimeError: it takes longer than the budget to sort out their comparisons.
     """
     near = about(rules, assumptions, roles)
-    return _built(rules, near, roles, numbers(), as_fret=as_fret)
+    return _built(rules, near, roles, numbers(), budget, as_fret=as_fret)
 
 
-def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
+def interleaved(setting: Stage, ids: Iterable[str], budget: Budget) -> Stage:
     """The stage of a few of the requirements, with bits of the same weight side by side.
 
     So one count stays easy to compare with another one; counters one after the other need as many
@@ -169,11 +239,24 @@ def interleaved(setting: Stage, ids: Iterable[str]) -> Stage:
     wanted = set(ids)
     rules = [rule for rule in setting.rules if rule.id in wanted]
     near = about(rules, setting.assumptions, setting.roles)
+
+    def built(fresh: Numbers) -> Stage:
+        return _built(
+            rules,
+            near,
+            setting.roles,
+            fresh,
+            budget,
+            as_fret=setting.as_fret,
+            favoured=setting.favoured,
+            steps=setting.steps,
+        )
+
     used = numbers()
-    first = _built(rules, near, setting.roles, used, as_fret=setting.as_fret)
+    first = built(used)
     counters = (*first.arena.counters, *first.arena.assumptions)
     fresh = side_by_side([word for each in counters for word in each.words], next(used))
-    return _built(rules, near, setting.roles, fresh, as_fret=setting.as_fret)
+    return built(fresh)
 
 
 def _built(
@@ -181,13 +264,15 @@ def _built(
     near: Sequence[Formalized],
     roles: Roles,
     fresh: Numbers,
+    budget: Budget,
     *,
     as_fret: bool,
-    past: Role = Role.INPUT,
+    favoured: Role = Role.INPUT,
+    steps: int = 0,
 ) -> Stage:
-    alphabet = alphabet_of([*rules, *near], roles, fresh, past)
+    alphabet = alphabet_of([*rules, *near], roles, fresh, favoured, budget, steps)
     built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
-    return Stage(tuple(rules), tuple(near), built, roles, as_fret, past, fresh)
+    return Stage(tuple(rules), tuple(near), built, roles, as_fret, favoured, steps, fresh)
 
 
 def _has_numbers(rule: Formalized) -> bool:
@@ -198,13 +283,35 @@ def _has_numbers(rule: Formalized) -> bool:
     return bool(rule.stated) or not declared.propositions.keys().isdisjoint(rule.variables)
 
 
-def alphabet_of(rules: Sequence[Formalized], roles: Roles, fresh: Numbers, past: Role) -> Alphabet:
+_MOST_STEPS = 8
+"""With more the comparisons of a group take longer to sort out than a question may."""
+
+
+def alphabet_of(
+    rules: Sequence[Formalized],
+    roles: Roles,
+    fresh: Numbers,
+    favoured: Role,
+    budget: Budget = ENDLESS,
+    steps: int = 0,
+    *,
+    of_moments: bool = False,
+) -> Alphabet:
     """The letters of some rules.
 
     With the numbers that comparisons are about; z3 is imported where there are some.
+
+    Args:
+        rules: whose atoms they have.
+        roles: of their variables.
+        fresh: variables for bits.
+        favoured: who chooses what is not known.
+        budget: for sorting comparisons out.
+        steps: how many ticks before a bound it is remembered whether that is within reach.
+        of_moments: whether propositions over several samples are true or false at will.
     """
     if not any(map(_has_numbers, rules)):
         return Propositions(rules, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 
-    return Cells(rules, roles, fresh, past)
+    return Cells(rules, roles, fresh, favoured, budget, steps, of_moments=of_moments)

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from itertools import chain, repeat
+from dataclasses import dataclass, field, replace
 
+from compiler.files.records import replace as altered
 from compiler.formalization.formalized import Formalized
 from fretc.analysis.arena.alphabet import BeyondError
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.controllers.circuit import Circuit, circuit
 from fretc.analysis.controllers.files import Form
 from fretc.analysis.controllers.machine import NoMachineError, machine
 from fretc.analysis.controllers.moves import Mealy, mealy
 from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
-from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import Members, cores, minimal
-from fretc.analysis.games.plays import Counterstrategy
+from fretc.analysis.games.plays import Counterstrategy, NoPlayError
 from fretc.analysis.games.replay import broken
 from fretc.analysis.games.switches import switched
 from fretc.analysis.reasons import because, listed
@@ -33,15 +31,38 @@ class Completeness:
     requirements: tuple[str, ...]
 
 
-def verdict(setting: Stage, seconds: float) -> Iterator[Component]:
-    """Whether the requirements of a component can be kept together."""
-    start = time.process_time()
+def verdict(setting: Stage, budget: Budget) -> tuple[Component, Stage]:
+    """Whether the requirements of a component can be kept together, and the stage that tells.
+
+    Where that depends on numbers of earlier ticks, more and more of them is remembered.
+    """
+    answer, why = _answer(setting, budget)
+    there = setting
+    while answer is Verdict.NOT_CHECKED and _has_room(budget):
+        try:
+            finer = there.finer(budget)
+        except (BeyondError, OutOfTimeError):
+            break
+        if finer is None:
+            break
+        there = finer
+        found, because_ = _answer(there, budget)
+        if found is not Verdict.NOT_CHECKED:
+            answer, why, setting = found, because_, there
+    spent = round(budget.spent, 3)
+    return component(setting.rules, setting.roles, answer, why, spent), setting
+
+
+def _has_room(budget: Budget) -> bool:
+    """Whether there is time to remember more: each time takes several times as long."""
+    return budget.spent < budget.seconds / 8
+
+
+def _answer(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
     try:
-        answer, why = _verdict(setting, Budget(seconds))
+        return _verdict(setting, budget)
     except (BeyondError, OutOfTimeError) as error:
-        answer, why = Verdict.NOT_CHECKED, str(error)
-    spent = round(time.process_time() - start, 3)
-    yield component(setting.rules, setting.roles, answer, why, spent)
+        return Verdict.NOT_CHECKED, str(error)
 
 
 def component(
@@ -56,7 +77,7 @@ def component(
 def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
     """The verdict, and how it is known, or why it is not."""
     _check_assumptions(setting, budget)
-    if _is_kept(setting, [each.id for each in setting.arena.counters], budget):
+    if not _is_lost(setting, [each.id for each in setting.arena.counters], budget):
         doubt = setting.left_out or setting.of_outputs
         if doubt is None:
             return Verdict.REALIZABLE, "the system has a strategy"
@@ -64,18 +85,16 @@ def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
         doubt = setting.of_inputs
         if doubt is None:
             return Verdict.UNREALIZABLE, "the environment wins"
-        generous = setting.generous()
-        if generous is not None and _is_lost(generous, generous.arena.counters, budget):
+        generous, ids = setting.generous(budget), [rule.id for rule in setting.rules]
+        if generous.of_inputs is None and _is_lost(generous, ids, budget):
             return Verdict.UNREALIZABLE, f"the environment wins, {_WHATEVER}"
-        answer = _unrolled(setting, budget) if generous is not None else None
+        answer = _unrolled(setting, budget) if generous is not setting else None
         if answer is not None:
             return answer
     return Verdict.NOT_CHECKED, doubt
 
 
-def _is_kept(setting: Stage, ids: Sequence[str], budget: Budget) -> bool:
-    there = setting.close(ids)
-    return there.game(there.counters(ids), budget).solution().is_realizable
+_WHATEVER = "whatever is taken for what is not known"
 
 
 def _unrolled(setting: Stage, budget: Budget) -> tuple[Verdict, str] | None:
@@ -95,29 +114,24 @@ def _unrolled(setting: Stage, budget: Budget) -> tuple[Verdict, str] | None:
     return Verdict.REALIZABLE, f"there are no inputs, and {run} keeps all of them"
 
 
-_WHATEVER = "whatever the numbers of the tick before are taken for"
-
-
-def _is_lost(generous: Stage, counters: Sequence[Counter], budget: Budget) -> bool:
-    """Whether the environment wins, though the system chooses what is not remembered."""
-    if generous.of_inputs is not None:
-        return False
-    return not generous.game(counters, budget).solution().is_realizable
+def _is_lost(setting: Stage, ids: Sequence[str], budget: Budget) -> bool:
+    """Whether the environment wins against some requirements."""
+    there = setting.close(ids, budget)
+    return not there.game(there.counters(ids), budget).solution().is_realizable
 
 
 def strategy(
-    setting: Stage, seconds: float, *, number: int, form: Form
+    setting: Stage, budget: Budget, *, number: int, form: Form
 ) -> Iterator[Circuit | Mealy | OpenQuestion]:
     """How a component that can be kept is kept.
 
     Args:
         setting: of the component.
-        seconds: of a processor.
+        budget: for finding it.
         number: of the component.
         form: in which the strategy is to be written.
     """
     ids = tuple(rule.id for rule in setting.rules)
-    budget = Budget(seconds)
     try:
         game = setting.game(setting.arena.counters, budget)
         found = machine(game, game.solution(), budget)
@@ -139,67 +153,118 @@ def _check_assumptions(setting: Stage, budget: Budget) -> None:
         raise BeyondError(f"no run keeps the assumptions {ids}")
 
 
-def conflicts(setting: Stage, seconds: float) -> Iterator[Conflict | Completeness | OpenQuestion]:
-    """Every minimal conflict; at the end a question, where there may be more."""
-    budget = Budget(seconds)
-    counters = setting.arena.counters if setting.of_inputs is None else setting.certain
-    read = {rule.id: frozenset(rule.variables) for rule in setting.rules}
+def conflicts(setting: Stage, budget: Budget) -> Iterator[Conflict | Completeness | OpenQuestion]:
+    """Every minimal conflict; at the end a question, where there may be more.
 
-    def chosen(members: Members) -> list[Counter]:
-        return [counters[i] for i in sorted(members)]
-
-    def is_conflict(members: Members) -> bool:
-        return not _is_kept(setting, [each.id for each in chosen(members)], budget)
-
-    def near(i: int, j: int) -> bool:
-        return bool(read[counters[i].id] & read[counters[j].id])
-
+    Where something is not known, a conflict is certain if the environment wins whatever it is taken
+    for; it is minimal for certain if the environment does not win any less, though it is favoured.
+    Where neither is certain, more of numbers is remembered.
+    """
     question = f"which others of {', '.join(rule.id for rule in setting.rules)} fight"
+    shown: set[tuple[str, ...]] = set()
+    found = _Fights(setting, setting)
     try:
         _check_assumptions(setting, budget)
-        at_once = switched(setting.game(counters, budget), setting.fresh)
-        sets = at_once.cores(budget) if at_once else cores(len(counters), is_conflict, near)
-        for members in sets:
-            yield _conflict(setting, [each.id for each in chosen(members)], budget)
-        if setting.of_inputs is not None:
-            yield from _with_the_past(setting, budget)
+        there: Stage | None = setting
+        while there is not None:
+            now = _Fights(there, there.generous(budget))
+            for core in now.minimal(budget):
+                if core not in shown:
+                    shown.add(core)
+                    yield _conflict(now.sure(core), core, budget)
+            found = now
+            there = there.finer(budget) if found.is_open and _has_room(budget) else None
+        for core in found.larger:
+            yield _perhaps_larger(_conflict(found.generous, core, budget))
     except OutOfTimeError as error:
-        yield OpenQuestion(question, f"{error}{_hint(setting, seconds)}")
+        for core in found.larger:
+            yield _perhaps_larger(Conflict(core, (), "the environment wins"))
+        yield OpenQuestion(question, f"{error}{_hint(setting, budget.again())}")
         return
     except BeyondError as error:
         yield OpenQuestion(question, str(error))
         return
-    doubt = setting.left_out or setting.of_inputs
-    if doubt is None:
+    if (doubt := found.doubt) is None:
         yield Completeness(tuple(rule.id for rule in setting.rules))
     else:
         yield OpenQuestion(question, doubt)
 
 
-def _with_the_past(setting: Stage, budget: Budget) -> Iterator[Conflict]:
-    """Conflicts about numbers of the tick before that are certain, and certain to be minimal."""
-    generous = setting.generous()
-    if generous is None:
-        return
-    counters = generous.arena.counters
-    known = {each.id for each in setting.certain}
+def _perhaps_larger(conflict: Conflict) -> Conflict:
+    return altered(conflict, because=f"{conflict.because}; fewer of them may fight already")
 
-    def is_conflict(members: Members) -> bool:
-        return _is_lost(generous, [counters[i] for i in sorted(members)], budget)
 
-    for members in cores(len(counters), is_conflict, lambda i, j: True):
-        ids = sorted(counters[i].id for i in members)
-        fewer = [[id for id in ids if id != other] for other in ids]
-        games = (setting.game(setting.counters(each), budget) for each in fewer)
-        if not known.issuperset(ids) and all(game.solution().is_realizable for game in games):
-            yield Conflict(tuple(ids), (), f"the environment wins, {_WHATEVER}; no play is shown")
+@dataclass(slots=True)
+class _Fights:
+    """The minimal conflicts of a stage, as far as what is not known lets them be told."""
+
+    strict: Stage
+    """Where the environment is favoured."""
+    generous: Stage
+    """Where the system is."""
+    larger: list[tuple[str, ...]] = field(default_factory=list)
+    """Conflicts of which it is not certain that they are minimal."""
+    smaller: list[tuple[str, ...]] = field(default_factory=list)
+    """What the environment wins only where it is favoured."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether more might be told of them."""
+        return bool(self.larger or self.smaller)
+
+    def minimal(self, budget: Budget) -> Iterator[tuple[str, ...]]:
+        """Those that are certain; then all others are known, too."""
+        ids = [each.id for each in self.generous.certain]
+        for core in _minimal(self.generous, ids, budget):
+            fewer = [[id for id in core if id != other] for other in core]
+            is_sure = self.sure(core) is self.strict
+            if is_sure or not any(_is_lost(self.strict, each, budget) for each in fewer):
+                yield core
+            else:
+                self.larger.append(core)
+        if self.generous is not self.strict:
+            for core in _minimal(self.strict, ids, budget):
+                if not _is_lost(self.generous, core, budget):
+                    self.smaller.append(core)
+
+    def sure(self, ids: Sequence[str]) -> Stage:
+        """The stage whose plays of these requirements are certain."""
+        known = {each.id for each in self.strict.certain}
+        return self.strict if known.issuperset(ids) else self.generous
+
+    @property
+    def doubt(self) -> str | None:
+        """Why there may be more conflicts; None: there are no others."""
+        doubt = self.strict.left_out or self.generous.of_inputs or self.strict.of_outputs
+        if doubt is None and self.smaller:
+            which = "; ".join(map(listed, self.smaller))
+            return f"{self.strict.of_inputs}; that decides whether these can be kept: {which}"
+        return doubt
+
+
+def _minimal(there: Stage, ids: Sequence[str], budget: Budget) -> Iterator[tuple[str, ...]]:
+    """The minimal conflicts of some requirements."""
+    read = {rule.id: frozenset(rule.variables) for rule in there.rules}
+
+    def chosen(members: Members) -> tuple[str, ...]:
+        return tuple(ids[i] for i in sorted(members))
+
+    def near(i: int, j: int) -> bool:
+        return bool(read[ids[i]] & read[ids[j]])
+
+    if there.arena.alphabet.memory() is None:
+        at_once = switched(there.game(there.counters(ids), budget), there.fresh)
+        if at_once is not None:
+            return map(chosen, at_once.cores(budget))
+    found = cores(len(ids), lambda members: _is_lost(there, chosen(members), budget), near)
+    return map(chosen, found)
 
 
 _SHORT = 200
 """Ticks of the longest duration where durations are scaled."""
 
 
-def _hint(setting: Stage, seconds: float) -> str:
+def _hint(setting: Stage, budget: Budget) -> str:
     """What fights where all durations are a fraction of what they are: a clue, and no finding."""
     longest = max((rule.ticks or 0 for rule in setting.rules), default=0)
     factor = -(-longest // _SHORT)
@@ -214,11 +279,9 @@ def _hint(setting: Stage, seconds: float) -> str:
     )
     scaled = stage(rules, assumptions, setting.roles, as_fret=setting.as_fret)
     every = [each.id for each in scaled.arena.counters]
-    budget = Budget(seconds)
 
     def fights(ids: Sequence[str]) -> bool:
-        game = scaled.game(scaled.counters(ids), budget)
-        return not game.solution().is_realizable
+        return _is_lost(scaled, ids, budget)
 
     try:
         if not fights(every):
@@ -234,12 +297,12 @@ _LONGEST = 200_000
 
 def _conflict(whole: Stage, members: Sequence[str], budget: Budget) -> Conflict:
     """A minimal conflict, with a play that the formulas of its monitors confirm."""
-    ids, setting = sorted(members), whole.close(members)
+    ids, setting = sorted(members), whole.close(members, budget)
     counters = setting.counters(ids)
     game = setting.game(counters, budget)
     try:
         play = Counterstrategy(game, game.solution(traps=True), budget).play()
-    except OutOfTimeError as error:
+    except (NoPlayError, OutOfTimeError) as error:
         return Conflict(tuple(ids), (), f"the environment wins by a play that is {error}")
     rules = [rule for rule in setting.rules if rule.id in ids]
     alphabet = setting.arena.alphabet
@@ -249,8 +312,4 @@ def _conflict(whole: Stage, members: Sequence[str], budget: Budget) -> Conflict:
     why = because(rules, counters, game, play)
     if play.ticks > _LONGEST:
         return Conflict(tuple(ids), (), why)
-    each = setting.ticks(ids, (letter for letter, _ in play.runs))
-    shown = chain.from_iterable(
-        repeat(t, count) for t, (_, count) in zip(each, play.runs, strict=True)
-    )
-    return Conflict(tuple(ids), tuple(shown), why, play.loop)
+    return Conflict(tuple(ids), setting.ticks(ids, play.runs, play.numbers), why, play.loop)

@@ -17,7 +17,7 @@ from multiprocessing.context import ForkProcess
 from typing import Any, TypeVar
 
 from compiler.files.processes import reply
-from fretc.analysis.games.budget import guard
+from fretc.analysis.arena.budget import guard
 from fretc.analysis.games.job import Job
 from fretish.reading.recursion import deep
 

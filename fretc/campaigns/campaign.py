@@ -69,12 +69,17 @@ def share(count: int, runs: int) -> Share:
 
 
 def simulated(scenario: Scenario, seed: int, out: Path) -> Run:
-    """Record one mission with the compiled safety function, and audit its log."""
-    decision = safety_function(scenario.safety.threshold)
-    node = intercepted(scenario.interceptor)
-    mission = record(out, scenario, node, seed, decision, versions={"fretc": __version__})
+    """Record one mission, and audit its log."""
+    mission = recorded(scenario, seed, out)
     audit = audited(plan(), str(out))
     return _run(mission, {r.requirement: r.verdict for r in audit.results})
+
+
+def recorded(scenario: Scenario, seed: int, out: Path) -> Mission:
+    """Record one mission with the compiled safety function."""
+    decision = safety_function(scenario.safety.threshold)
+    node = intercepted(scenario.interceptor)
+    return record(out, scenario, node, seed, decision, versions={"fretc": __version__})
 
 
 def intercepted(options: Interceptor) -> MakeInterceptor:

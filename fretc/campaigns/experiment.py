@@ -71,7 +71,7 @@ def safety_function(threshold: float = 0.05) -> SafetyFunction:
     Args:
         threshold: metres, in place of the 5 cm of the bindings.
     """
-    return SafetyFunction(_text(), _declarations(threshold))
+    return SafetyFunction(monitor_text(), _declarations(threshold))
 
 
 def interceptor(options: Options, publish: Callable[[Sequence[float]], None]) -> Any:
@@ -81,23 +81,22 @@ def interceptor(options: Options, publish: Callable[[Sequence[float]], None]) ->
         options: in place of those of the bindings.
         publish: takes the command to the wheels: m/s along x, y, z, and rad/s around them.
     """
-    text, source = _interceptor()
-    module = executed(text, source)
+    module = executed(interceptor_text(), "interceptor.py")
     module.OPTIONS = module.Options(**asdict(options))
     return module.Gate(publish)
 
 
 @lru_cache(maxsize=1)
-def _interceptor() -> tuple[str, str]:
-    """What `--emit interceptor` writes for the mission, and its name."""
+def interceptor_text() -> str:
+    """What `--emit interceptor` writes for the mission."""
     declared = project().declarations
     (file,) = interceptors.emit((), TargetOptions(declarations=declared))
-    return file.text, str(file.path)
+    return file.text
 
 
 @lru_cache(maxsize=1)
-def _text() -> str:
-    """The generated monitor."""
+def monitor_text() -> str:
+    """The generated monitor of the safety function."""
     (rule,) = (rule for rule in project().rules if rule.id == SAFETY_REQUIREMENT)
     return monitors.text(rule)
 

@@ -97,7 +97,7 @@ def _installed() -> None:
 
     absent = missing()
     if absent:
-        stop(_missing_extra(absent))
+        stop(missing_extra(absent))
 
 
 def _scenario(name: str) -> Scenario:
@@ -263,7 +263,8 @@ def _count(
     raise SystemExit(VIOLATION if any(run.wrong for run in runs) else SHOWN)
 
 
-def _missing_extra(packages: Sequence[str]) -> Diagnostic:
+def missing_extra(packages: Sequence[str]) -> Diagnostic:
+    """F908."""
     names = " and ".join(f"`{name}`" for name in packages)
     return Diagnostic(
         Code.MISSING_EXTRA,

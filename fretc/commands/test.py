@@ -14,6 +14,7 @@ from fretc.terminal.options import (
     PATH,
     SECONDS,
     format_option,
+    jobs_option,
     output_option,
     path_option,
     requirements_option,
@@ -26,9 +27,11 @@ from fretc.terminal.output import (
     coloured,
     deliver,
     say_briefly,
+    say_line,
     stop,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
+from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -52,21 +55,58 @@ if TYPE_CHECKING:
     show_default=True,
     help="Seconds of a processor for each requirement.",
 )
+@click.option(
+    "--emit",
+    "emitted",
+    type=click.Choice(("pytest", "csv", "fret", "mcap", "scenario")),
+    help="Write the tests: for pytest, as tables for monitors, for the simulator of FRET, as logs "
+    "of messages for audits, or as missions of the simulated robot that show the same.",
+)
+@path_option(
+    "--emit-to", default="build/tests", show_default=True, help="Folder for `--emit`; `-` prints."
+)
+@click.option(
+    "--runs",
+    type=click.IntRange(min=1),
+    default=40,
+    show_default=True,
+    help="Missions that are simulated for `--emit scenario`, at most.",
+)
+@jobs_option
+@click.option(
+    "--against",
+    metavar="CMD",
+    help="Test this program: a line of inputs goes in, a line of outputs comes out.",
+)
+@click.option(
+    "--line-time",
+    type=click.FloatRange(min=0, min_open=True),
+    default=5,
+    show_default=True,
+    help="Seconds that the program of `--against` may take for a line.",
+)
 @requirements_option
 @path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
 @format_option()
 @output_option(
-    default="build/tests/suite.json", show_default=True, help="Where the suite goes; `-` prints it."
+    help="Where the suite goes, or what was seen of a program; `-` prints it. "
+    "[default: build/tests/suite.json, build/tests/conformance.json]"
 )
 def test(
     files: tuple[str, ...],
     component: str | None,
     show: str | None,
     seconds: float,
+    emitted: str | None,
+    emit_to: str,
+    runs: int,
+    jobs: int,
+    against: str | None,
+    line_time: float,
     requirements: str,
     bindings: str | None,
     form: str,
-    output: str,
+    output: str | None,
 ) -> None:
     """Make tests from requirements: few short runs, each with the verdict that it is to get.
 
@@ -75,12 +115,16 @@ def test(
     each sentence that might have been meant in its place is told from it by some run. The other
     requirements are kept by all of them.
 
-    Exit status: 0 all is met or proved impossible, 2 bad use or input, 3 not all was searched.
+    With `--against` a program is tested in place of that: its inputs react to its outputs.
+
+    Exit status: 0 all is met or proved impossible, or the program conforms, 1 it violates a
+    requirement, 2 bad use or input, 3 not all was searched, or tested.
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
     from compiler.project.paths import companions
     from fretc.analysis.assumptions import assumptions
+    from fretc.commands import test_against, test_staging
     from fretc.commands.analyze import in_force, project_of
 
     project, first = project_of(files, requirements, bindings)
@@ -91,17 +135,36 @@ def test(
     say_briefly(remarks, first)
     if has_errors(remarks):
         raise SystemExit(BAD)
+    sources = [requirement.wording.source.name for requirement in project.requirements]
+    protected = [*sources, *companions(sources), *filter(None, [bindings])]
+    if against is not None:
+        if emitted is not None or show is not None:
+            clash = "`--against` tests a program, and makes no tests to emit or show"
+            stop(Diagnostic(Code.BAD_USAGE, clash, help="ask for one of them"))
+        place = output or "build/tests/conformance.json"
+        test_against.against(against, rules, assumed, seconds, line_time, form, place, protected)
+    output = output or "build/tests/suite.json"
+    on_stage = emitted if emitted in test_staging.FORMS else None
+    if on_stage is not None:
+        test_staging.check(on_stage, emit_to)
     suite, stopped = _made(rules, assumed, seconds)
     text = f"{to_json(plain(suite))}\n"
-    if output == "-" or form == "json":
+    if emitted is not None and emit_to == "-":
+        pass  # what is printed is the tests
+    elif output == "-" or form == "json":
         click.echo(text, nl=False)
     else:
         click.echo(coloured([*_lines(suite, rules, show)]), nl=False)
-    if output != "-":
-        sources = [requirement.wording.source.name for requirement in project.requirements]
-        deliver({Path(output): text}, [*sources, *companions(sources), *filter(None, [bindings])])
+    outputs: dict[Path, str] = {} if output == "-" else {Path(output): text}
+    if emitted is not None and on_stage is None:
+        outputs |= _files(suite, rules, emitted, emit_to)
+    deliver(outputs, protected)
     if stopped:
         raise SystemExit(INTERRUPTED)
+    if on_stage is not None:
+        status = test_staging.staged(project, suite, on_stage, emit_to, runs, jobs)
+        if status != SHOWN:
+            raise SystemExit(status)
     raise SystemExit(SHOWN if suite.is_complete else NOT_SHOWN)
 
 
@@ -128,6 +191,20 @@ def _made(
     except Stopped:
         stopped = True
     return suite(rules, assumed, found), stopped
+
+
+def _files(suite: Suite, rules: Sequence[Formalized], emitted: str, output: str) -> dict[Path, str]:
+    """The tests as files; those that cannot be written so are named."""
+    from fretc.testing.exports.files import Form, files
+
+    artifacts, left = files(suite, rules, Form(emitted))
+    for why in dict.fromkeys(left.values()):
+        names = [name for name in left if left[name] == why]
+        more = f" and {len(names) - 1} more" if len(names) > 1 else ""
+        say_line(visible(f"not written: {names[0]}{more}: {why}"))
+    if output == "-":
+        return {Path("-"): "".join(each.text for each in artifacts)}
+    return {Path(output) / emitted / each.path: each.text for each in artifacts}
 
 
 def _lines(suite: Suite, rules: Sequence[Formalized], show: str | None) -> Iterator[Line]:

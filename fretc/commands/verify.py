@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -90,7 +91,7 @@ is vacuous, not checked, or stays stopped.
     type=click.Choice(PROVERS),
     help="A prover to ask as well, if it is installed.",
 )
-@path_option("--file", "monitor_file", help="A monitor that was made before.")
+@path_option("--file", "monitor_file", help="A monitor that was made before, in Python or C.")
 @path_option("--interceptor", help="An interceptor that was made before.")
 @path_option("--agent", help="An agent in Gwendolen; with --properties.")
 @path_option("--properties", help="The properties of the agent, as AJPF reads them.")
@@ -144,7 +145,8 @@ def verify(
     request = Request(
         layers=[Layer(name) for name in layer_names],
         limits=Limits(seconds=limit),
-        monitor=_read(monitor_file),
+        monitor=(text := _read(monitor_file)),
+        header=_header(text, layer_names),
         interceptor=_read(interceptor),
         agent=_read(agent),
         properties=_read(properties),
@@ -230,6 +232,32 @@ def _read(path: str | None) -> Source | None:
     if isinstance(source, Diagnostic):
         stop(source)
     return source
+
+
+def _header(monitor: Source | None, layers: Sequence[str]) -> Source | None:
+    """The header that a monitor in C includes, from its folder; None: it is not in C."""
+    if monitor is None or not monitor.name.endswith(".c"):
+        return None
+    others = [name for name in layers if name in OF_MONITOR and name != Layer.MONITOR]
+    if others:
+        stop(
+            Diagnostic(
+                Code.BAD_USAGE,
+                f"`--layer {others[0]}` takes a monitor in Python",
+                help=f"ask about `{monitor.name}` with `--layer monitor`",
+            )
+        )
+    included = re.search(r'^#include "(\w+\.h)"$', monitor.text, re.MULTILINE | re.ASCII)
+    if included is None:
+        stop(
+            Diagnostic(
+                Code.BAD_MONITOR,
+                f"`{monitor.name}` is no generated monitor: it includes no header of its own",
+                monitor.span(0, 0),
+                help="name a file that `--emit c` wrote",
+            )
+        )
+    return _read(str(Path(monitor.name).with_name(included[1])))
 
 
 def _proofs(project: Project, request: Request) -> Sequence[Proof]:

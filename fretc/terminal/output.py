@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from shlex import quote
@@ -137,8 +137,22 @@ def deliver(
     wrong = write(written)
     if wrong is not None:
         stop(wrong)
+    _name(written)
+
+
+def _name(written: Collection[Path]) -> None:
+    """Say what was written; of many files how many there are in each folder."""
+    folders = Counter(path.parent for path in written)
+    for folder, count in folders.items():
+        if count > _MOST_NAMED:
+            say_line(visible(f"wrote {count} files in {folder}"))
     for path in written:
-        say_line(visible(f"wrote {path}"))
+        if folders[path.parent] <= _MOST_NAMED:
+            say_line(visible(f"wrote {path}"))
+
+
+_MOST_NAMED = 40
+"""Files of a folder that are named one by one."""
 
 
 def protect(outputs: Iterable[Path], protected: Iterable[str]) -> None:

@@ -18,11 +18,11 @@ from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.formula import Formula, atoms
 from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers, numbers
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter, counter
 from fretc.analysis.arena.memory import Bit, Memory, Past, side_by_side
 from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.transition import Transition
-from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.runs import Runs
 from fretc.analysis.stage import alphabet_of
 from fretc.testing.search import Endings, Letter, Words
@@ -74,7 +74,7 @@ class Bench:
         self.rule, self.budget = rule, budget
         self._fresh = fresh or numbers()
         self._shared: dict[Function, Bit] = {}
-        alphabet = alphabet_of(every, roles, self._fresh, Role.OUTPUT)
+        alphabet = alphabet_of(every, roles, self._fresh, Role.OUTPUT, of_moments=True)
         self.beyond: dict[str, str] = {}
         """Why another requirement has no counter, by its id."""
         self._counters: dict[str, Counter] = {}

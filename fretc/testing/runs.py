@@ -15,7 +15,7 @@ from compiler.logic.formula import Formula
 from compiler.situations.mutants import Mutant, mutants
 from compiler.situations.situations import Situation, situations
 from fretc.analysis.arena.alphabet import BeyondError
-from fretc.analysis.games.budget import Budget, OutOfTimeError
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import minimal
 from fretc.testing.bench import Bench, Ids, demands
 from fretc.testing.places import Places

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.transition import State, Transition
-from fretc.analysis.games.budget import Budget
 
 Letter = Mapping[int, bool]
 """A value of each variable of the alphabet."""

@@ -224,6 +224,10 @@ class Code(Enum):
     TOO_COSTLY = ("F930", "what is read takes more time or memory than it may")
     NOTICE_FAILED = ("F922", "the command of `--notify` did not take the summary")
     BAD_KEY = ("F931", "a key cannot be used")
+    PROGRAM_NOT_STARTED = ("F940", "the program under test cannot be started")
+    PROGRAM_LINE = ("F941", "the program under test printed a wrong line")
+    PROGRAM_SILENT = ("F942", "the program under test printed no line in time")
+    PROGRAM_ENDED = ("F943", "the program under test ended before its test")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

@@ -6,9 +6,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
+from compiler.files.records import replace
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import Demand, Kind, dual
 from compiler.logic import formula as f
@@ -19,12 +21,16 @@ from compiler.situations.mutants import OPERATORS
 from compiler.situations.situations import MEANINGS, situations
 from fretc.analysis.text_output import Line
 from fretc.testing.assembly import jobs, suite
+from fretc.testing.conformance.text_output import lines as lines_of
+from fretc.testing.exports.files import Form, files
 from fretc.testing.suite import Suite
 from fretc.testing.text_output import lines, shown
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.docs.pages import is_current
 from tests.emitting import rule
+from tests.fretc.testing.controllers import INPUTS, OUTPUTS, program, seen_of
+from tests.requirement_sets import roles
 from tests.strategies import templates
 
 WORDS = {
@@ -172,8 +178,31 @@ def _printed(command: str, found: Iterable[Line]) -> str:
     return "\n".join(f"    {line}".rstrip() for line in text)
 
 
+def emitted(sentence: str) -> str:
+    """The test of a sentence, in pytest, that takes the most ticks."""
+    rules = (rule(sentence),)
+    found = _suite(rules)
+    longest = max(found.tests, key=lambda test: test.ticks)
+    artifacts, _ = files(found, rules, Form.PYTEST)
+    name = longest.name.replace("-", "_")
+    _, start, rest = artifacts[-1].text.partition(f"def test_{name}()")
+    return f"```python\n{start}{rest.partition('def ')[0].strip()}\n```"
+
+
+def conformance(fault: str) -> str:
+    """What is printed of a program with a fault."""
+    with TemporaryDirectory() as folder:
+        found = seen_of(Path(folder), program(fault))
+    drawn_of = replace(found, command=("python3", "line.py"))
+    return _printed(
+        'fretc test --against "python3 line.py"', lines_of(drawn_of, roles(INPUTS, OUTPUTS))
+    )
+
+
 MAKERS = {
     "suite": summary,
+    "emitted": emitted,
+    "conformance": conformance,
     "tests": drawn,
     "situations": table_of_situations,
     "duals": table_of_duals,

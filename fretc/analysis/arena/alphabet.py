@@ -16,12 +16,31 @@ from compiler.logic.decision_diagrams import Function
 from fretish.bindings.declarations import Role
 
 if TYPE_CHECKING:
+    from fretc.analysis.arena.budget import Budget
     from fretc.analysis.arena.counters import Counter
 
 Value = bool | int | float | str
 """Of a variable at one tick: a truth value, a number, a word of an enumerated signal."""
 Tick = dict[str, Value]
 """The value of each variable at one tick."""
+
+
+class Course(Protocol):
+    """The numbers of a run, tick by tick, where letters depend on those of the tick before."""
+
+    @property
+    def ticks(self) -> Sequence[Tick]:
+        """The numbers so far."""
+
+    @property
+    def last(self) -> tuple[object, ...]:
+        """What is possible next depends on these alone."""
+
+    def possible(self, inputs: Mapping[int, bool]) -> Function:
+        """Over outputs: what can be true at the next tick, after these numbers."""
+
+    def follow(self, letter: Mapping[int, bool]) -> None:
+        """Choose numbers for the next tick, which are possible."""
 
 
 class Alphabet(Protocol):
@@ -44,6 +63,14 @@ class Alphabet(Protocol):
         """Over inputs and outputs: what the system can do. For all legal inputs it can do some."""
 
     @property
+    def possible(self) -> Function:
+        """Which letters there can be, whoever sets them. What follows from these is certain."""
+
+    @property
+    def certain(self) -> Function:
+        """Which letters there are for certain, over what `memory` has, too."""
+
+    @property
     def doubts(self) -> Mapping[Role, str]:
         """Why its letters are more than there can be, of inputs or of outputs; none: they are not.
 
@@ -51,19 +78,29 @@ class Alphabet(Protocol):
         outputs have too many, what the system can keep is not.
         """
 
+    def doubtful(self, role: Role) -> frozenset[str]:
+        """The atoms of which a player has too many letters."""
+
     @property
-    def doubtful(self) -> frozenset[str]:
-        """The atoms that these doubts are about."""
+    def is_refinable(self) -> bool:
+        """Whether more can be remembered of numbers than is."""
+
+    @property
+    def open(self) -> str | None:
+        """What one player chooses that nobody does, as far as that is not known; None: nothing."""
 
     def atom(self, name: str) -> Function:
-        """When an atom is true, over inputs and outputs.
+        """When an atom is true, over inputs and outputs, and over what `memory` has.
 
         Raises:
             BeyondError: the alphabet has no such atom.
         """
 
     def memory(self) -> Counter | None:
-        """What is remembered of the tick before, where letters speak of it."""
+        """What is remembered of earlier ticks, where letters speak of them."""
+
+    def course(self, budget: Budget) -> Course | None:
+        """A run that has not begun; None: no letter depends on earlier numbers."""
 
     @property
     def labels(self) -> Mapping[int, str]:
@@ -73,7 +110,8 @@ class Alphabet(Protocol):
         """Values of the user's variables that make up a letter.
 
         Args:
-            letter: a value of each of inputs and outputs, legal and reachable.
+            letter: a value of each of inputs and outputs, legal and reachable, and of the bits of
+                `memory` before the tick.
         """
 
 

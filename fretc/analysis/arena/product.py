@@ -28,19 +28,26 @@ class Arena:
     assumptions: tuple[Counter, ...]
     beyond: dict[str, str]
     """Why a requirement has no counter, by its id."""
-    memory: Counter | None = None
-    """What is remembered of numbers; None: nothing."""
+
+    @property
+    def size(self) -> int:
+        """Bits of a letter."""
+        return len(self.alphabet.inputs) + len(self.alphabet.outputs)
 
 
 class Fixed:
     """An alphabet of which each atom has been asked for: a thousand games read it, and it stays."""
 
     def __init__(self, alphabet: Alphabet) -> None:
-        self.atom, self.values = alphabet.atom, alphabet.values
+        memory = alphabet.memory()
+        self.atom, self.values, self.course = alphabet.atom, alphabet.values, alphabet.course
         self.inputs, self.outputs = tuple(alphabet.inputs), tuple(alphabet.outputs)
         self.legal, self.reachable = alphabet.legal, alphabet.reachable
+        self.possible, self.certain = alphabet.possible, alphabet.certain
         self.doubts, self.labels = alphabet.doubts, alphabet.labels
-        self.doubtful, self.memory = alphabet.doubtful, alphabet.memory
+        self.doubtful, self.open = alphabet.doubtful, alphabet.open
+        self.is_refinable = alphabet.is_refinable
+        self.memory = lambda: memory
 
 
 def arena(
@@ -71,8 +78,7 @@ def arena(
             found[rule.id] = made
     of_rules = tuple(found[rule.id] for rule in rules if rule.id in found)
     of_assumptions = tuple(found[each.id] for each in assumptions)
-    memory = alphabet.memory()
-    return Arena(Fixed(alphabet), of_rules, of_assumptions, beyond, memory)
+    return Arena(Fixed(alphabet), of_rules, of_assumptions, beyond)
 
 
 def near_each_other(rules: Sequence[Formalized]) -> list[Formalized]:

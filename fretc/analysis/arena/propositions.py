@@ -19,6 +19,7 @@ from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.orders import Exclusion, exclusions
 from fretc.analysis.arena.alphabet import BeyondError, Numbers, Tick
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import Roles
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
@@ -52,19 +53,30 @@ class Propositions:
         self._read = {name: _read(name, part, rules) for name, part in self._parts.items()}
         self._numbers: dict[str, int] = {}
         self.doubts: dict[Role, str] = {}
-        self._doubted: set[str] = set()
+        self._doubted: dict[Role, set[str]] = {Role.INPUT: set(), Role.OUTPUT: set()}
         self._compared = dict(chain.from_iterable(comparisons(rule).items() for rule in rules))
         self._excluded = _exclusions(self._compared, rules)
         for role, reason in self._doubtful(rules):
             self.doubts.setdefault(role, reason)
 
+    def doubtful(self, role: Role) -> frozenset[str]:
+        """The atoms of which a player has too many letters."""
+        return frozenset(self._doubted[role])
+
     @property
-    def doubtful(self) -> frozenset[str]:
-        """The atoms that these doubts are about."""
-        return frozenset(self._doubted)
+    def is_refinable(self) -> bool:
+        """Nothing is remembered of numbers."""
+        return False
+
+    @property
+    def open(self) -> None:
+        """Nothing is left to a favoured player."""
 
     def memory(self) -> None:
         """Nothing is remembered beside what counters do."""
+
+    def course(self, budget: Budget) -> None:
+        """No letter depends on numbers."""
 
     def atom(self, name: str) -> Function:
         """The bit of an atom."""
@@ -114,6 +126,16 @@ class Propositions:
         """The patterns of outputs that some values have."""
         return self._possible(Role.OUTPUT)
 
+    @property
+    def possible(self) -> Function:
+        """The patterns that some values have."""
+        return self.legal & self.reachable
+
+    @property
+    def certain(self) -> Function:
+        """The same; none where some may have no values."""
+        return bdd.false() if self.doubts else self.possible
+
     def _possible(self, role: Role) -> Function:
         found = bdd.true()
         for each in self._excluded:
@@ -154,10 +176,11 @@ class Propositions:
             shown = f"{both} read the same numbers, and are taken as independent"
         refused = next((self._refused[atom] for atom in atoms if atom in self._refused), None)
         shown = shown if refused is None else f"{refused}: {shown}"
-        self._doubted.update(atoms)
         for atom in atoms:
             with suppress(BeyondError):
-                yield self.role(atom), shown
+                role = self.role(atom)
+                self._doubted[role].update(atoms)
+                yield role, shown
 
 
 _ABSOLUTE = ("abs", "absreal", "absint")

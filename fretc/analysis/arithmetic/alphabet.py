@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import lru_cache
+from collections.abc import Iterator, Mapping, Sequence
 
 import z3
 
@@ -12,24 +10,18 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import BeyondError, Numbers, Tick
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.memory import Memory
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
-from fretc.analysis.arithmetic.cells import (
-    Cell,
-    Pattern,
-    Point,
-    cells,
-    fixed,
-    literals,
-    patterns,
-    point,
-    reads,
-)
-from fretc.analysis.arithmetic.past import remembered
+from fretc.analysis.arithmetic.atoms import Atoms
+from fretc.analysis.arithmetic.course import NumberCourse
+from fretc.analysis.arithmetic.durations import Duration, Held, held
+from fretc.analysis.arithmetic.groups import Group, choice, linked, owners
+from fretc.analysis.arithmetic.past import Remembered, remembered
 from fretc.analysis.arithmetic.projection import Limit
-from fretc.analysis.arithmetic.terms import Atoms, Term
+from fretc.analysis.arithmetic.terms import Term
 from fretish.bindings.declarations import Role
 
 
@@ -40,7 +32,14 @@ class Cells:
         rules: whose atoms it has.
         roles: of their variables.
         fresh: variables for its bits.
-        past: who chooses numbers of the tick before, as far as nothing is remembered of them.
+        favoured: who chooses what is not known: numbers of the tick before, as far as nothing is
+            remembered of them, whether a signal is unknown, and what was before the first tick.
+        budget: for sorting the comparisons.
+        steps: how many ticks before a bound it is remembered whether that is within reach.
+        of_moments: whether propositions over several samples are left to `Propositions`.
+
+    Raises:
+        OutOfTimeError: the budget is over.
     """
 
     def __init__(
@@ -48,31 +47,81 @@ class Cells:
         rules: Sequence[Formalized],
         roles: Roles,
         fresh: Numbers,
-        past: Role = Role.INPUT,
+        favoured: Role,
+        budget: Budget,
+        steps: int = 0,
+        *,
+        of_moments: bool = False,
     ) -> None:
-        self._past = past
-        self._atoms = Atoms(rules)
-        self._memory = remembered(self._atoms)
+        self._favoured = favoured
+        self._atoms = Atoms(rules, of_moments=of_moments)
+        self._pairs = remembered(self._atoms, steps)
         self._fresh = fresh
-        self._groups: list[_Group] = []
-        self._of: dict[str, _Group] = {}
+        self._kept = Memory(fresh, {})
+        self._groups: list[Group] = []
+        self._of: dict[str, Group] = {}
+        self._lasted: dict[Duration, Held] = {}
+        self._asked: dict[str, Function] = {}
+        self._free: list[int] = []
+        """Bits of the favoured player: whether what lasts has done so since before the run."""
         refused = dict(self._atoms.refused)
-        for names in _linked(self._atoms):
+        for names in linked(self._atoms):
+            budget.check()
             try:
-                choice = _choice(names, self._atoms, _owners(names, self._atoms, roles, past))
-                group = _Group(choice, self._atoms, fresh)
+                chosen = choice(names, self._atoms, owners(names, self._atoms, roles, favoured))
+                group = Group(chosen, self._atoms, fresh, favoured, Limit(budget))
             except BeyondError as error:
                 shown = f"`{names[0]}` and others" if len(names) > 1 else f"`{names[0]}`"
                 refused |= dict.fromkeys(names, f"{shown} {error}")
             else:
                 self._groups.append(group)
                 self._of |= dict.fromkeys(names, group)
-        self._plain = Propositions(rules, roles, fresh, frozenset(self._of), refused)
+        self._lasting = {
+            name: lasting
+            for name, lasting in self._atoms.lasting.items()
+            if not any(each in refused for each in lasting.atoms)
+        }
+        for name in self._atoms.lasting.keys() - self._lasting.keys():
+            parts = self._atoms.lasting[name].atoms
+            refused[name] = next(refused[each] for each in parts if each in refused)
+        elsewhere = frozenset([*self._of, *self._lasting])
+        self._plain = Propositions(rules, roles, fresh, elsewhere, refused)
 
     def atom(self, name: str) -> Function:
-        """When an atom is true."""
+        """When an atom is true; over what is remembered, too, where it depends on that."""
+        if name not in self._asked:
+            self._asked[name] = self._atom(name)
+        return self._asked[name]
+
+    def _atom(self, name: str) -> Function:
+        if name in self._lasting:
+            return self._in_time(name)
+        found = self._atoms.found.get(name)
+        if found is not None and (z3.is_true(found.formula) or z3.is_false(found.formula)):
+            return bdd.true() if z3.is_true(found.formula) else bdd.false()
         group = self._of.get(name)
         return self._plain.atom(name) if group is None else group.atom(name)
+
+    def _in_time(self, name: str) -> Function:
+        """When a proposition is true that depends on earlier ticks, over their memory, too."""
+        lasting = self._lasting[name]
+        lasted = [self._lasted_so(each) for each in lasting.durations]
+        found = bdd.false()
+        for values, case in lasting.cases.items():
+            term = self.atom(case)
+            for value, each in zip(values, lasted, strict=True):
+                term = term & (each.is_so if value else -each.is_so)
+            found = found | term
+        return found
+
+    def _lasted_so(self, duration: Duration) -> Held:
+        if duration not in self._lasted:
+            throughout, at_last = self.atom(duration.throughout), self.atom(duration.at_last)
+            self._free.append(next(self._fresh))
+            open_ = bdd.variable(self._free[-1])
+            held_ = held(self._kept, duration.ticks, throughout, at_last, open_)
+            self._lasted[duration] = held_
+        return self._lasted[duration]
 
     @property
     def numbers(self) -> Atoms:
@@ -87,12 +136,17 @@ class Cells:
     @property
     def inputs(self) -> Sequence[int]:
         """Bits of atoms and of cells."""
-        return [*self._plain.inputs, *(bit for each in self._used for bit in each.inputs)]
+        of_groups = (bit for each in self._used for bit in each.inputs)
+        return [*self._plain.inputs, *of_groups, *self._free_of(Role.INPUT)]
 
     @property
     def outputs(self) -> Sequence[int]:
         """Bits of atoms."""
-        return [*self._plain.outputs, *(bit for each in self._used for bit in each.outputs)]
+        of_groups = (bit for each in self._used for bit in each.outputs)
+        return [*self._plain.outputs, *of_groups, *self._free_of(Role.OUTPUT)]
+
+    def _free_of(self, role: Role) -> Sequence[int]:
+        return self._free if self._favoured is role else []
 
     @property
     def legal(self) -> Function:
@@ -111,268 +165,109 @@ class Cells:
         return found
 
     @property
-    def doubts(self) -> Mapping[Role, str]:
-        """Those of the atoms that are in no group, and of numbers of the tick before."""
+    def possible(self) -> Function:
+        """All patterns."""
+        found = self._plain.possible
+        for each in self._used:
+            found = found & each.possible
+        return found
+
+    @property
+    def certain(self) -> Function:
+        """Those with nothing unknown; of numbers of the tick before none is certain."""
+        if self._atoms.before:
+            return bdd.false()
+        found = self._plain.certain
+        for each in self._used:
+            found = found & each.known
+        for lasted in self._lasted.values():
+            found = found - lasted.is_open
+        return found
+
+    @property
+    def is_refinable(self) -> bool:
+        """Whether comparisons look back at a number."""
+        return bool(self._atoms.before)
+
+    @property
+    def open(self) -> str | None:
+        """What the favoured player chooses though nobody does; None: nothing."""
         before = next(iter(self._atoms.before), None)
-        if before is None:
-            return self._plain.doubts
-        why = f"of `{before}` no more is remembered than which comparisons it makes true"
-        return {self._past: why, **self._plain.doubts}
+        if before is not None:
+            return f"of `{before}` no more is remembered than which comparisons it makes true"
+        unknown = next((why for each in self._used if (why := each.open) is not None), None)
+        if unknown is not None:
+            return unknown
+        first = next(iter(self._lasting), None)
+        if first is not None:
+            return f"nothing is known of `{first}` before the first tick"
+        return None
+
+    @property
+    def doubts(self) -> Mapping[Role, str]:
+        """Those of the atoms that are in no group, and what is `open`."""
+        return {**({} if self.open is None else {self._favoured: self.open}), **self._plain.doubts}
 
     @property
     def labels(self) -> Mapping[int, str]:
         """The atom of each bit; a bit of a cell has none."""
         return {**self._plain.labels, **{n: a for each in self._used for n, a in each.labels()}}
 
-    @property
-    def doubtful(self) -> frozenset[str]:
-        """The atoms that these doubts are about."""
-        found = self._atoms.found.items()
-        looking_back = {name for name, atom in found if atom.reads & self._atoms.before.keys()}
-        return self._plain.doubtful | looking_back
+    def doubtful(self, role: Role) -> frozenset[str]:
+        """The atoms of which a player has too many letters."""
+        found = set(self._plain.doubtful(role))
+        if role is self._favoured:
+            atoms = self._atoms.found.items()
+            found |= {name for name, atom in atoms if atom.reads & self._atoms.before.keys()}
+            found |= {name for name, group in self._of.items() if group.open is not None}
+            found |= self._lasting.keys()
+        return frozenset(found)
 
     def memory(self) -> Counter | None:
-        """What is remembered of numbers of the tick before: whoever chooses them keeps to it."""
-        pairs = [each for each in self._memory if each.now in self._of and each.then in self._of]
-        if not pairs:
+        """What is remembered of earlier ticks: whoever chooses numbers of these keeps to it."""
+        pairs = [each for each in self._pairs if each.now in self._of and each.then in self._of]
+        agrees = self._agreement(pairs) if pairs else bdd.true()
+        bits = self._kept.needed([agrees, *(each.is_so for each in self._lasted.values())])
+        if not bits:
             return None
-        known = Memory(self._fresh, {})
-        begun = known.keep(bdd.true())
-        agrees = bdd.true()
-        for pair in pairs:
-            was, now = known.keep(self.atom(pair.now)), self.atom(pair.then)
+        steps = tuple(self._kept.steps[bit] for bit in bits)
+        words = tuple(self._kept.words)
+        return Counter("", bits, steps, agrees, None, words, bdd.true(), bdd.true())
+
+    def _agreement(self, pairs: Sequence[Remembered]) -> Function:
+        """Whether numbers of the tick before are as they were, where they have a pattern at all.
+
+        Without the patterns the bits of many bounds would agree in too many ways to write down.
+        """
+        then = [self.atom(pair.then) for pair in pairs]
+        mine = {bit for function in then for bit in bdd.support(function)}
+        others = [bit for bit in bdd.support(self.possible) if bit not in mine]
+        agrees = bdd.some(self.possible, bdd.cube(others))
+        begun = self._kept.keep(bdd.true())
+        for pair, now in zip(pairs, then, strict=True):
+            was = self._kept.keep(self.atom(pair.now))
             first = {True: now, False: -now, None: bdd.true()}[pair.first]
             agrees = agrees & bdd.choice(begun, -(was ^ now), first)
-        bits = known.needed([agrees])
-        steps = tuple(known.steps[bit] for bit in bits)
-        return Counter("", bits, steps, agrees, None, (), bdd.true(), bdd.true())
+        return agrees
+
+    def course(self, budget: Budget) -> NumberCourse | None:
+        """A run that has not begun; None: no letter depends on earlier numbers."""
+        if not self._atoms.before or self._favoured is not Role.OUTPUT:
+            return None
+        return NumberCourse([*self._used], self._atoms, budget)
 
     def values(self, letter: Mapping[int, bool]) -> Tick:
         """The truth of propositions, and numbers that make comparisons true and false so."""
         found = self._plain.values(letter)
         for each in self._used:
             found |= each.values(letter)
+        known = bdd.point(letter)
+        for name, function in self._asked.items():
+            value = bdd.at(function, known)
+            if self._atoms.is_proposition(name) and value in (bdd.true(), bdd.false()):
+                found[name] = value == bdd.true()
         return found
 
     @property
-    def _used(self) -> Iterator[_Group]:
+    def _used(self) -> Iterator[Group]:
         return (each for each in self._groups if each.is_used)
-
-
-@dataclass(frozen=True, slots=True)
-class _Choice:
-    """What a group is made of; two are equal that say the same."""
-
-    text: str
-    formulas: tuple[Term, ...] = field(compare=False)
-    """Each once, be it the formula of an atom or of its opposite."""
-    of: Mapping[str, tuple[int, bool]] = field(compare=False)
-    """The formula of each atom, and whether it is that or the opposite."""
-    variables: Mapping[Role, tuple[Term, ...]] = field(compare=False)
-    """Of each player."""
-    domains: Mapping[Role, Term] = field(compare=False)
-
-    @property
-    def is_mixed(self) -> bool:
-        """Whether both players choose numbers."""
-        return all(self.variables.values())
-
-    @property
-    def role(self) -> Role:
-        """Who chooses the numbers, where one player does; the system, where both do."""
-        return Role.OUTPUT if self.variables[Role.OUTPUT] else Role.INPUT
-
-
-class _Group:
-    """Comparisons that share variables; its bits are made when the first of them is asked for."""
-
-    def __init__(self, choice: _Choice, atoms: Atoms, fresh: Numbers) -> None:
-        self._choice, self._atoms, self._fresh = choice, atoms, fresh
-        found = _sorted_out(choice)
-        if isinstance(found, str):
-            raise BeyondError(found)
-        self._patterns, self._cells = found
-        self._bits: dict[int, int] = {}
-        """Of the formulas that a cell does not decide."""
-        self._cell_bits: list[int] = []
-        self._points: dict[tuple[int, Pattern], Point] = {}
-        self._in_cell: dict[int, Point] = {}
-
-    @property
-    def is_used(self) -> bool:
-        """Whether it has bits."""
-        return bool(self._bits)
-
-    def atom(self, name: str) -> Function:
-        """When one of its atoms is true."""
-        if not self._bits:
-            size = max(0, len(self._cells) - 1).bit_length()
-            self._cell_bits = [next(self._fresh) for _ in range(size)]
-            free = [n for n in range(len(self._choice.formulas)) if not self._is_of_cell(n)]
-            self._bits = {number: next(self._fresh) for number in free}
-        number, is_so = self._choice.of[name]
-        found = self._formula(number)
-        return found if is_so else -found
-
-    def _is_of_cell(self, number: int) -> bool:
-        """Whether a formula reads inputs alone, in a group of both players."""
-        outputs = self._choice.variables[Role.OUTPUT]
-        return self._choice.is_mixed and not reads(self._choice.formulas[number], outputs)
-
-    def _formula(self, number: int) -> Function:
-        if number in self._bits:
-            return bdd.variable(self._bits[number])
-        found = bdd.false()
-        for place, cell in enumerate(self._cells):
-            if next(iter(cell.patterns))[number]:  # they agree on what is of inputs
-                found = found | self._cell(place)
-        return found
-
-    def _cell(self, place: int) -> Function:
-        return bdd.point({bit: bool(place >> i & 1) for i, bit in enumerate(self._cell_bits)})
-
-    @property
-    def inputs(self) -> Sequence[int]:
-        """The bits of the environment."""
-        return self._cell_bits if self._choice.role is Role.OUTPUT else [*self._bits.values()]
-
-    @property
-    def outputs(self) -> Sequence[int]:
-        """The bits of the system."""
-        return [*self._bits.values()] if self._choice.role is Role.OUTPUT else []
-
-    @property
-    def legal(self) -> Function:
-        """The cells that there are, or the patterns of inputs."""
-        if self._choice.role is Role.INPUT:
-            return self._some_of(self._patterns)
-        found = bdd.false() if self._cells else bdd.true()
-        for place in range(len(self._cells)):
-            found = found | self._cell(place)
-        return found
-
-    @property
-    def reachable(self) -> Function:
-        """The patterns of outputs, in each cell those that it leaves."""
-        if self._choice.role is Role.INPUT:
-            return bdd.true()
-        if not self._cells:
-            return self._some_of(self._patterns)
-        found = bdd.false()
-        for place, cell in enumerate(self._cells):
-            found = found | (self._cell(place) & self._some_of(cell.patterns))
-        return found
-
-    def _some_of(self, known: Iterable[Pattern]) -> Function:
-        found = bdd.false()
-        for pattern in known:
-            found = found | bdd.point({bit: pattern[n] for n, bit in self._bits.items()})
-        return found
-
-    def formulas(self) -> Iterator[tuple[int, Term]]:
-        """Each bit of a formula, and that."""
-        return ((bit, self._choice.formulas[number]) for number, bit in self._bits.items())
-
-    def labels(self) -> Iterator[tuple[int, str]]:
-        """Each bit of a formula, and an atom that has it."""
-        for name, (number, is_so) in self._choice.of.items():
-            if is_so and number in self._bits:
-                yield self._bits[number], name
-
-    def values(self, letter: Mapping[int, bool]) -> Tick:
-        """Numbers of a letter; those of inputs depend on nothing that the system does."""
-        if not all(bit in letter for bit in self._cell_bits):
-            return {}
-        place = sum(letter[bit] << i for i, bit in enumerate(self._cell_bits))
-        if not all(bit in letter for bit in self._bits.values()):
-            return self._shown(self._of_cell(place)) if self._cells else {}
-        key = place, tuple(letter[bit] for bit in self._bits.values())
-        if key not in self._points:
-            self._points[key] = self._point(place, key[1])
-        return self._shown(self._points[key])
-
-    def _of_cell(self, place: int) -> Point:
-        if place not in self._in_cell:
-            inputs = self._choice.variables[Role.INPUT]
-            self._in_cell[place] = point([self._cells[place].region], inputs)
-        return self._in_cell[place]
-
-    def _point(self, place: int, signs: Pattern) -> Point:
-        formulas = [self._choice.formulas[number] for number in self._bits]
-        kept = [*literals(formulas, signs), *self._choice.domains.values()]
-        inputs, outputs = (self._choice.variables[role] for role in (Role.INPUT, Role.OUTPUT))
-        if not self._cells:
-            return point(kept, [*inputs, *outputs])
-        of_inputs = self._of_cell(place)
-        return of_inputs | point([*kept, *fixed(of_inputs, inputs)], outputs)
-
-    def _shown(self, numbers: Point) -> Tick:
-        return {name: self._atoms.shown(name, value) for name, value in numbers.items()}
-
-
-# Groups -----------------------------------------------------------------------------------------
-
-
-def _linked(atoms: Atoms) -> list[tuple[str, ...]]:
-    """The names of atoms that share variables, directly or by way of others."""
-    groups: list[tuple[list[str], set[str]]] = []
-    for name, atom in atoms.found.items():
-        touched = [group for group in groups if group[1] & atom.reads]
-        groups = [group for group in groups if group not in touched]
-        names = [each for group in touched for each in group[0]]
-        groups.append(([*names, name], set(atom.reads).union(*(group[1] for group in touched))))
-    return [tuple(names) for names, _ in groups]
-
-
-def _owners(names: Sequence[str], atoms: Atoms, roles: Roles, past: Role) -> Mapping[str, Role]:
-    """Who chooses each variable of a group: a signal without a role has that of its proposition."""
-    found: dict[str, Role] = {}
-    for name in names:
-        for read in sorted(atoms.found[name].reads):
-            role = past if read in atoms.before else roles.get(read) or roles[name]
-            if found.setdefault(read, role) is not role:
-                raise BeyondError(f"read `{read}`, which is not of one role")
-    return found
-
-
-def _choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> _Choice:
-    formulas: list[Term] = []
-    of: dict[str, tuple[int, bool]] = {}
-    for name in names:
-        formula = atoms.found[name].formula
-        number = next((n for n, f in enumerate(formulas) if _bare(f).eq(_bare(formula))), None)
-        if number is None:
-            number = len(formulas)
-            formulas.append(formula)
-        of[name] = number, formulas[number].eq(formula)
-    players = (Role.INPUT, Role.OUTPUT)
-    theirs = {role: sorted(n for n in owners if owners[n] is role) for role in players}
-    variables = {r: tuple(atoms.variables[name] for name in theirs[r]) for r in players}
-    domains = {r: z3.And([atoms.domain(name) for name in theirs[r]]) for r in players}
-    terms = [*formulas, *domains.values()]
-    sorts = [f"{each}: {each.sort()}, {role}" for role in players for each in variables[role]]
-    text = "\n".join([*(term.sexpr() for term in terms), *sorts])
-    return _Choice(text, tuple(formulas), of, variables, domains)
-
-
-@lru_cache(maxsize=64)
-def _sorted_out(choice: _Choice) -> tuple[Sequence[Pattern], Sequence[Cell]] | str:
-    """The patterns of a group, and its cells where both players choose; or why it has none.
-
-    Every question about the same requirements asks for them.
-    """
-    limit = Limit()
-    try:
-        known = patterns(choice.formulas, z3.And(list(choice.domains.values())), limit)
-        if not choice.is_mixed:
-            return known, ()
-        outputs = choice.variables[Role.OUTPUT]
-        domains = choice.domains[Role.INPUT], choice.domains[Role.OUTPUT]
-        return known, cells(choice.formulas, known, outputs, domains, limit)
-    except BeyondError as error:
-        return str(error)
-
-
-def _bare(formula: Term) -> Term:
-    """The same of a formula and of its opposite."""
-    return formula.arg(0) if z3.is_not(formula) else formula

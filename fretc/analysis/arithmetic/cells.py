@@ -38,34 +38,85 @@ class Cell:
 def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Pattern, ...]:
     """The truth values that the formulas can have together.
 
+    Those of one variable are sorted out by themselves first: many bounds of it have few patterns.
+
     Raises:
         BeyondError: there are too many, or it takes too long.
     """
+    alone: dict[frozenset[str], list[int]] = {}
+    for number, formula in enumerate(formulas):
+        read = read_by(formula)
+        alone.setdefault(read if len(read) == 1 else frozenset(), []).append(number)
+    rest = alone.pop(frozenset(), [])
+    blocks = [numbers for numbers in alone.values() if len(numbers) > 1]
+    rest += [numbers[0] for numbers in alone.values() if len(numbers) == 1]
     solver = z3.Solver()
     solver.add(domain)
+    choices = [[*_followed(solver, [formulas[n] for n in numbers], limit)] for numbers in blocks]
+    order = [n for numbers in blocks for n in numbers] + rest
     found: list[Pattern] = []
-
-    def follow(known: Pattern, model: z3.ModelRef | None) -> None:
-        """Find those that begin so; a model of these spares a question."""
-        if model is None:
-            model = next_model(solver, limit)
-        if model is None:
-            return
-        if len(known) == len(formulas):
-            found.append(known)
+    for known in _joined(solver, formulas, [*zip(blocks, choices, strict=True)], limit):
+        for others in _followed(solver, [formulas[n] for n in rest], limit):
+            values = dict(zip(order, (*known, *others), strict=True))
+            found.append(tuple(values[number] for number in range(len(formulas))))
             if len(found) > MOST:
                 raise BeyondError(f"have more than {MOST} patterns")
-            return
-        formula = formulas[len(known)]
-        seen = z3.is_true(model.eval(formula, model_completion=True))
-        for value in (seen, not seen):
-            solver.push()
-            solver.add(formula if value else z3.Not(formula))
-            follow((*known, value), model if value is seen else None)
-            solver.pop()
-
-    follow((), None)
     return tuple(found)
+
+
+def _joined(
+    solver: z3.Solver,
+    formulas: Sequence[Term],
+    blocks: Sequence[tuple[Sequence[int], Sequence[Pattern]]],
+    limit: Limit,
+) -> Iterator[Pattern]:
+    """Patterns of all blocks that are possible together; meanwhile the solver has each of them."""
+    if not blocks:
+        yield ()
+        return
+    (numbers, choices), *others = blocks
+    for pattern in choices:
+        solver.push()
+        solver.add(literals([formulas[number] for number in numbers], pattern))
+        if not others or next_model(solver, limit) is not None:
+            for more in _joined(solver, formulas, others, limit):
+                yield (*pattern, *more)
+        solver.pop()
+
+
+def _followed(
+    solver: z3.Solver, formulas: Sequence[Term], limit: Limit, model: z3.ModelRef | None = None
+) -> Iterator[Pattern]:
+    """Patterns of formulas under what the solver has; a model of that spares a question."""
+    if model is None:
+        model = next_model(solver, limit)
+    if model is None:
+        return
+    if not formulas:
+        yield ()
+        return
+    first, *others = formulas
+    seen = z3.is_true(model.eval(first, model_completion=True))
+    for value in (seen, not seen):
+        solver.push()
+        solver.add(first if value else z3.Not(first))
+        for more in _followed(solver, others, limit, model if value is seen else None):
+            yield (value, *more)
+        solver.pop()
+
+
+def another(formulas: Sequence[Term], known: Sequence[Pattern], domain: Term, limit: Limit) -> bool:
+    """Whether the formulas can have truth values together that are not known.
+
+    Raises:
+        BeyondError: it takes too long.
+    """
+    if len(known) == 2 ** len(formulas):
+        return False
+    solver = z3.Solver()
+    solver.add(domain)
+    solver.add([z3.Not(z3.And(literals(formulas, each))) for each in known])
+    return next_model(solver, limit) is not None
 
 
 def cells(
@@ -147,13 +198,14 @@ def point(constraints: Sequence[Term], variables: Sequence[Term]) -> Point:
     solver.set("timeout", _PATIENCE)
     solver.add(*constraints)
     solver.push()
-    solver.add([z3.IsInt(each) for each in variables if each.is_real()])
+    solver.add([z3.IsInt(each) for each in variables if z3.is_real(each)])
     if solver.check() != z3.sat:
         solver.pop()
         solver.set("timeout", 0)
         answer = solver.check()
         assert answer == z3.sat, "the pattern has been seen"
     model = solver.model()
+    variables = [each for each in variables if z3.is_arith(each)]
     values = [model.eval(each, model_completion=True) for each in variables]
     return {
         str(each): Fraction(str(value.as_fraction() if value.is_real() else value.as_long()))

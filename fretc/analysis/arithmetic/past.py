@@ -9,10 +9,14 @@ games, each with one certain answer; between them nothing is known.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil, floor
 
 import z3
 
-from fretc.analysis.arithmetic.terms import Atom, Atoms, Before, Term, read_by
+from fretc.analysis.arithmetic.atoms import Atom, Atoms
+from fretc.analysis.arithmetic.steps import AtomOfTick
+from fretc.analysis.arithmetic.terms import Before, Term, read_by
+from fretc.analysis.arithmetic.thresholds import Bound, reached
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,16 +29,21 @@ class Remembered:
     """Whether the second one is true at the first tick; None: that depends."""
 
 
-def remembered(atoms: Atoms) -> tuple[Remembered, ...]:
-    """What is remembered; atoms that it lacks are added."""
+def remembered(atoms: Atoms, steps: int) -> tuple[Remembered, ...]:
+    """What is remembered; atoms that it lacks are added.
+
+    Args:
+        atoms: of some rules.
+        steps: from how many ticks before a bound it is remembered whether it is within reach.
+    """
     found: list[Remembered] = []
     for name, before in atoms.before.items():
-        for condition in _conditions(atoms, name, before):
+        for condition in _conditions(atoms, name, before, steps):
             found.append(_remembered(atoms, name, before, condition))
     return tuple(found)
 
 
-def _conditions(atoms: Atoms, name: str, before: Before) -> list[Term]:
+def _conditions(atoms: Atoms, name: str, before: Before, steps: int) -> list[Term]:
     """Comparisons of the number alone, as formulas of the tick; one says that it is as at first."""
     now, then = atoms.variables[before.of], atoms.variables[name]
     found: dict[str, Term] = {}
@@ -47,7 +56,21 @@ def _conditions(atoms: Atoms, name: str, before: Before) -> list[Term]:
         elif atom.reads == {name}:
             formula = z3.simplify(z3.substitute(atom.formula, (then, now)))
             found.setdefault(formula.sexpr(), formula)
+    if steps:
+        formulas = [atom.formula for atom in atoms.found.values()]
+        for bound in reached(now, then, [*formulas, *found.values()], steps):
+            formula = _compared(now, bound)
+            found.setdefault(formula.sexpr(), formula)
     return list(found.values())
+
+
+def _compared(variable: Term, bound: Bound) -> Term:
+    """Whether a variable is below a bound, or at most that."""
+    if not variable.is_int():
+        number = z3.RealVal(str(bound.number))
+        return z3.simplify(variable < number if bound.is_below else variable <= number)
+    least = ceil(bound.number) - 1 if bound.is_below else floor(bound.number)
+    return z3.simplify(variable <= least)
 
 
 def _remembered(atoms: Atoms, name: str, before: Before, condition: Term) -> Remembered:
@@ -65,5 +88,5 @@ def _named(atoms: Atoms, formula: Term) -> str:
     found = next(same, None)
     if found is None:
         found = formula.sexpr()
-        atoms.found[found] = Atom(formula, read_by(formula))
+        atoms.found[found] = Atom(AtomOfTick(formula, z3.BoolVal(True)), read_by(formula))
     return found

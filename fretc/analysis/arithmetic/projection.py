@@ -19,6 +19,7 @@ from fractions import Fraction
 import z3
 
 from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arithmetic.terms import Term
 
 SECONDS = 10.0
@@ -27,24 +28,39 @@ SECONDS = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """Time for a group."""
+    """Time for a group, within that of a question."""
 
+    budget: Budget
     start: float = field(default_factory=time.process_time)
 
     @property
     def milliseconds(self) -> int:
-        """What is left of it; at its end BeyondError."""
+        """What is left of it.
+
+        Raises:
+            BeyondError: the time of the group is over.
+            OutOfTimeError: that of the question is.
+        """
+        self.budget.check()
         left = SECONDS - (time.process_time() - self.start)
         if left <= 0:
             raise BeyondError(f"are not sorted out within {SECONDS:g} s of a processor")
-        return max(1, int(1000 * left))
+        return max(1, int(1000 * min(left, self.budget.left)))
 
 
 def model(solver: z3.Solver, limit: Limit) -> z3.ModelRef | None:
-    """What keeps the constraints; None: nothing does."""
-    solver.set("timeout", limit.milliseconds)
+    """What keeps the constraints; None: nothing does.
+
+    Raises:
+        BeyondError: z3 cannot tell.
+        OutOfTimeError: the time of the question was too short for it.
+    """
+    patience = limit.milliseconds
+    solver.set("timeout", patience)
     answer = solver.check()
     if answer == z3.unknown:
+        if patience < 1000 * SECONDS / 2:
+            raise limit.budget.over
         raise BeyondError("are more than z3 can sort out")
     return solver.model() if answer == z3.sat else None
 

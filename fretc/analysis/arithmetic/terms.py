@@ -5,7 +5,7 @@ A variable has the unit of its signal. Where several units meet, all is converte
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -14,29 +14,16 @@ import z3
 from z3 import z3util
 
 from compiler.formalization.formalized import Formalized
-from compiler.formalization.letters import comparisons
-from compiler.formalization.resolution import candidates
 from fretc.analysis.arena.alphabet import BeyondError
 from fretish import expressions as e
 from fretish import units
 from fretish.bindings import constants
-from fretish.bindings.declarations import Aggregate, Signal
-from fretish.bindings.expressions import ticks_back
 from fretish.bindings.types import Kind, kind
 from fretish.printer import expression as printed
 from fretish.reading.recursion import deep
 
 Term = Any
 """A number or a truth value of z3, which has no types."""
-
-
-@dataclass(frozen=True, slots=True)
-class Atom:
-    """A truth value of one tick that numbers and words decide."""
-
-    formula: Term
-    reads: frozenset[str]
-    """Variables or signals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,10 +35,9 @@ class Before:
     """What it is at the first tick."""
 
 
-class Atoms:
-    """The atoms of some rules that are linear, by the names that formulas give them."""
+class Terms:
+    """The variables of some rules, and what is said of them."""
 
-    @deep
     def __init__(self, rules: Sequence[Formalized]) -> None:
         self._signals = {
             name: signal
@@ -62,22 +48,22 @@ class Atoms:
         self._words: dict[str, int] = {}
         self.variables: dict[str, Term] = {}
         """Constants of z3 for all that is read."""
-        self.found: dict[str, Atom] = {}
-        self.refused: dict[str, str] = {}
-        """Why another comparison has no formula here."""
         self.before: dict[str, Before] = {}
         """What variables for numbers of the tick before are."""
-        for name, part in _parts(rules):
-            if name not in self.found and name not in self.refused:
-                self._add(name, part)
 
-    def _add(self, name: str, part: e.Expression) -> None:
-        try:
-            formula = z3.simplify(self._truth(part, is_base=self._meets_units(part)))
-        except BeyondError as error:
-            self.refused[name] = f"`{name}` {error}"
-        else:
-            self.found[name] = Atom(formula, read_by(formula))
+    @deep
+    def holds(self, part: e.Expression, value: bool, known: Callable[[Term], Term]) -> Term:
+        """When a part is true, or when it is false, for certain: Kleene's logic.
+
+        Args:
+            part: an expression that is a truth value.
+            value: which one.
+            known: when all variables of a comparison are known.
+
+        Raises:
+            BeyondError: it is not linear, or no comparison of numbers.
+        """
+        return self._holds(part, value, known, is_base=self._meets_units(part))
 
     def domain(self, name: str) -> Term:
         """Which values a variable may have."""
@@ -90,6 +76,8 @@ class Atoms:
         variable, signal = self.variables[name], self._signals.get(name)
         if signal is not None and signal.values:
             return z3.Or([variable == self._place(word) for word in signal.values])
+        if (bounds := self._range(name)) is not None:
+            return z3.And(variable >= bounds[0], variable <= bounds[1])
         if self._kind(name) is Kind.NATURAL:
             return variable >= 0
         return z3.BoolVal(True)
@@ -108,6 +96,13 @@ class Atoms:
         declared = self._types.get(name)
         return kind(declared) if declared else None
 
+    def _range(self, name: str) -> tuple[int, int] | None:
+        """The least and the greatest number of a message that is one whole number."""
+        signal = self._signals.get(name)
+        if signal is None or signal.type is None or str(signal.path) != f"{signal.path.topic}.data":
+            return None
+        return _RANGES.get(signal.type.replace("/msg/", "/"))
+
     def _meets_units(self, part: e.Expression) -> bool:
         scales = {self._scale(name.id) for name in e.names(part)}
         return len(scales) > 1 or e.has_unit(part)
@@ -118,28 +113,25 @@ class Atoms:
 
     # Truth values
 
-    def _truth(self, part: e.Expression, *, is_base: bool) -> Term:
-        def read(each: e.Expression) -> Term:
-            return self._truth(each, is_base=is_base)
+    def _holds(
+        self, part: e.Expression, value: bool, known: Callable[[Term], Term], *, is_base: bool
+    ) -> Term:
+        def read(each: e.Expression, is_so: bool) -> Term:
+            return self._holds(each, is_so, known, is_base=is_base)
 
         match part:
-            case e.Truth(value):
-                return z3.BoolVal(value)
+            case e.Truth(is_true):
+                return z3.BoolVal(is_true is value)
             case e.Not(arg):
-                return z3.Not(read(arg))
+                return read(arg, not value)
             case e.And(args):
-                return z3.And([read(each) for each in args])
+                return (z3.And if value else z3.Or)([read(each, value) for each in args])
             case e.Or(args):
-                return z3.Or([read(each) for each in args])
-            case e.Xor(left, right):
-                return z3.Xor(read(left), read(right))
-            case e.Implies(left, right):
-                return z3.Implies(read(left), read(right))
-            case e.Iff(left, right):
-                return read(left) == read(right)
+                return (z3.Or if value else z3.And)([read(each, value) for each in args])
             case e.Comparison(op, left, right):
                 a, b = (self._number(side, is_base=is_base) for side in (left, right))
-                return e.COMPARE[op](a, b)
+                compared = e.COMPARE[op](a, b)
+                return z3.And(compared if value else z3.Not(compared), known(compared))
             case _:
                 raise BeyondError("is no comparison of numbers")
 
@@ -183,7 +175,7 @@ class Atoms:
         is_word = signal is not None and bool(signal.values)
         if known is Kind.TRUTH:
             raise BeyondError("compares a truth value with a number")
-        whole = is_word or known in (Kind.WHOLE, Kind.NATURAL)
+        whole = is_word or known in (Kind.WHOLE, Kind.NATURAL) or self._range(name) is not None
         made = z3.Int(name) if whole else z3.Real(name)
         variable = self.variables.setdefault(name, made)
         if not is_base or is_word:
@@ -194,39 +186,17 @@ class Atoms:
         return variable if scale == 1 else _exact(scale) * variable
 
 
+_RANGES: Mapping[str, tuple[int, int]] = {
+    "std_msgs/Bool": (0, 1),
+    **{f"std_msgs/Int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)},
+    **{f"std_msgs/UInt{n}": (0, 2**n - 1) for n in (8, 16, 32, 64)},
+}
+"""Of their field `data`."""
+
+
 def read_by(formula: Term) -> frozenset[str]:
     """The variables that a formula is about."""
     return frozenset(str(each) for each in z3util.get_vars(formula))
-
-
-def _parts(rules: Sequence[Formalized]) -> Iterator[tuple[str, e.Expression]]:
-    """Comparisons of one moment, and what declared propositions say in their place.
-
-    A proposition over samples of a tick, or with a value for what is unknown, says something else
-    than its expression.
-    """
-    for rule in rules:
-        yield from comparisons(rule).items()
-        declared = rule.declarations.propositions if rule.declarations else {}
-        signals: Mapping[str, Signal] = rule.declarations.signals if rule.declarations else {}
-        for name, part in candidates(rule.sentence):
-            bound = declared.get(name)
-            if not isinstance(part, e.Name) or bound is None:
-                continue
-            plain = bound.aggregate is Aggregate.LAST and bound.on_unknown is None
-            if plain and _is_measured(bound.expression, signals):
-                yield name, bound.expression
-
-
-def _is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool:
-    """Whether it compares numbers of signals in their own units, at one tick."""
-    read = [signals.get(name.id) for name in e.names(expression)]
-    return (
-        bool(read)
-        and not any(e.truths(expression))
-        and not ticks_back(expression)
-        and all(each is not None and each.scale == each.unit.factor for each in read)
-    )
 
 
 def _exact(value: Fraction) -> Term:

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.games.budget import Budget
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.games.game import Game, Goal, Solution
 
 

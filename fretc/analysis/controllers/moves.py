@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.controllers.machine import Machine, NoMachineError
-from fretc.analysis.games.budget import Budget
 
 MOST_STATES, MOST_MOVES = 1_000, 10_000
 """Of an automaton that is written."""

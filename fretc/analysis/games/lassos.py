@@ -19,12 +19,13 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import numbers
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.product import arena
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arithmetic.alphabet import Cells
-from fretc.analysis.arithmetic.terms import Atoms, Term, read_by
-from fretc.analysis.games.budget import Budget
+from fretc.analysis.arithmetic.atoms import Atoms
+from fretc.analysis.arithmetic.terms import Term, read_by
 from fretc.analysis.games.replay import ROUNDS, kept
 from fretish.bindings.declarations import Role
 
@@ -64,7 +65,9 @@ def lasso(
         as_fret: whether nothing may be owed at the end of any tick.
     """
     fresh = numbers()
-    cells = Cells(rules, roles, fresh, Role.OUTPUT)
+    cells = Cells(rules, roles, fresh, Role.OUTPUT, budget)
+    if not cells.numbers.is_of_moments:
+        return None
     counters = arena(rules, (), cells, fresh, as_fret=as_fret).counters
     waiting = {each.id for each in counters if each.fair is not None}
     search = _Search(cells, counters)

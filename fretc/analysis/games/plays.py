@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.alphabet import Tick
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.transition import State
-from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.game import Game, Goal, Letter, Solution, Trap, whole
 from fretc.analysis.games.squaring import Relation, TooLargeError
 
@@ -25,6 +26,8 @@ class Play:
     """The tick to which the last one leads back for ever; None: the last tick breaks something."""
     state: State
     """Before the last tick."""
+    numbers: tuple[Tick, ...] = ()
+    """Of each tick, where they depend on those of the tick before."""
 
     @property
     def ticks(self) -> int:
@@ -49,6 +52,14 @@ class Play:
         return (*self.runs, *again * (rounds - 1))
 
 
+class NoPlayError(Exception):
+    """The environment wins, but no play shows it; the message says why."""
+
+
+_MOST_NUMBERS = 500
+"""Ticks of a play whose numbers may come back to what they were."""
+
+
 class Counterstrategy:
     """How the environment wins a game that the system cannot win.
 
@@ -58,12 +69,14 @@ class Counterstrategy:
     def __init__(self, game: Game, solution: Solution, budget: Budget) -> None:
         assert not solution.is_realizable
         self._game, self._traps, self._budget = game, solution.traps, budget
+        self._course = game.alphabet.course(budget)
 
     def play(self) -> Play:
         """From the initial state to a breach, or round and round without what must come.
 
         Raises:
             OutOfTimeError: it has too many ticks.
+            NoPlayError: its numbers come back to nothing that was.
         """
         state: State = self._game.transition.start
         promise, trap = 0, len(self._traps) - 1
@@ -72,22 +85,41 @@ class Counterstrategy:
         before = state
         while True:
             self._budget.check()
-            key = (promise, *state.values())
+            key = (promise, *state.values(), *(self._course.last if self._course else ()))
             if key in seen:
-                return Play(runs.all, seen[key], before)
+                return Play(runs.all, seen[key], before, self._numbers)
             seen[key] = runs.ticks
+            if self._course is not None and runs.ticks > _MOST_NUMBERS:
+                raise NoPlayError(
+                    f"not shown: its numbers do not come back in {_MOST_NUMBERS} ticks"
+                )
             trap = self._number(bdd.point(state), trap)
             inputs = self._inputs(state, promise, self._traps[trap])
             options = self._options(state, inputs)
             if options == bdd.false():
-                runs.add({**inputs, **self._breach(state, inputs)})
-                return Play(runs.all, None, state)
-            letter = {**inputs, **self._resistance(options, state, inputs, trap)}
+                runs.add(self._followed(inputs | self._breach(state, inputs)))
+                return Play(runs.all, None, state, self._numbers)
+            letter = self._followed(inputs | self._resistance(options, state, inputs, trap))
             before, state = state, self._game.transition.next(bdd.point({**state, **letter}))
-            if runs.add(letter) > _LONG and self._traps[trap].inputs is not None:
+            stays = runs.add(letter) > _LONG and self._traps[trap].inputs is not None
+            if stays and self._course is None:  # numbers differ from tick to tick
                 ticks, state = self._while_repeated(letter, state, trap)
                 runs.add(letter, ticks)
             promise = self._following(state, promise)
+
+    def _followed(self, letter: Letter) -> Letter:
+        """The letter, for which numbers are chosen."""
+        if self._course is not None:
+            self._course.follow(letter)
+        return letter
+
+    @property
+    def _numbers(self) -> tuple[Tick, ...]:
+        return () if self._course is None else tuple(self._course.ticks)
+
+    def _possible(self, inputs: Letter) -> Function:
+        """The outputs that the numbers of the tick before leave."""
+        return bdd.true() if self._course is None else self._course.possible(inputs)
 
     def _while_repeated(self, letter: Letter, state: State, trap: int) -> tuple[int, State]:
         """How many ticks more the letter can be repeated before the state leaves the trap."""
@@ -132,7 +164,8 @@ class Counterstrategy:
 
     def _options(self, state: State, inputs: Letter) -> Function:
         """The outputs that break nothing."""
-        return bdd.at(self._game.safe, bdd.point({**state, **inputs}))
+        safe = bdd.at(self._game.safe, bdd.point({**state, **inputs}))
+        return safe & self._possible(inputs)
 
     def _resistance(
         self, options: Function, state: State, inputs: Letter, trap: int
@@ -156,7 +189,7 @@ class Counterstrategy:
     def _breach(self, state: State, inputs: Letter) -> dict[int, bool]:
         """Outputs that break as few requirements as can be."""
         known = bdd.point({**state, **inputs})
-        options = bdd.at(self._game.reachable, known)
+        options = bdd.at(self._game.reachable, known) & self._possible(inputs)
         for counter in self._game.counters:
             kept = options & bdd.at(counter.safe, known)
             options = kept if kept != bdd.false() else options

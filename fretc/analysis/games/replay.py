@@ -13,6 +13,7 @@ from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
+from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.game import Letter
 from fretc.analysis.games.plays import Play, Run
 
@@ -24,11 +25,29 @@ def columns(alphabet: Alphabet, runs: Sequence[Run], atoms: Iterable[str]) -> di
     """Each atom over time, bit i for tick i."""
     functions = {name: alphabet.atom(name) for name in atoms}
     bits: dict[str, list[str]] = {name: [] for name in functions}
-    for letter, count in reversed(runs):
+    for letter, count in reversed([*remembering(alphabet, runs)]):
         known = bdd.point(letter)
         for name, function in functions.items():
             bits[name].append(("1" if bdd.at(function, known) == bdd.true() else "0") * count)
     return {name: int("".join(values) or "0", 2) for name, values in bits.items()}
+
+
+def remembering(alphabet: Alphabet, runs: Iterable[Run]) -> Iterator[Run]:
+    """Letters from the first tick on, each with what is remembered before it."""
+    memory = alphabet.memory()
+    if memory is None:
+        yield from runs
+        return
+    transition = Transition([memory])
+    state = transition.start
+    for letter, count in runs:
+        left = count
+        while left:
+            known = {**letter, **state}
+            after = transition.next(bdd.point(known))
+            ticks = left if after == state else 1  # nothing new is remembered of the others
+            yield known, ticks
+            state, left = after, left - ticks
 
 
 def broken(

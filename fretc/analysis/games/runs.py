@@ -11,9 +11,9 @@ from collections.abc import Iterator, Sequence
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.transition import Transition
-from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.squaring import Leaps, Relation
 
 
@@ -26,12 +26,23 @@ class Runs:
         kept: Sequence[Counter],
         budget: Budget,
         watched: Sequence[Counter] = (),
+        *,
+        certain: bool = False,
     ) -> None:
+        """The runs.
+
+        Args:
+            alphabet: of all counters.
+            kept: by the runs.
+            budget: for the fixpoints.
+            watched: others.
+            certain: whether the runs have letters only that there are for certain.
+        """
         self._kept, self._budget = kept, budget
         self._counters = (*kept, *watched)
         self.transition = Transition([*kept, *watched])
         self._letters = bdd.cube([*alphabet.inputs, *alphabet.outputs])
-        self.safe = alphabet.legal & alphabet.reachable
+        self.safe = alphabet.certain if certain else alphabet.possible
         for counter in kept:
             self.safe = self.safe & counter.safe
         self._fair = [each.fair for each in kept if each.fair is not None]

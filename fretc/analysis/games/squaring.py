@@ -16,10 +16,10 @@ from itertools import pairwise
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.memory import Bit
 from fretc.analysis.arena.transition import State
-from fretc.analysis.games.budget import Budget
 
 MOST_NODES = 10_000
 """Of a relation; larger ones take longer than the ticks that they stand for."""

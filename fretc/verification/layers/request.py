@@ -27,6 +27,8 @@ class Request:
     layers: Collection[Layer]
     limits: Limits
     monitor: Source | None = None
+    header: Source | None = None
+    """Of the monitor, which is in C then."""
     interceptor: Source | None = None
     agent: Source | None = None
     properties: Source | None = None

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
+from typing import Any, Protocol
 
 from compiler.logic.orders import Exclusion, only_possible
 from compiler.program.program import MARKS, SIGNALS
@@ -68,7 +68,7 @@ def compared(
     for doubt in (False, True):
         left = _Rail(machine, place, doubt, atoms)
         right = _Rail(reference, 0, doubt, atoms)
-        result = _in_lock_step(left, right, letters, limit)
+        result = in_lock_step(left, right, letters, limit, _NAMES)
         if not isinstance(result, Same):
             return result
         states += result.states
@@ -118,10 +118,32 @@ def _is_open(name: str) -> bool:
 _NAMES = (*SIGNALS, *(f"mark `{mark}`" for _ in _STARTS for mark in MARKS))
 
 
-def _in_lock_step(
-    left: _Rail, right: _Rail, letters: Sequence[Letter], limit: int
+class Stepping(Protocol):
+    """What can be put into any state that it had, and stepped from there."""
+
+    def save(self) -> Hashable:
+        """Everything that its further steps depend on, and nothing else."""
+
+    def step(self, state: Any, letter: Letter) -> tuple[object, ...]:
+        """What it tells one tick after a state."""
+
+
+def in_lock_step(
+    left: Stepping,
+    right: Stepping,
+    letters: Sequence[Letter],
+    limit: int,
+    names: Sequence[str],
 ) -> Same | Apart | None:
-    """Breadth first through all pairs of states."""
+    """Breadth first through all pairs of states, from the present ones.
+
+    Args:
+        left: the one.
+        right: the other.
+        letters: all that may come at a tick.
+        limit: the most pairs; with more the result is None.
+        names: of the values that a step tells.
+    """
     pairs = [(left.save(), right.save())]
     origins: list[tuple[int, Letter] | None] = [None]
     visited = {*pairs}
@@ -129,7 +151,7 @@ def _in_lock_step(
         for letter in letters:
             actual, expected = left.step(first, letter), right.step(second, letter)
             if actual != expected:
-                signal = next(n for n, a, b in zip(_NAMES, actual, expected, strict=True) if a != b)
+                signal = next(n for n, a, b in zip(names, actual, expected, strict=True) if a != b)
                 return Apart((*_word(origins, place), letter), signal)
             reached = left.save(), right.save()
             if reached not in visited:

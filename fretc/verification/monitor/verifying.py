@@ -98,11 +98,11 @@ def _compared(
     atoms = tuple(dict.fromkeys((*atoms_of(rule.sentence), *monitor.PROPOSITIONS)))
     needed, cells = _needed(rule, text, monitor, atoms)
     machine = Alone(Stepped(monitor, place, atoms, cells), len(atoms) - len(needed))
-    result = _lock_step(rule, machine, needed, limit)
+    result = lock_step(rule, machine, needed, limit)
     if isinstance(result, str):
         return not_checked(result)
     if isinstance(result, Difference):
-        return _refuted(result, atoms)
+        return judged_wrongly(result, atoms)
     generated = target.text(rule)
     if text != generated:
         (expected,) = load("generated", generated).REQUIREMENTS
@@ -132,7 +132,7 @@ def _needed(
     return (own, part.cells) if part.propositions <= {*own} else (atoms, None)
 
 
-def _lock_step(
+def lock_step(
     rule: Formalized, machine: Machine, atoms: Sequence[str], limit: int
 ) -> Equivalence | Difference | str:
     """The comparison with the automaton of the sentence, over all valuations of the atoms.
@@ -169,7 +169,7 @@ def _proved(same: Equivalence, ticks: int, states: int = 0) -> Outcome:
     )
 
 
-def _refuted(difference: Difference, atoms: tuple[str, ...]) -> Outcome:
+def judged_wrongly(difference: Difference, atoms: tuple[str, ...]) -> Outcome:
     """The steps of the monitor judge a trace wrongly."""
     count = len(difference.word)
     length = f"{count} tick{'' if count == 1 else 's'}"

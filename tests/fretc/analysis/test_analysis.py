@@ -11,8 +11,8 @@ import pytest
 from compiler.formalization.formalized import Formalized
 from fretc.analysis import verdicts
 from fretc.analysis.analysis import analyze
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import Conflict, OpenQuestion, Verdict
-from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.squaring import Leaps
 from fretc.analysis.verdicts import Completeness
 from fretish.bindings.declarations import Role
@@ -194,9 +194,9 @@ def test_a_million_ticks_are_answered_as_ten_are(ticks: int) -> None:
     soon = f"upon a the sw shall within {ticks} ticks satisfy x"
     for held, verdict in ((ticks - 1, REALIZABLE), (ticks, UNREALIZABLE)):
         setting = staged(soon, f"the sw shall for {held} ticks satisfy !x")
-        (found,) = verdicts.verdict(setting, 60)
+        found, _ = verdicts.verdict(setting, Budget(60))
         assert found.verdict is verdict
-    conflict, complete = verdicts.conflicts(setting, 60)
+    conflict, complete = verdicts.conflicts(setting, Budget(60))
     assert isinstance(conflict, Conflict)
     assert isinstance(complete, Completeness)
     assert conflict.because == (
@@ -348,7 +348,7 @@ def test_what_takes_too_long_comes_with_a_clue(monkeypatch: pytest.MonkeyPatch) 
         "whenever b the sw shall for 1000001 ticks satisfy !x",
         "whenever b the sw shall immediately satisfy x | y",
     )
-    (found,) = verdicts.conflicts(setting, seconds=0.3)
+    (found,) = verdicts.conflicts(setting, Budget(0.3))
     assert isinstance(found, OpenQuestion)
     assert found.why == (
         "not answered within 0.3 s of a processor; "

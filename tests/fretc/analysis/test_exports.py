@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from compiler.project.folder import whole
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import roles
 from fretc.analysis.findings import Verdict
 from fretc.analysis.stage import stage
@@ -152,7 +153,7 @@ def test_hover_is_reached_within_twelve_ticks_and_not_within_six(
     named = roles(project.rules)
     assert not isinstance(named, tuple)
     assert "kias_before" not in named
-    (found,) = verdict(stage(project.rules, (), named), 60)
+    found, _ = verdict(stage(project.rules, (), named), Budget(60))
     assert found.verdict is answer
 
 

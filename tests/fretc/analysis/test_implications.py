@@ -8,6 +8,7 @@ import pytest
 import spot
 
 from compiler.logic import printing
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import Analysis, Inconsistency
 from fretc.analysis.games.squaring import Leaps
 from fretc.analysis.implications import inconsistencies
@@ -159,7 +160,7 @@ def test_long_counts_are_compared_bit_by_bit() -> None:
         "whenever a the sw shall within 900 ticks satisfy x",
         "whenever b the sw shall for 901 ticks satisfy !x",
     )
-    (found,) = inconsistencies(setting, seconds=10)
+    (found,) = inconsistencies(setting, Budget(10))
     assert isinstance(found, Inconsistency)
     assert found.requirements == ("R1", "R2")
     assert found.play == ({"a": True, "b": True, "x": False},)

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator, Sequence
 import pytest
 
 from fretc.analysis.analysis import Finding, Job
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import OpenQuestion
-from fretc.analysis.games.budget import Budget
 from fretc.analysis.worker import Stopped, findings
 
 

@@ -16,6 +16,7 @@ FIGHT = (
     "whenever start the line shall within 2 ticks satisfy run",
     "upon stop the line shall for 3 ticks satisfy !run",
 )
+ROOT = Path(__file__).parents[3]
 ROLES = {"start": "input", "stop": "input", "run": "output"}
 
 
@@ -48,7 +49,7 @@ def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
     assert "    run (output)   0  0  1\n" in run.out
 
 
-def test_a_conflict_of_propositions_about_one_number_has_no_lanes(
+def test_a_conflict_of_propositions_about_one_number_has_their_lanes(
     fretc: Fretc, tmp_path: Path
 ) -> None:
     sentences = (
@@ -63,7 +64,7 @@ def test_a_conflict_of_propositions_about_one_number_has_no_lanes(
     run = fretc("analyze", str(written(tmp_path, sentences, {}, more)))
     assert run.status == 1
     assert "  at tick 2 R1 demands `fast`, and R2 forbids it\n  R1  the line" in run.out
-    assert "tick  " not in run.out
+    assert "    fast (output)     0  1\n" in run.out
     assert fretc("report", "--requirements", str(tmp_path), "-o", "r.html").status == 0
 
 
@@ -308,3 +309,26 @@ def test_check_takes_an_answer_only_while_it_is_about_these(fretc: Fretc, tmp_pa
 def test_check_says_what_has_no_role(fretc: Fretc, folder: Path) -> None:
     written(folder, FIGHT, {"start": "input", "run": "output"})
     assert "F354" in fretc("check", str(folder), "--analyze").err
+
+
+@pytest.mark.slow
+def test_the_mission_cannot_be_kept_without_scans(fretc: Fretc, tmp_path: Path) -> None:
+    """Who is released has to move, who moves needs a scan, and nobody has to send one."""
+    run = fretc(
+        *("analyze", str(ROOT / "requirements/mission"), "--format", "json"),
+        *("-o", str(tmp_path / "analysis.json")),
+    )
+    assert run.status == 1
+    found = json.loads(run.out)
+    verdicts = {each["requirements"][0]: each["verdict"] for each in found["components"]}
+    assert verdicts == {"R1": "unrealizable", "R9": "realizable", "R14": "realizable"}
+    (conflict,) = found["conflicts"]
+    assert set(conflict["requirements"]) == {"R7", "R8", "R13", "R15"}
+    play = conflict["play"]
+    assert not any(tick["scan_fresh"] for tick in play)
+    assert all(tick["alive"] for tick in play)
+    assert all(tick["stop_requested"] is not tick["released"] for tick in play)
+    begun = next(n for n, tick in enumerate(play) if tick["released"])
+    assert begun <= 200
+    assert len(play) == begun + 51
+    assert [n for n, tick in enumerate(play) if tick["moving"]] in ([], [len(play) - 1])

@@ -347,6 +347,16 @@ def test_what_is_not_shown_is_counted(opened: Open) -> None:
     assert [*everything(page)][:2] == ["q", "R2 at this tick"]
 
 
+def test_more_cells_than_a_browser_shows_are_counted(opened: Open) -> None:
+    sentences = ["the robot shall always satisfy q"] * 40
+    page = opened(*sentences, address="#ticks=2000&v.q=0_1*1999")
+    assert page.locator("#which").input_value() == "0"
+    assert page.locator("#hidden").inner_text() == "Not shown: 39 violated at the last tick."
+    page.locator("#which").select_option("")
+    assert page.locator("#which").input_value() == "0"
+    assert "too many to be shown at once" in page.locator("#status").inner_text()
+
+
 # The page as a whole --------------------------------------------------------------------------
 
 

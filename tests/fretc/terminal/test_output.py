@@ -267,7 +267,7 @@ def test_no_name_of_a_log_writes_a_verdict_of_its_own(folder: Path, fretc: Fretc
     shutil.copy(LOG, folder / forged)
     done = fretc("audit", forged, "--evidence", "build/x\ny")
     assert done.out.splitlines()[0] == "a.mcap\\n  \u2714 R1  satisfied\\x1b[2K"
-    assert len(done.out.splitlines()) == 3  # the last one counts
+    assert len(done.out.splitlines()) == 4  # the name, a verdict, situations, counts
     assert done.err == "wrote build/x\\ny\n"
 
 

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import settings
 
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.past import Watch
+from compiler.logic import formula as f
 from compiler.targets.javascript import monitor as target
 from compiler.targets.python.monitor import text as in_python
 from monitors.kernel import Monitor
@@ -79,8 +83,12 @@ def expected(
 
 def agree(folder: Path, sentences: Sequence[tuple[str, ...]], words: int, length: int) -> None:
     """Each group of sentences is one monitor; both languages judge the same words."""
-    choose = random.Random(f"{sentences}")
     rules = [[rule(s, f"R{i}") for i, s in enumerate(group, 1)] for group in sentences]
+    alike(folder, rules, words, length)
+
+
+def alike(folder: Path, rules: Sequence[Sequence[Formalized]], words: int, length: int) -> None:
+    choose = random.Random(f"{[each.id for group in rules for each in group]}")
     machines = [load("monitor.py", in_python(*each)) for each in rules]
     judged = [
         (place, drawn(choose, tuple(machine.PROPOSITIONS), length))
@@ -90,7 +98,7 @@ def agree(folder: Path, sentences: Sequence[tuple[str, ...]], words: int, length
     texts = [target.text(*each) for each in rules]
     for (place, word), told in zip(judged, outcomes(folder, texts, judged, "judge"), strict=True):
         for tick, row in enumerate(told_by_python(machines[place], word)):
-            assert list(map(reduced, told[tick])) == row, (sentences[place], word[: tick + 1])
+            assert list(map(reduced, told[tick])) == row, (rules[place], word[: tick + 1])
 
 
 def reduced(outcome: Mapping[str, Any]) -> dict[str, Any]:
@@ -117,6 +125,26 @@ def test_templates_alone_and_sentences_with_large_bounds(tmp_path: Path) -> None
     for text in (*SHARING, *WINDOWS):
         sentences.extend(text.format(n=n) for n in (0, 7, 100, 10**9))
     agree(tmp_path, [(each,) for each in choose.sample(sentences, MANY)], words=1, length=150)
+
+
+def test_every_bound_of_a_window(tmp_path: Path) -> None:
+    a, b, no = f.Atom("a"), f.Atom("b"), f.FALSE
+    bounds = [f.Interval(lo, hi) for lo in range(4) for hi in range(lo, 8)]
+    formulas = [
+        made
+        for each in bounds
+        for made in (f.Since(a, b, each), f.Once(b, each), f.Historically(f.Not(a), each))
+    ]
+    plain = rule("the sw shall satisfy q")
+    rules = [
+        replace(
+            plain,
+            requirement=replace(plain.requirement, id=f"R{place}"),
+            watch=Watch(each, no, no, no, no, no, f.Not(each), None, renewed=False),
+        )
+        for place, each in enumerate(formulas)
+    ]
+    alike(tmp_path, [rules], words=6, length=80)
 
 
 def test_no_name_clashes_with_another(tmp_path: Path) -> None:

@@ -7,7 +7,6 @@ import math
 import random
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -124,41 +123,61 @@ def test_a_comparison_is_the_same(
     assert by_node(each) == expected
 
 
+EDGES = (2**52, 2**53, 2**63, 2**64)
+TEXTS = (
+    *("0.35", "0.9", "1e400", "1e-400", "5e-324", "3.4028235677973366e38", "16777217"),
+    *(f"{n + k}{half}" for n in EDGES for k in (-1, 0, 1) for half in ("", ".5")),
+)
+
+
+def edges() -> list[Any]:
+    """Numbers of each kind, at constants and beside them."""
+    whole = [sign * (n + k) for n in EDGES for k in (-1, 0, 1) for sign in (1, -1)]
+    floats = [sign * float(text) for text in (*TEXTS, "0", "1e308", "3") for sign in (1, -1)]
+    with np.errstate(all="ignore"):
+        singles = [np.float32(value) for value in floats]
+    return [None, math.nan, math.inf, -math.inf, *whole, *floats, *singles]
+
+
 def test_what_stands_at_an_edge_is_the_same() -> None:
-    edges = (2**52, 2**53, 2**63, 2**64)
-    texts = ["0.35", "0.9", "1e400", "1e-400", "5e-324", "3.4028235677973366e38", "16777217"]
-    texts += [f"{n + k}{half}" for n in edges for k in (-1, 0, 1) for half in ("", ".5")]
-    values: list[Any] = [None, math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, 1e308]
+    choose, values, y = random.Random("edges"), edges(), e.Name("y")
+    speeds = {"x": ("km/h", Fraction(5, 18)), "y": ("m/s", Fraction(1))}
+    calls = [e.Call(name, (X, y)) for name in ("min", "max")]
+    drawn: list[tuple[e.Comparison, Units, dict[str, Any]]] = []
+    for _ in range(100 * MANY // 4):
+        fixed: e.Expression = e.Number(choose.choice(TEXTS))
+        fixed = choose.choice([fixed, e.Negation(fixed)])
+        some: tuple[e.Expression, ...] = (X, e.Call("abs", (X,)), e.Call("min", (X, fixed)), *calls)
+        op, row = choose.choice([*e.COMPARE]), {name: choose.choice(values) for name in "xy"}
+        near = float(choose.choice(TEXTS))  # where a bit more or less counts
+        speed = choose.randrange(1, 1000) / 100
+        with np.errstate(all="ignore"):
+            row |= choose.choice(
+                [
+                    {},
+                    {"x": int(near) + 1 if 1 < near < 2**65 else near, "y": near},
+                    {"x": np.float32(near), "y": 0.1},
+                    {"x": speed * 3.6, "y": speed},
+                ]
+            )
+        tree = choose.choice([e.Comparison(op, choose.choice(some), fixed), e.Comparison(op, X, y)])
+        drawn.append((tree, choose.choice([{}, speeds]) if tree.right is y else {}, row))
     with np.errstate(all="ignore"):
-        values += [kind(text) for text in texts for kind in (float, np.float32)]
-    values += [sign * (n + k) for n in edges for k in (-1, 0, 1) for sign in (1, -1)]
-    trees: list[e.Comparison] = []
-    for digits in texts:
-        fixed = e.Number(digits)
-        for op in e.COMPARE:
-            for side in (fixed, e.Negation(fixed)):
-                trees.append(e.Comparison(op, X, side))
-                trees.append(e.Comparison(op, e.Call("min", (X, side)), fixed))
-                trees.append(e.Comparison(op, e.Call("abs", (X,)), side))
-    operators: tuple[e.ArithmeticOperator, ...] = ("+", "-", "*", "/", "mod")
-    for sign in operators:
-        trees.append(e.Comparison("<", e.Arithmetic(sign, X, e.Number("3")), e.Number("1.5")))
-    drawn = random.Random("edges").sample([*product(trees, values)], 100 * MANY // 4)
-    with np.errstate(all="ignore"):
-        expected = [compiled(tree, {})({"x": value}) for tree, value in drawn]
-    assert by_node([(tree, {}, {"x": value}) for tree, value in drawn]) == expected
+        expected = [compiled(tree, units)(row) for tree, units, row in drawn]
+    assert by_node(drawn) == expected
 
 
 WORDS = (
     "whenever mode = drive the sw shall within 1 ticks satisfy mode != wish & way > 50 cm",
     "the sw shall always satisfy v <= 150 cm/s & way - preReal(1 m, way) < gap",
+    "the sw shall always satisfy way >= preReal(9007199254740993, way)",
 )
 
 
 def test_words_and_ticks_before_are_the_same(tmp_path: Path) -> None:
     choose = random.Random("words")
     values: dict[str, Sequence[Any]] = {
-        "number": (0.0, 0.5, 1.0, 1.5, 149.9, 150.1, None),
+        "number": (2.0**53, 0.0, 0.5, 1.0, 1.5, 149.9, 150.1, None),
         "word": ("drive", "docking", None),
         "truth": (True, False, None),
     }
@@ -174,6 +193,7 @@ def test_words_and_ticks_before_are_the_same(tmp_path: Path) -> None:
         machine: Any = load("monitor.py", in_python(rule))
         kinds = [each.kind for each in machine.VARIABLES.values()]
         word = [[choose.choice(values[kind]) for kind in kinds] for _ in range(60)]
+        word[0] = [values[kind][0] for kind in kinds]
         (folder := tmp_path / str(place)).mkdir()
         ((*told,),) = outcomes(folder, [text(rule)], [(0, word)])
         for row, (outcome,) in zip(word, told, strict=True):

@@ -13,10 +13,10 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import printing
 from compiler.targets.python import monitor as target
-from fretc.analysis.analysis import analyze
+from fretc.analysis.analysis import Options, analyze
 from fretc.analysis.arena.alphabet import Tick
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import Verdict
-from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.plays import Counterstrategy, Strategy
 from fretc.analysis.stage import Stage, stage
 from fretc.analysis.verdicts import verdict
@@ -123,7 +123,7 @@ def test_the_tick_before_gives_no_wrong_verdict() -> None:
         of = "io"[seed % 2]
         links = " & ".join(f"!p{k} & G(X p{k} <-> {of}{k})" for k in range(2))
         past = {name: text.replace("p", f"preInt(0, {of})") for name, text in meant.items()}
-        (found,) = verdict(staged_numbers(sentences, past), 60)
+        found, _ = verdict(staged_numbers(sentences, past), Budget(60))
         if found.verdict is not Verdict.NOT_CHECKED:
             is_realizable = synthesized(sentences, meant, links, "oup")
             assert (found.verdict is REALIZABLE) is is_realizable, (sentences, past)
@@ -214,6 +214,26 @@ def test_a_play_has_numbers() -> None:
         assert isinstance(tick["t"], int | float)
         assert tick["t"] > 30 or conflict.play[0]["t"] != tick["t"]
     assert found.terms[-1].startswith("numbers are")
+
+
+@pytest.mark.parametrize("ticks", [10, 5_000])
+def test_a_long_play_has_numbers_as_a_short_one_has(ticks: int) -> None:
+    """The longer one is of requirements that are looked at by themselves, and leaps."""
+    sentences = (
+        f"whenever t > 30 the sw shall within {ticks} ticks satisfy v > t + 1",
+        f"whenever t > 20 the sw shall for {ticks + 1} ticks satisfy v <= 31",
+    )
+    named = roles(["t"], ["v"])
+    found = analyze(rules(*sentences), named, (), Options(repairs=False))
+    assert found.verdict is UNREALIZABLE
+    assert found.complete
+    (conflict,) = found.conflicts
+    assert len(conflict.play) == ticks + 1
+    pairs = [(float(tick["t"]), float(tick["v"])) for tick in conflict.play]
+    assert pairs[0][0] > 30
+    assert all(v <= min(31, t + 1) for t, v in pairs[:-1])
+    t, v = pairs[-1]
+    assert not t + 1 < v <= 31
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,17 @@
 """Numbers of the tick before: what is certain of them, and what is left open."""
 
+import random
+from itertools import pairwise
+from typing import Any
+
 import pytest
 
+from compiler.targets.python import monitor as target
+from fretc.analysis.analysis import Options, analyze
 from fretc.analysis.findings import Verdict
-from tests.requirement_sets import analyzed, conflicts, roles
+from fretc.analysis.games import plays, squaring
+from monitors.loading import load
+from tests.requirement_sets import analyzed, conflicts, roles, rule, rules
 
 RATE = "the sw shall always satisfy absReal(v - preReal(0.0, v)) <= 1"
 NAMED = roles(["t", "a"], ["v", "x"])
@@ -33,10 +41,42 @@ def test_the_first_tick_has_the_number_that_stands_there() -> None:
     assert conflicts(analyzed(late.format("4.0"), *rest, roles=NAMED)) == [("R1", "R2")]
 
 
+@pytest.mark.slow
+def test_a_bound_is_reached_step_by_step() -> None:
+    """From 0 by steps of 1 it takes three ticks to 3."""
+    for ticks, answer in ((1, Verdict.UNREALIZABLE), (2, Verdict.REALIZABLE)):
+        climb = f"upon a the sw shall within {ticks} ticks satisfy v >= 3"
+        found = analyzed(RATE, climb, "the sw shall always satisfy v <= 4", roles=NAMED)
+        assert found.verdict is answer, found.why
+        assert found.complete
+        assert conflicts(found) == ([] if answer is Verdict.REALIZABLE else [("R1", "R2")])
+
+
+def test_a_play_with_numbers_of_before_has_each_of_its_ticks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Leaps begin at once; but no number of the tick before is known after one."""
+    monkeypatch.setattr(squaring.Leaps, "is_due", lambda self: True)
+    monkeypatch.setattr(plays, "_LONG", 0)
+    low = "the sw shall for 6 ticks satisfy v <= 0"
+    high = "upon a the sw shall within 7 ticks satisfy v >= 2"
+    found = analyzed(RATE, low, high, roles=NAMED)
+    (conflict,) = found.conflicts
+    assert conflict.requirements == ("R1", "R2", "R3")
+    values = [0.0, *(float(tick["v"]) for tick in conflict.play)]
+    assert len(values) == 9
+    assert all(v <= 0 for v in values[:-1])
+    assert all(abs(v - before) <= 1 for before, v in pairwise(values[:-1]))
+    assert values[-1] < 2 or values[-1] - values[-2] > 1
+
+
+@pytest.mark.slow
 def test_what_is_not_remembered_is_left_open() -> None:
-    """From 0 by steps of 1 it takes five ticks to 5; no comparison tells 4 from 1."""
-    jump = "whenever preBool(false, a) the sw shall immediately satisfy v >= 5"
-    found = analyzed(RATE, jump, roles=NAMED)
+    """What the environment keeps of its own numbers is not remembered well enough."""
+    named = roles(["t"], ["v"])
+    slow = "the op shall always satisfy absReal(t - preReal(0.0, t)) <= 1"
+    late = "whenever t >= 2 the sw shall immediately satisfy v < 0 & v > 0"
+    found = analyze(rules(late), named, [rule("A1", slow)], Options(seconds=1, repairs=False))
     assert found.verdict is Verdict.NOT_CHECKED
     assert "no more is remembered than which comparisons it makes true" in found.why
 
@@ -49,10 +89,55 @@ def test_conflicts_with_the_past_and_beside_it_are_found() -> None:
     found = analyzed(RATE, *fight, roles=NAMED)
     assert found.verdict is Verdict.UNREALIZABLE
     assert conflicts(found) == [("R1", "R2"), ("R2", "R3")]
-    with_the_past, beside_it = found.conflicts
-    assert "no play is shown" in with_the_past.because
-    assert beside_it.play
-    assert not found.complete
+    assert found.complete
+    assert all(conflict.play for conflict in found.conflicts)
+
+
+def drawn(seed: int) -> list[str]:
+    """A rate, and sentences that ask for a number that is near or far."""
+    choose = random.Random(seed)
+    rate = choose.choice(["absReal(v - preReal({}, v)) {} {}", "v - preReal({}, v) {} {}"])
+    start, most = choose.choice(["0.0", "2.0"]), choose.choice(["1", "1.5"])
+    sentences = [
+        f"the sw shall always satisfy {rate.format(start, choose.choice(['<=', '<']), most)}"
+    ]
+    for _ in range(choose.randint(1, 3)):
+        condition = choose.choice(["whenever a", "upon a", "upon !a", "whenever t > 2"])
+        timing = choose.choice(["immediately", "within 2 ticks", "within 3 ticks", "for 1 tick"])
+        bound = choose.choice(["v > 3", "v < 1", "v >= 4", "v <= 0", "v >= 2 & v <= 3", "v > t"])
+        sentences.append(f"{condition} the sw shall {timing} satisfy {bound}")
+    return sentences
+
+
+@pytest.mark.slow
+def test_plays_follow_their_own_numbers() -> None:
+    """Each play breaks something at its last tick, as monitors see the very numbers."""
+    shown = 0
+    for seed in range(5):
+        sentences = drawn(seed)
+        found = analyze(rules(*sentences), NAMED, (), Options(seconds=5, repairs=False))
+        for conflict in found.conflicts:
+            if not conflict.play or conflict.loop is not None:
+                continue
+            shown += any(id == "R1" for id in conflict.requirements)
+            kept = [sentences[int(id[1:]) - 1] for id in conflict.requirements]
+            machine: Any = load("monitor.py", target.text(*rules(*kept)))
+            verdicts = []
+            for tick in conflict.play:
+                machine.step(**tick)
+                verdicts.append({str(verdict) for verdict in machine.verdicts()})
+            *before, last = verdicts
+            assert "violated" in last, (sentences, conflict)
+            assert not any("violated" in each for each in before), (sentences, conflict)
+    assert shown > 1
+
+
+def test_sorting_numbers_out_takes_the_time_of_the_question() -> None:
+    many = [f"the sw shall always satisfy v{i} + v{i + 1} > v{i + 2}" for i in range(9)]
+    named = roles(["a"], [f"v{i}" for i in range(11)])
+    found = analyze(rules(*many), named, (), Options(seconds=0.05))
+    assert found.verdict is Verdict.NOT_CHECKED
+    assert found.why == "not answered within 0.05 s of a processor"
 
 
 @pytest.mark.parametrize("start", ["0.0", "7.0"])

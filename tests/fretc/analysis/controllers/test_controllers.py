@@ -10,12 +10,12 @@ import spot
 from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
 from compiler.logic.formula import atoms
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.controllers import moves
 from fretc.analysis.controllers.circuit import circuit
 from fretc.analysis.controllers.files import Form, automata, controller
 from fretc.analysis.controllers.machine import Machine, NoMachineError, machine
 from fretc.analysis.controllers.moves import mealy
-from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.replay import first_breaches
 from fretc.analysis.stage import Stage
 from monitors.kernel.verdicts import VIOLATED

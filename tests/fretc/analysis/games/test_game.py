@@ -9,8 +9,8 @@ from hypothesis import settings
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.formula import atoms
 from compiler.logic.spot import holds_on
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.games import plays, squaring
-from fretc.analysis.games.budget import Budget, OutOfTimeError
 from fretc.analysis.games.game import Game, Letter
 from fretc.analysis.games.plays import Counterstrategy, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import Verdict
-from fretc.analysis.games.budget import Budget
 from fretc.analysis.games.lassos import Impossible, Lasso, lasso
 from fretish.bindings.declarations import Role
 from tests.requirement_sets import ROLES, analyzed, drawn, roles, rules, staged

@@ -24,15 +24,29 @@ class Budget:
         if _is_guarded and math.isfinite(self.seconds):
             signal.setitimer(signal.ITIMER_PROF, _OVERTIME * self.seconds + 1)
 
+    def again(self) -> Budget:
+        """As many seconds, from now on."""
+        return Budget(self.seconds)
+
     @property
     def spent(self) -> float:
         """Seconds so far."""
         return time.process_time() - self.start
 
+    @property
+    def left(self) -> float:
+        """Seconds that are left, none or more."""
+        return max(0.0, self.seconds - self.spent)
+
     def check(self) -> None:
         """Raise OutOfTimeError where they are over."""
         if self.spent > self.seconds:
-            raise OutOfTimeError(f"not answered within {self.seconds:g} s of a processor")
+            raise self.over
+
+    @property
+    def over(self) -> OutOfTimeError:
+        """What is raised then."""
+        return OutOfTimeError(f"not answered within {self.seconds:g} s of a processor")
 
 
 _is_guarded = False
@@ -48,3 +62,7 @@ def guard() -> None:
     global _is_guarded
     signal.signal(signal.SIGPROF, signal.SIG_DFL)
     _is_guarded = True
+
+
+ENDLESS = Budget(math.inf)
+"""For what takes no time that counts."""

@@ -1,0 +1,191 @@
+"""The atoms of requirements that numbers and words decide, as formulas of one tick."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import z3
+
+from compiler.formalization.formalized import Formalized
+from fretc.analysis.arena.alphabet import BeyondError, Tick
+from fretc.analysis.arithmetic.durations import Lasting, parted
+from fretc.analysis.arithmetic.readings import Reading, readings
+from fretc.analysis.arithmetic.steps import AtomOfTick, Moment, Steps, linked, tick, unknown
+from fretc.analysis.arithmetic.terms import Before, Term, Terms, read_by
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """A truth value of one tick that numbers and words decide."""
+
+    over: AtomOfTick
+    reads: frozenset[str]
+    """Variables: of signals at one step, or of whether they are known there."""
+    names: tuple[str, ...] = ()
+    """Those of the sentence: whoever chooses them chooses the variables."""
+
+    @property
+    def formula(self) -> Term:
+        """When it is true."""
+        return self.over.formula
+
+
+class Atoms:
+    """The atoms of some rules that are linear, by the names that formulas give them."""
+
+    def __init__(self, rules: Sequence[Formalized], *, of_moments: bool = False) -> None:
+        """The atoms.
+
+        Args:
+            rules: whose they are.
+            of_moments: whether those alone are read that are of one sample, and known.
+        """
+        self._terms = Terms(rules)
+        self.found: dict[str, Atom] = {}
+        self.refused: dict[str, str] = {}
+        """Why another comparison has no formula here."""
+        self.lasting: dict[str, Lasting] = {}
+        """What atoms are made of that depend on earlier ticks."""
+        self._of: dict[str, str] = {}
+        """The signal of each variable of another step."""
+        self._flags: set[str] = set()
+        self._parts: set[str] = set()
+        moments: dict[str, Moment] = {}
+        for name, reading in readings(rules):
+            if of_moments and not reading.is_of_moment:
+                continue
+            if name not in moments and name not in self.refused and name not in self.lasting:
+                self._read(name, reading, moments)
+        self._sort(moments)
+
+    @property
+    def variables(self) -> dict[str, Term]:
+        """Constants of z3 for all that is read."""
+        return self._terms.variables
+
+    @property
+    def before(self) -> Mapping[str, Before]:
+        """What variables for numbers of the tick before are."""
+        return self._terms.before
+
+    @property
+    def is_of_moments(self) -> bool:
+        """Whether all are of the numbers of one step, and known."""
+        return not self._of and not self.lasting
+
+    def of(self, variable: str) -> str:
+        """The name whose number a variable is, at some step."""
+        return self._of.get(variable, variable)
+
+    def is_part(self, atom: str) -> bool:
+        """Whether an atom stands in no sentence."""
+        return atom in self._parts
+
+    def is_proposition(self, atom: str) -> bool:
+        """Whether a sentence names it, and compares nothing there."""
+        if atom in self.lasting:
+            return True
+        found = self.found.get(atom)
+        return found is not None and found.names == (atom,)
+
+    def domain(self, variable: str) -> Term:
+        """Which values a variable may have."""
+        if variable in self._flags:
+            return z3.BoolVal(True)
+        of = self.of(variable)
+        domain = self._terms.domain(of)
+        if of == variable:
+            return domain
+        return z3.substitute(domain, (self.variables[of], self.variables[variable]))
+
+    def tick(self, numbers: Mapping[str, Fraction]) -> Tick:
+        """The numbers of the last step as people write them."""
+        return {
+            name: self._terms.shown(name, value)
+            for name, value in numbers.items()
+            if name not in self._of
+        }
+
+    def _read(self, name: str, reading: Reading, moments: dict[str, Moment]) -> None:
+        try:
+            parts, lasting = parted(name, reading)
+            made = {each: self._moment(part) for each, part in parts.items()}
+        except BeyondError as error:
+            self.refused[name] = f"`{name}` {error}"
+            return
+        moments |= made
+        if lasting is not None:
+            self.lasting[name] = lasting
+            self._parts |= {*lasting.atoms}
+
+    def _moment(self, reading: Reading) -> Moment:
+        true, false = (
+            self._terms.holds(reading.expression, value, self._known) for value in (True, False)
+        )
+        signals = frozenset(each for each in read_by(true) if each in self.variables)
+        return Moment(true, false, signals, reading.aggregate, reading.on_unknown, reading.names)
+
+    def _known(self, compared: Term) -> Term:
+        return z3.And([z3.Not(unknown(name)) for name in read_by(compared)])
+
+    # Over a tick
+
+    def _sort(self, moments: Mapping[str, Moment]) -> None:
+        """Make formulas of a tick, of all moments."""
+        open_ = {
+            signal
+            for each in moments.values()
+            if each.on_unknown is not None
+            for signal in each.signals
+        }
+        kept = self._settled(moments, open_)
+        for name in open_:
+            self._add(str(unknown(name)), unknown(name), name)
+        for name, moment in kept.items():
+            if not moment.is_of_all_steps:
+                self._found(name, moment, tick(moment, [moment.true], [moment.false]))
+        for group in linked(kept):
+            steps = Steps(group, self.variables, open_)
+            if steps.is_crossed and steps.has_flags:
+                why = "read the same samples in part, and what may be unknown"
+                self.refused |= dict.fromkeys(
+                    group, f"{' and '.join(f'`{n}`' for n in group)} {why}"
+                )
+                continue
+            for name, copy in steps.copies.items():
+                self._add(name, copy, steps.of[name])
+            for name, moment in group.items():
+                self._found(name, moment, steps.tick(moment))
+
+    def _settled(
+        self, moments: Mapping[str, Moment], open_: Collection[str]
+    ) -> Mapping[str, Moment]:
+        """The moments where all is known but these signals; durations of those are refused."""
+        for name, lasting in [*self.lasting.items()]:
+            if any(not moments[each].signals.isdisjoint(open_) for each in lasting.atoms):
+                self.refused[name] = f"`{name}` has a duration of what may be unknown"
+                del self.lasting[name]
+        needed = {each for lasting in self.lasting.values() for each in lasting.atoms}
+        gone = self._parts - needed
+        known = [(unknown(name), z3.BoolVal(False)) for name in {*self.variables} - {*open_}]
+        return {
+            name: replace(
+                each,
+                true=z3.simplify(z3.substitute(each.true, *known)),
+                false=z3.simplify(z3.substitute(each.false, *known)),
+            )
+            for name, each in moments.items()
+            if name not in gone
+        }
+
+    def _add(self, variable: str, term: Term, of: str) -> None:
+        """A variable that is no number of the last step."""
+        self.variables[variable], self._of[variable] = term, of
+        if z3.is_bool(term):
+            self._flags.add(variable)
+
+    def _found(self, name: str, moment: Moment, made: AtomOfTick) -> None:
+        reads = read_by(made.formula) | read_by(made.given)
+        self.found[name] = Atom(made, reads, moment.names)

@@ -1,0 +1,67 @@
+"""The numbers of a run, tick by tick: each tick begins with those of the tick before."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.alphabet import Tick
+from fretc.analysis.arena.budget import Budget
+from fretc.analysis.arithmetic.atoms import Atoms
+from fretc.analysis.arithmetic.cells import Point, fixed
+from fretc.analysis.arithmetic.groups import Group
+from fretc.analysis.arithmetic.projection import Limit
+from fretc.analysis.arithmetic.terms import Term
+
+
+class NumberCourse:
+    """A `Course`."""
+
+    def __init__(self, groups: Sequence[Group], atoms: Atoms, budget: Budget) -> None:
+        """A run that has not begun.
+
+        Args:
+            groups: all that have bits.
+            atoms: of the groups.
+            budget: for the numbers.
+        """
+        self._groups, self._atoms, self._budget = groups, atoms, budget
+        self._numbers: Point | None = None
+        self.ticks: list[Tick] = []
+
+    @property
+    def last(self) -> tuple[object, ...]:
+        """The numbers that the next tick looks back at."""
+        names = (before.of for before in self._atoms.before.values())
+        return () if self._numbers is None else tuple(self._numbers[name] for name in names)
+
+    def possible(self, inputs: Mapping[int, bool]) -> Function:
+        """Over outputs: what can be true at the next tick."""
+        found = bdd.true()
+        for group in self._groups:
+            before = self._before(group)
+            if before:
+                found = found & group.left(inputs, before, Limit(self._budget))
+        return found
+
+    def follow(self, letter: Mapping[int, bool]) -> None:
+        """Choose numbers for the next tick."""
+        numbers: Point = {}
+        for group in self._groups:
+            numbers |= group.numbers(letter, self._before(group))
+        self._numbers = numbers
+        self.ticks.append(self._atoms.tick(numbers))
+
+    def _before(self, group: Group) -> list[Term]:
+        """What a group has of the tick before."""
+        found: list[Term] = []
+        for name, before in self._atoms.before.items():
+            if name not in group.names:
+                continue
+            variable = self._atoms.variables[name]
+            if self._numbers is None:
+                found.append(variable == before.first)
+            else:
+                found += fixed({name: self._numbers[before.of]}, [variable])
+        return found

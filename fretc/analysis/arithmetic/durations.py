@@ -1,0 +1,140 @@
+"""`... for 200 ms` over ticks: a count of the ticks since it was last interrupted.
+
+At a tick it is true where its argument was in force at the tick that lies so far back, and true at
+all steps since. So a tick says whether its argument is true at all steps, and whether it is in
+force at the end, and a count remembers the rest. A log that began less than 200 ms ago does not
+tell; then it is left open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.memory import (
+    Memory,
+    constant,
+    either,
+    equals,
+    only,
+    some,
+    successor,
+)
+from fretc.analysis.arithmetic.readings import Reading
+from fretish import expressions as e
+from fretish.bindings.declarations import Aggregate
+from fretish.printer import expression as printed
+
+_MOST = 3
+"""Durations in one proposition: each doubles what it may be."""
+
+
+@dataclass(frozen=True, slots=True)
+class Duration:
+    """One that has to be remembered."""
+
+    throughout: str
+    """The atom that says whether its argument is true at all steps of a tick."""
+    at_last: str
+    """The atom that says whether it is in force at the end of a tick."""
+    ticks: int
+
+
+@dataclass(frozen=True, slots=True)
+class Lasting:
+    """A proposition with durations in it."""
+
+    durations: tuple[Duration, ...]
+    cases: Mapping[tuple[bool, ...], str]
+    """The atom that it is, for each truth of the durations."""
+
+    @property
+    def atoms(self) -> Iterator[str]:
+        """All atoms that decide it."""
+        for each in self.durations:
+            yield from (each.throughout, each.at_last)
+        yield from self.cases.values()
+
+
+def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], Lasting | None]:
+    """A reading as readings of single ticks, and how they make it up; None: it is the only one.
+
+    Raises:
+        BeyondError: a duration is more than a count of ticks.
+    """
+    spans = list(dict.fromkeys(_durations(reading.expression)))
+    if not spans:
+        return {name: reading}, None
+    if reading.aggregate is not Aggregate.LAST or reading.on_unknown is not None:
+        raise BeyondError("looks for a duration between ticks, or where it is unknown")
+    if len(spans) > _MOST:
+        raise BeyondError("has too many durations")
+    found: dict[str, Reading] = {}
+    durations = []
+    for span in spans:
+        if reading.period is None or span.duration % reading.period or span.duration == 0:
+            raise BeyondError("has a duration that is no number of ticks")
+        if any(_durations(span.arg)):
+            raise BeyondError("has a duration within another one")
+        text = printed(span.arg)
+        made = Duration(f"{text} throughout", f"{text} at last", span.duration // reading.period)
+        found[made.throughout] = replace(reading, expression=span.arg, aggregate=Aggregate.ALL)
+        found[made.at_last] = replace(reading, expression=span.arg)
+        durations.append(made)
+    cases = {}
+    for values in product((True, False), repeat=len(spans)):
+        expression = _put(reading.expression, dict(zip(spans, values, strict=True)))
+        cases[values] = f"{name} where {values}"
+        found[cases[values]] = replace(reading, expression=expression)
+    return found, Lasting(tuple(durations), cases)
+
+
+def _durations(part: e.Expression) -> Iterator[e.Persistence]:
+    """The outermost ones."""
+    if isinstance(part, e.Persistence):
+        yield part
+        return
+    for each in e.children(part):
+        yield from _durations(each)
+
+
+def _put(part: e.Expression, values: Mapping[e.Persistence, bool]) -> e.Expression:
+    if isinstance(part, e.Persistence):
+        return e.Truth(values[part])
+    return e.with_children(part, [_put(each, values) for each in e.children(part)])
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """Whether something has lasted, over a letter and what is remembered."""
+
+    is_so: Function
+    is_open: Function
+    """Whether that depends on what was before the first tick."""
+
+
+def held(
+    memory: Memory, ticks: int, throughout: Function, at_last: Function, open_: Function
+) -> Held:
+    """Whether something has lasted so many ticks.
+
+    Args:
+        memory: that it takes bits from.
+        ticks: at least one.
+        throughout: whether it is true at all steps of a tick.
+        at_last: whether it is in force at the end of a tick; true where it is so throughout.
+        open_: whether it is taken to have lasted since before the first tick.
+    """
+    bits, known = memory.word(ticks)
+    is_enough = equals(known, ticks)
+    more = either(is_enough, constant(ticks, known), successor(known))
+    memory.set(bits, only(at_last, either(throughout & some(known), more, constant(1, known))))
+    broken = memory.bit()
+    was = bdd.variable(broken.now)
+    memory.steps[broken] = was | -throughout
+    is_open = throughout - was - is_enough
+    return Held((throughout & is_enough) | (is_open & open_), is_open)

@@ -1,0 +1,63 @@
+"""What the atoms of requirements say of the samples of a tick, as bindings have it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import comparisons
+from compiler.formalization.resolution import candidates
+from fretish import expressions as e
+from fretish.bindings.declarations import Aggregate, Signal
+from fretish.bindings.expressions import ticks_back
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What an atom says of the samples of a tick."""
+
+    expression: e.Expression
+    names: tuple[str, ...]
+    """Those of the sentence: whoever chooses them chooses the signals."""
+    aggregate: Aggregate = Aggregate.LAST
+    on_unknown: bool | None = None
+    """What it is where its signals are unknown; None: unknown, too."""
+    period: int | None = None
+    """Nanoseconds of a tick; None where the clock has no period."""
+
+    @property
+    def is_of_moment(self) -> bool:
+        """Whether one sample decides it, which is known."""
+        lasts = any(isinstance(part, e.Persistence) for part in e.parts(self.expression))
+        return self.aggregate is Aggregate.LAST and self.on_unknown is None and not lasts
+
+
+def readings(rules: Sequence[Formalized]) -> Iterator[tuple[str, Reading]]:
+    """Of each atom that compares numbers or words, by the name that formulas give it."""
+    for rule in rules:
+        compared, declared = comparisons(rule), rule.declarations
+        for name, comparison in compared.items():
+            yield name, Reading(comparison, _names(comparison))
+        for name, part in candidates(rule.sentence):
+            bound = declared.propositions.get(name) if declared is not None else None
+            if declared is None or bound is None or name in compared:
+                continue
+            if _is_measured(bound.expression, declared.signals):
+                own = bound.aggregate, bound.on_unknown, declared.clock.period
+                yield name, Reading(bound.expression, _names(part), *own)
+
+
+def _names(part: e.Expression) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(each.id for each in e.names(part)))
+
+
+def _is_measured(expression: e.Expression, signals: Mapping[str, Signal]) -> bool:
+    """Whether it compares numbers of signals in their own units, at one tick."""
+    read = [signals.get(name.id) for name in e.names(expression)]
+    return (
+        bool(read)
+        and not any(e.truths(expression))
+        and not ticks_back(expression)
+        and all(each is not None and each.scale == each.unit.factor for each in read)
+    )

@@ -1,0 +1,124 @@
+"""`fretc test --against`: whether a program keeps requirements, whatever happens to it.
+
+`fretc.testing.conformance` drives it; this module reads the command, prints and writes.
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+from fretc.terminal.output import (
+    BAD,
+    INTERRUPTED,
+    NOT_SHOWN,
+    SHOWN,
+    VIOLATION,
+    coloured,
+    deliver,
+    say,
+    stop,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+
+if TYPE_CHECKING:
+    from compiler.formalization.formalized import Formalized
+    from fretc.testing.conformance.findings import Conformance
+
+
+def against(
+    command: str,
+    rules: Sequence[Formalized],
+    assumed: Sequence[Formalized],
+    seconds: float,
+    line_time: float,
+    form: str,
+    output: str,
+    protected: Iterable[str],
+) -> NoReturn:
+    """Test a program, print what was seen, and exit.
+
+    Args:
+        command: the program and its arguments, as a shell would read them.
+        rules: the requirements.
+        assumed: what its environment keeps.
+        seconds: of a processor, for the strategy towards each situation.
+        line_time: seconds that the program may take for a line.
+        form: text or json.
+        output: where the evidence goes; `-` prints it.
+        protected: files that are read.
+    """
+    from compiler.files.records import plain
+    from compiler.files.templating import to_json
+    from fretc.analysis.arena.alphabet import BeyondError
+    from fretc.analysis.arena.budget import OutOfTimeError
+    from fretc.analysis.arena.roles import roles
+    from fretc.terminal.progress import at_work
+    from fretc.testing.conformance.campaign import Campaign
+    from fretc.testing.conformance.program import Program, ProgramError
+    from fretc.testing.conformance.text_output import lines
+
+    words = _words(command)
+    chosen = roles([*rules, *assumed])
+    if isinstance(chosen, tuple):
+        stop(*chosen)
+    wrong: Diagnostic | None = None
+    stopped = False
+    try:
+        campaign = Campaign(rules, assumed, chosen, seconds)
+        referee = campaign.referee
+        try:
+            campaign.run(
+                lambda: Program(words, referee.inputs, referee.outputs, line_time), at_work
+            )
+        except ProgramError as error:
+            wrong = error.diagnostic
+        except KeyboardInterrupt:
+            stopped = True
+    except (BeyondError, OutOfTimeError) as error:
+        stop(Diagnostic(Code.BAD_USAGE, f"no program can be tested against these: {error}"))
+    found = campaign.findings(words)
+    evidence = f"{to_json(plain(found))}\n"
+    if output == "-" or form == "json":
+        click.echo(evidence, nl=False)
+    else:
+        click.echo(coloured([*lines(found, chosen)]), nl=False)
+    if output != "-":
+        deliver({Path(output): evidence}, protected)
+    if wrong is not None:
+        say([wrong])
+    if stopped:
+        raise SystemExit(INTERRUPTED)
+    raise SystemExit(_status(found, wrong))
+
+
+def _words(command: str) -> list[str]:
+    """The program and its arguments."""
+    try:
+        words = shlex.split(command)
+    except ValueError as error:
+        stop(_no_command(command, str(error).lower()))
+    if not words:
+        stop(_no_command(command, "it is empty"))
+    return words
+
+
+def _no_command(command: str, why: str) -> Diagnostic:
+    """F907."""
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"`--against {shlex.quote(command)}` names no program: {why}",
+        help='write the program and its arguments in one word: `--against "python3 program.py"`',
+    )
+
+
+def _status(found: Conformance, wrong: Diagnostic | None) -> int:
+    if found.failures:
+        return VIOLATION
+    if wrong is not None:
+        return BAD
+    return SHOWN if found.is_complete else NOT_SHOWN

@@ -1,0 +1,167 @@
+"""`fretc test --emit mcap|scenario`: tests as logs, and missions that show what tests ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.output import BAD, INTERRUPTED, SHOWN, deliver, not_written, stop
+from fretc.terminal.progress import progress
+from fretish.diagnostics import signs
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.rendering import visible
+
+if TYPE_CHECKING:
+    from compiler.project.folder import Project
+    from fretc.testing.staging.logs import StagedTest
+    from fretc.testing.staging.scenarios import Aim, Found
+    from fretc.testing.suite import Suite
+
+FORMS = ("mcap", "scenario")
+"""Of `--emit`: what is staged, and not only written."""
+
+
+def check(emitted: str, emit_to: str) -> None:
+    """Stop where it cannot be written: without its libraries, or to standard output."""
+    from fretc.commands.simulate import missing_extra
+    from simulation import missing
+
+    if emit_to == "-":
+        message = f"`--emit {emitted}` writes many files, which `-` cannot hold"
+        stop(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
+    absent = missing()
+    if absent:
+        stop(missing_extra(absent))
+
+
+def staged(project: Project, suite: Suite, emitted: str, emit_to: str, runs: int, jobs: int) -> int:
+    """Stage a suite and say what came of it; the exit status."""
+    folder = Path(emit_to) / emitted
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if emitted == "mcap":
+            return _logs(project, suite, folder)
+        return _scenarios(project, suite, folder, runs, jobs)
+    except OSError as error:
+        stop(not_written(str(folder), error.strerror or str(error)))
+
+
+# Logs -------------------------------------------------------------------------------------------
+
+
+def _logs(project: Project, suite: Suite, folder: Path) -> int:
+    from fretc.testing.staging.logs import logs
+
+    done: list[StagedTest] = []
+    interrupted = False
+    try:
+        with progress(len(suite.tests), "logs") as tell:
+            for one in logs(project, suite.tests, folder, lambda n: tell(n, "")):
+                done.append(one)
+    except KeyboardInterrupt:
+        interrupted = True
+    confirmed = [one for one in done if one.outcome == "confirmed"]
+    wrong = [one for one in done if one.outcome == "not confirmed"]
+    refused = [one for one in done if one.outcome == "cannot be staged"]
+    sign = signs.BAD if wrong else signs.GOOD
+    click.echo(
+        f"{sign.glyph} {len(confirmed)} of {len(suite.tests)} tests are logs in {folder}: the "
+        "audit of each gives the verdict that the test expects"
+    )
+    for one in wrong:
+        click.echo(f"{signs.BAD.glyph} {one.test.name} is not written: {visible(one.why)}")
+    _listed("cannot be staged", ((one.why, one.test.name) for one in refused))
+    if interrupted:
+        return INTERRUPTED
+    return BAD if wrong else SHOWN
+
+
+def _listed(what: str, reasons: Iterable[tuple[str, str]]) -> None:
+    """Each reason once, with all that it is the reason of."""
+    by_reason: dict[str, list[str]] = {}
+    for why, name in reasons:
+        by_reason.setdefault(why, []).append(name)
+    for why, some in by_reason.items():
+        click.echo(f"{signs.OPEN.glyph} {what}: {visible(why)}")
+        for name in some:
+            click.echo(f"    {visible(name)}")
+
+
+# Scenarios --------------------------------------------------------------------------------------
+
+
+def _scenarios(project: Project, suite: Suite, folder: Path, runs: int, jobs: int) -> int:
+    from fretc.testing.staging.scenarios import Found, search, stageable
+
+    aims, why = stageable(suite, project)
+    found, interrupted = Found(), False
+    try:
+        with progress(runs, "missions") as tell:
+            if aims:
+                search(project, aims, runs, jobs, found, tell)
+    except KeyboardInterrupt:
+        interrupted = True
+    except RuntimeError as error:
+        stop(Diagnostic(Code.PROCESS_KILLED, str(error)))
+    words = {(one.requirement, one.situation, one.polarity): one.words for one in suite.obligations}
+    unlike = _written(project, found, folder, words)
+    _say(found, aims, why, words, folder, unlike)
+    if interrupted:
+        return INTERRUPTED
+    return BAD if unlike else SHOWN
+
+
+def _written(
+    project: Project, found: Found, folder: Path, words: Mapping[Aim, str]
+) -> Collection[str]:
+    """Write what does not come with fretc; what shows something else again is not written."""
+    from fretc.testing.staging.scenarios import confirmed, text
+    from simulation.world.scenario import names
+
+    known, unlike = names(), []
+    files: dict[Path, str] = {}
+    for name, scenario in found.scenarios.items():
+        if name not in known:
+            own = found.new(name)
+            written = text(scenario, found.verdicts[name], own, words)
+            if confirmed(project, written, own):
+                files[folder / f"{name}.toml"] = written
+            else:
+                unlike.append(name)
+    deliver(files)
+    return unlike
+
+
+def _say(
+    found: Found,
+    aims: Sequence[Aim],
+    why: Mapping[str, str],
+    words: Mapping[Aim, str],
+    folder: Path,
+    unlike: Collection[str],
+) -> None:
+    from simulation.world.scenario import names
+
+    known = names()
+    own = [name for name in found.scenarios if name not in known]
+    good = {aim: name for aim, name in found.shown.items() if name not in unlike}
+    click.echo(
+        f"{signs.GOOD.glyph} {len(good)} of {len(aims)} are shown in {found.runs} missions of the "
+        f"simulated robot: by {len(found.scenarios) - len(own)} of the scenarios that come with "
+        f"fretc and by {len(own) - len(unlike)} new ones in {folder}"
+    )
+    click.echo()
+    for name in found.scenarios:
+        click.echo(f"  {name:<16} {len(found.new(name))} not shown before")
+    for name in unlike:
+        click.echo(f"{signs.BAD.glyph} {name} is not written: its file does not show the same")
+    for id, reason in why.items():
+        click.echo(f"{signs.OPEN.glyph} {id} cannot be staged: {visible(reason)}")
+    missing = [aim for aim in aims if aim not in good]
+    _listed(
+        f"not shown in {found.runs} missions",
+        ((id, f"{words[id, key, polarity]} ({polarity})") for id, key, polarity in missing),
+    )

@@ -1,0 +1,1 @@
+"""A program under test, driven by a tester whose inputs react to its outputs."""

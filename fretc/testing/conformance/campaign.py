@@ -1,0 +1,208 @@
+"""A program under test, run after run: towards each situation of each requirement."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
+from random import Random
+
+from compiler.files.edition import __version__
+from compiler.formalization.formalized import Formalized
+from compiler.logic.evaluation import evaluate
+from compiler.logic.formula import Formula
+from compiler.targets.python import monitor as emitted
+from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.budget import Budget, OutOfTimeError
+from fretc.analysis.arena.roles import Roles
+from fretc.analysis.components import about, by_variables
+from fretc.testing.conformance.driving import Driver, Start
+from fretc.testing.conformance.field import Aim, Field, Plan
+from fretc.testing.conformance.findings import SCHEMA, Conformance, Failure, Outcome, Situated
+from fretc.testing.conformance.referee import Referee, Run, Tick, reason
+from fretc.testing.conformance.shrinking import Shrinking
+from fretc.testing.suite import Polarity, Repeat
+from fretish.printer import sentence as printed
+
+_ROAMING = 24
+"""Runs with any inputs, after those with an aim: faults may lie between two requirements."""
+_CHANGES = (0.5, 0.2, 0.05)
+"""How likely an input changes at a tick of these, in turn."""
+_PATIENCE, _EXTRA = 2, 8
+"""A run may be so many times as long as the shortest way to its aim, and so many ticks longer."""
+
+
+class Campaign:
+    """All runs of one program, and what was seen so far."""
+
+    def __init__(
+        self,
+        rules: Sequence[Formalized],
+        assumptions: Sequence[Formalized],
+        roles: Roles,
+        seconds: float,
+    ) -> None:
+        """Before the first run.
+
+        Args:
+            rules: the requirements.
+            assumptions: what the tester keeps.
+            roles: of all their variables.
+            seconds: of a processor, for the strategy towards each situation.
+
+        Raises:
+            BeyondError: the program cannot be given inputs.
+            OutOfTimeError: the assumptions take too long.
+        """
+        refused = {rule.id: emitted.refuse(rule) for rule in rules}
+        self._not_judged = {id: why.message for id, why in refused.items() if why is not None}
+        self._rules = {rule.id: rule for rule in rules if rule.id not in self._not_judged}
+        self._seconds = seconds
+        judged = [*self._rules.values()]
+        if not judged:
+            raise BeyondError("no requirement has a monitor")
+        self.referee = Referee(judged, assumptions, roles)
+        self._fields = [
+            Field(group, about(group, assumptions, roles), roles, Budget(seconds))
+            for group in by_variables(judged, assumptions, roles)
+        ]
+        self._failures: dict[str, Failure] = {}
+        self._outcomes: dict[Aim, tuple[Outcome, str]] = {}
+        self._triggered: set[str] = set()
+        self._runs = self._ticks = self._longest = 0
+        self._is_whole = False
+
+    def run(self, start: Start, progress: Callable[[str], None]) -> None:
+        """All of them.
+
+        Args:
+            start: the program.
+            progress: is called with each aim before it is gone for.
+
+        Raises:
+            BeyondError: no value is known for an input.
+            ProgramError: the program does not keep to the protocol.
+        """
+        driver = Driver(self._fields, self.referee, start)
+        try:
+            for field in self._fields:
+                for aim in field.aims:
+                    if aim.rule.id not in self._failures and aim not in self._outcomes:
+                        progress(f"{aim.rule.id}: {aim.situation.words}; {aim.polarity}")
+                        self._go_for(aim, field, driver)
+            self._roam(driver, progress)
+            self._is_whole = True
+        finally:
+            self._runs, self._ticks = driver.runs, driver.ticks
+
+    def _go_for(self, aim: Aim, field: Field, driver: Driver) -> None:
+        """Without any needless change of an input, and with any inputs."""
+        try:
+            plan = field.plan(aim, Budget(self._seconds))
+            if plan is None:
+                return
+            run = None
+            for choose in self._choices(aim):
+                run = self._try(aim, field, plan, choose, driver)
+                if aim in self._outcomes or aim.rule.id in self._failures:
+                    return
+        except OutOfTimeError as error:
+            self._outcomes[aim] = Outcome.NOT_SEARCHED, str(error)
+            return
+        _, is_forced = plan.distance(field.transition.start) or (0, False)
+        first = f"it violates {', '.join(run.broken)} before" if run and run.broken else ""
+        self._outcomes[aim] = (
+            Outcome.NOT_REACHED if is_forced else Outcome.UP_TO_PROGRAM,
+            first,
+        )
+
+    def _roam(self, driver: Driver, progress: Callable[[str], None]) -> None:
+        """As long as there is a requirement of which no violation is known."""
+        for number in range(_ROAMING):
+            if len(self._failures) < len(self._rules):
+                progress(f"any inputs: run {number + 1} of {_ROAMING}")
+                change = _CHANGES[number % len(_CHANGES)]
+                ticks = _PATIENCE * self._longest + _EXTRA
+                run = driver.anywhere(Random(number), change, ticks)
+                self._look(run, None, driver)
+
+    def _choices(self, aim: Aim) -> Iterator[Random | None]:
+        """By which inputs are chosen that do not matter, run by run."""
+        if aim.polarity is Polarity.KEPT:
+            yield None
+        yield Random(aim.name)
+
+    def _try(
+        self, aim: Aim, field: Field, plan: Plan, choose: Random | None, driver: Driver
+    ) -> Run:
+        ticks, _ = plan.distance(field.transition.start) or (0, False)
+        self._longest = max(self._longest, ticks)
+        run = driver.towards(field, plan, choose, _PATIENCE * ticks + _EXTRA)
+        self._look(run, aim, driver)
+        if _shows(run, aim, plan.shown):
+            self._outcomes[aim] = Outcome.REACHED, ""
+        return run
+
+    def _look(self, run: Run, aim: Aim | None, driver: Driver) -> None:
+        """What a run shows of all requirements."""
+        self._triggered |= run.triggered
+        for id in run.broken:
+            if id not in self._failures:
+                self._failures[id] = self._failure(aim, self._rules[id], run, driver)
+        for each in self._fields:
+            for other in each.aims:
+                if _shows(run, other, other.shown[0]):
+                    self._outcomes[other] = Outcome.REACHED, ""
+
+    def _failure(self, aim: Aim | None, rule: Formalized, run: Run, driver: Driver) -> Failure:
+        shrinking = Shrinking(rule.id, self.referee.inputs, driver.again, run)
+        again = shrinking.again()
+        best = shrinking.shrink() if again else run
+        return Failure(
+            requirement=rule.id,
+            sentence=printed(rule.written),
+            because=reason(rule, best),
+            rows=tuple(_repeats(best.rows)),
+            situation="" if aim is None else aim.situation.key,
+            ticks=len(run.rows),
+            tries=shrinking.tries,
+            again=again,
+        )
+
+    def findings(self, command: Sequence[str]) -> Conformance:
+        """What was seen so far."""
+        return Conformance(
+            schema=SCHEMA,
+            fretc=__version__,
+            command=tuple(command),
+            requirements=(*self._rules, *self._not_judged),
+            runs=self._runs,
+            ticks=self._ticks,
+            situations=tuple(self._situated()),
+            failures=tuple(self._failures[id] for id in self._rules if id in self._failures),
+            untried=tuple(id for id in self._rules if id not in self._triggered),
+            whole=self._is_whole,
+            not_judged=self._not_judged,
+        )
+
+    def _situated(self) -> Iterator[Situated]:
+        for field in self._fields:
+            for aim in field.aims:
+                if aim.polarity is Polarity.KEPT and aim in self._outcomes:
+                    outcome, why = self._outcomes[aim]
+                    place = aim.situation
+                    yield Situated(aim.rule.id, place.key, place.words, outcome, why)
+            for what, why in field.beyond.items():
+                id, _, words = what.partition(": ")
+                yield Situated(id, "all", words or "all", Outcome.NOT_SEARCHED, why)
+
+
+def _shows(run: Run, aim: Aim, shown: Formula) -> bool:
+    """Whether a run that keeps a requirement shows a situation of it."""
+    if aim.polarity is not Polarity.KEPT or aim.rule.id in run.broken or not run.is_known:
+        return False
+    return bool(run.rows and evaluate(shown, run.columns(), len(run.rows)))
+
+
+def _repeats(rows: Sequence[Tick]) -> Iterator[Repeat]:
+    for values, equal in groupby(rows):
+        yield Repeat(sum(1 for _ in equal), dict(values))

@@ -1,0 +1,146 @@
+"""One run of the program: towards an aim, or with inputs that are known beforehand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from random import Random
+
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic.decision_diagrams import Function
+from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.transition import State
+from fretc.testing.conformance.field import Field, Plan
+from fretc.testing.conformance.program import Program
+from fretc.testing.conformance.referee import Referee, Run, Tick, Truths
+from fretc.testing.search import Letter
+
+Start = Callable[[], Program]
+"""The program, from its start on."""
+
+
+class Driver:
+    """Runs of one program."""
+
+    def __init__(self, fields: Sequence[Field], referee: Referee, start: Start) -> None:
+        self._fields, self._referee, self._start = fields, referee, start
+        self.runs = self.ticks = 0
+        """How many there were of both."""
+
+    def towards(self, field: Field, plan: Plan, choose: Random | None, most: int) -> Run:
+        """A run with inputs that lead to an aim.
+
+        Args:
+            field: of the aim.
+            plan: how to come to it.
+            choose: by which inputs that do not matter are chosen; None: they stay as they were.
+            most: ticks, where the program does not help.
+
+        Raises:
+            BeyondError: no value is known for an input.
+            ProgramError: the program does not keep to the protocol.
+            OutOfTimeError: it takes too long to find the inputs.
+        """
+        sides = [_Side(each, choose) for each in self._fields]
+        own = next(side for side in sides if side.field is field)
+
+        def inputs(tick: int) -> Tick | None:
+            options = plan.options(own.state) if tick < most else None
+            return None if options is None else _joined(sides, {own: options})
+
+        def goes_on(truths: Truths) -> bool:
+            return all(side.moves(truths) for side in sides) and not plan.is_reached(own.last)
+
+        return self._run(inputs, goes_on)
+
+    def anywhere(self, choose: Random, change: float, most: int) -> Run:
+        """A run with any inputs that keep the assumptions.
+
+        Args:
+            choose: the inputs.
+            change: how likely each of them changes at a tick.
+            most: ticks.
+
+        Raises:
+            BeyondError: as `towards`; ProgramError, too.
+        """
+        sides = [_Side(each, choose, change) for each in self._fields]
+        return self._run(
+            lambda tick: _joined(sides, {}) if tick < most else None,
+            lambda truths: all(side.moves(truths) for side in sides),
+        )
+
+    def again(self, rows: Sequence[Tick]) -> Run:
+        """A run with these inputs, up to the first violation.
+
+        Raises:
+            ProgramError: the program does not keep to the protocol.
+        """
+        return self._run(lambda tick: rows[tick] if tick < len(rows) else None, lambda truths: True)
+
+    def _run(self, inputs: Callable[[int], Tick | None], goes_on: Callable[[Truths], bool]) -> Run:
+        """One run, as long as there are inputs, it goes on, and nothing is violated."""
+        referee = self._referee
+        referee.begin()
+        rows: list[Tick] = []
+        found: list[Truths] = []
+        with self._start() as program:
+            while (values := inputs(len(rows))) is not None:
+                missing = next((name for name in referee.inputs if name not in values), None)
+                if missing is not None:
+                    raise BeyondError(f"no value is known for `{missing}`")
+                given = {name: values[name] for name in referee.inputs}
+                answer = dict(zip(referee.outputs, program.step([*given.values()]), strict=True))
+                truths = referee.step({**given, **answer})
+                rows.append({**given, **answer})
+                found.append(truths)
+                if referee.broken() or referee.is_over() or not goes_on(truths):
+                    break
+        self.runs += 1
+        self.ticks += len(rows)
+        return Run(tuple(rows), tuple(found), referee.broken(), referee.triggered())
+
+
+class _Side:
+    """Where a run is in one field."""
+
+    def __init__(self, field: Field, choose: Random | None, change: float = 0.5) -> None:
+        self.field, self._choose, self._change = field, choose, change
+        self.state: State = field.transition.start
+        self.last: Letter = {}
+        """The last tick: the state before it, and what was chosen by both."""
+        self._inputs: Letter = dict.fromkeys(field.alphabet.inputs, False)
+
+    def options(self) -> Function:
+        """All inputs that keep the assumptions."""
+        return bdd.at(self.field.allowed, bdd.point(self.state))
+
+    def values(self, options: Function) -> Tick | None:
+        """What is given to the program; None: there are no such inputs."""
+        if options == bdd.false():
+            return None
+        wanted = self._inputs
+        if self._choose is not None:
+            drawn = self._choose.random
+            wanted = {bit: value ^ (drawn() < self._change) for bit, value in wanted.items()}
+        self._inputs = self.field.inputs(options, wanted)
+        return self.field.values(self._inputs)
+
+    def moves(self, truths: Truths) -> bool:
+        """Whether the state after the tick is known; it is the state then."""
+        letter = self.field.letter(self._inputs, truths)
+        if letter is None:
+            return False
+        self.last = {**self.state, **letter}
+        self.state = self.field.transition.next(bdd.point(self.last))
+        return True
+
+
+def _joined(sides: Sequence[_Side], options: Mapping[_Side, Function]) -> Tick | None:
+    """What is given to the program, from the options of each side; None: one has none."""
+    found: Tick = {}
+    for side in sides:
+        values = side.values(options.get(side, side.options()))
+        if values is None:
+            return None
+        found = {**found, **values}
+    return found

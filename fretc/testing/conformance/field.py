@@ -1,0 +1,308 @@
+"""The game of a tester against the program under test: how inputs lead to a situation.
+
+From some states the tester can see to it that the situation comes about, whatever a program does
+that keeps its requirements: a strategy. From others it needs the program's help, and takes the
+inputs of a shortest run. Sources: David, Larsen, Li, Nielsen, A game-theoretic approach to
+real-time system testing, DATE 2008 (strategies); Cooperative testing of timed systems, ENTCS 220
+(2008) (help, where there is no strategy).
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from compiler.formalization.formalized import Formalized
+from compiler.logic import decision_diagrams as bdd
+from compiler.logic import formula as f
+from compiler.logic.decision_diagrams import Function
+from compiler.situations.situations import Situation, situations
+from fretc.analysis.arena.alphabet import BeyondError, Tick, numbers
+from fretc.analysis.arena.budget import Budget
+from fretc.analysis.arena.counters import Counter, counter
+from fretc.analysis.arena.memory import Bit, Memory, Past
+from fretc.analysis.arena.product import Fixed, near_each_other
+from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.transition import State, Transition
+from fretc.analysis.games.game import upheld
+from fretc.analysis.stage import alphabet_of
+from fretc.testing.bench import demands
+from fretc.testing.search import Letter, nearest
+from fretc.testing.suite import Polarity
+from fretish.bindings.declarations import Role
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Aim:
+    """What a run is to lead to."""
+
+    rule: Formalized
+    situation: Situation
+    polarity: Polarity
+    shown: tuple[f.Formula, ...]
+    """Of the past: a run has come to the aim where this holds, as far as the program keeps all; the
+    next one is enough where no run comes to the one before."""
+    goals: tuple[Function, ...]
+    """The same over a state and a letter: what the tester goes for."""
+
+    @property
+    def name(self) -> str:
+        """For people, and as a seed."""
+        return f"{self.rule.id} {self.situation.key} {self.polarity}"
+
+
+class Field:
+    """Requirements whose variables hang together, and the assumptions about them."""
+
+    def __init__(
+        self,
+        rules: Sequence[Formalized],
+        assumptions: Sequence[Formalized],
+        roles: Roles,
+        budget: Budget,
+    ) -> None:
+        """The field.
+
+        Raises:
+            BeyondError: an assumption has no counter, or no values are known for an input.
+            OutOfTimeError: the assumptions take too long.
+        """
+        every = [*rules, *assumptions]
+        fresh = numbers()
+        alphabet = alphabet_of(every, roles, fresh, Role.INPUT, of_moments=True)
+        shared: dict[Function, Bit] = {}
+        found: dict[str, Counter] = {}
+        self.beyond: dict[str, str] = {}
+        """Why a requirement has no counter, by its id."""
+        for each in near_each_other(every):
+            try:
+                found[each.id] = counter(each, alphabet, fresh, shared)
+            except BeyondError as error:
+                if each in assumptions:
+                    raise
+                self.beyond[each.id] = str(error)
+        self.names = tuple(dict.fromkeys(name for each in every for name in demands(each).atoms))
+        for name in self.names:
+            alphabet.atom(name)
+        before = alphabet.memory()
+        self.alphabet = Fixed(alphabet)
+        self._memory = Memory(fresh, shared)
+        self._past = Past(self.alphabet.atom, self._memory)
+        self._counters = {rule.id: found[rule.id] for rule in rules if rule.id in found}
+        given = [found[each.id] for each in assumptions]
+        given += [before] if before is not None else []
+        self.aims = tuple(aim for rule in rules for aim in self._aims(rule))
+        self.transition = Transition([*self._counters.values(), *given, self._remembered()])
+        self._kept = upheld(self.alphabet, given, budget)
+        self._safe = self.alphabet.reachable
+        for each_counter in self._counters.values():
+            self._safe = self._safe & each_counter.safe
+        self._inputs = bdd.cube(self.alphabet.inputs)
+        self._outputs = bdd.cube(self.alphabet.outputs)
+        self.allowed = self._allowed()
+
+    def _remembered(self) -> Counter:
+        bits = tuple(dict.fromkeys(self._memory.bits))
+        steps = tuple(self._memory.steps[bit] for bit in bits)
+        yes = bdd.true()
+        return Counter("", bits, steps, yes, None, (), yes, yes)
+
+    def _allowed(self) -> Function:
+        """The inputs that keep the assumptions, whatever a program does that keeps its own."""
+        return self.alphabet.legal & bdd.every_implied(self._safe, self._kept, self._outputs)
+
+    def _aims(self, rule: Formalized) -> Iterator[Aim]:
+        if rule.id not in self._counters:
+            return
+        for situation in situations(rule):
+            if situation.unknown is not None or situation.place is not None:
+                continue  # a program is given values, and those that a strategy has no say in
+            try:
+                yield self._kept_aim(rule, situation)
+                yield self._broken_aim(rule, situation)
+            except BeyondError as error:
+                self.beyond[f"{rule.id}: {situation.words}"] = str(error)
+
+    def _kept_aim(self, rule: Formalized, situation: Situation) -> Aim:
+        """The situation, and then, where it can be, a tick at which nothing is open any more."""
+        if situation.at_end:
+            return self._aim(rule, situation, Polarity.KEPT, situation.formula)
+        seen = f.once(situation.formula)
+        done = f.and_(seen, f.not_(rule.watch.owed))
+        return self._aim(rule, situation, Polarity.KEPT, done, seen)
+
+    def _broken_aim(self, rule: Formalized, situation: Situation) -> Aim:
+        """The situation, and a tick at which the requirement is broken."""
+        return self._aim(rule, situation, Polarity.BROKEN, f.once(situation.formula))
+
+    def _aim(
+        self,
+        rule: Formalized,
+        situation: Situation,
+        polarity: Polarity,
+        *shown: f.Formula,
+    ) -> Aim:
+        own = self._counters[rule.id].safe
+        goals = tuple(self._past.value(formula) for formula in shown)
+        if polarity is Polarity.BROKEN:
+            goals = tuple(goal - own for goal in goals)
+        return Aim(rule, situation, polarity, shown, goals)
+
+    # Plans
+
+    def plan(self, aim: Aim, budget: Budget) -> Plan | None:
+        """How to go for an aim; None: no run that keeps the assumptions comes to it.
+
+        Raises:
+            OutOfTimeError: it takes too long.
+        """
+        start = self.transition.start
+        for shown, goal in zip(aim.shown, aim.goals, strict=True):
+            reached = goal & self._reached(aim)
+            found = Plan(
+                Layers(partial(self._forced, reached), self._inputs, budget),
+                Layers(partial(self._helped, reached), self._inputs, budget),
+                reached,
+                shown,
+            )
+            if found.helped.number(start) is not None:
+                return found
+        return None
+
+    def _reached(self, aim: Aim) -> Function:
+        """The ticks at which a goal counts: those that break nothing else."""
+        if aim.polarity is not Polarity.BROKEN:
+            return self._safe
+        found = self.alphabet.reachable
+        for id, each in self._counters.items():
+            if id != aim.rule.id:
+                found = found & each.safe
+        return found
+
+    def _forced(self, goal: Function, states: Function) -> Function:
+        """The inputs after which the goal is there or the states come, whatever it answers."""
+        ends = goal | self.transition.moved(states)
+        return self.allowed & bdd.every_implied(self._safe, ends, self._outputs)
+
+    def _helped(self, goal: Function, states: Function) -> Function:
+        """The inputs after which that is so for some answer."""
+        ends = (goal | (self._safe & self.transition.moved(states))) & self._kept
+        return self.allowed & bdd.some(ends & self.alphabet.reachable, self._outputs)
+
+    def inputs(self, options: Function, wanted: Letter) -> Letter:
+        """Values of the inputs among the options, as they are wanted where that can be.
+
+        Args:
+            options: over inputs; not false.
+            wanted: a value of each of them.
+        """
+        return nearest(options, {bit: wanted[bit] for bit in self.alphabet.inputs})
+
+    # Values
+
+    def values(self, inputs: Letter) -> Tick:
+        """The truth of atoms that inputs decide, and numbers that make comparisons so."""
+        known, found = bdd.point(inputs), self.alphabet.values(inputs)
+        for name in self.names:
+            truth = bdd.at(self.alphabet.atom(name), known)
+            if truth in (bdd.true(), bdd.false()):
+                found[name] = bool(truth == bdd.true())
+        return found
+
+    def letter(self, inputs: Letter, truths: Mapping[str, bool | None]) -> Letter | None:
+        """What a tick was; None: by the analysis no values have such truths.
+
+        Args:
+            inputs: what was chosen.
+            truths: of atoms, from the values of both sides; None: unknown, and taken as it fits.
+        """
+        here = bdd.point(inputs)
+        fits = bdd.at(self.alphabet.reachable, here)
+        for name in self.names:
+            truth = truths.get(name)
+            if truth is not None:
+                atom = bdd.at(self.alphabet.atom(name), here)
+                fits = fits & (atom if truth else -atom)
+        if fits == bdd.false():
+            return None
+        return {**inputs, **nearest(fits, dict.fromkeys(self.alphabet.outputs, False))}
+
+
+class Layers:
+    """States from which something is 1, 2, ... ticks away; computed as they are asked for."""
+
+    def __init__(
+        self, step: Callable[[Function], Function], inputs: Function, budget: Budget
+    ) -> None:
+        """None yet.
+
+        Args:
+            step: of states, the inputs at a state that lead to one of these, or to the end.
+            inputs: a cube of them.
+            budget: for all layers.
+        """
+        self._step, self._inputs, self._budget = step, inputs, budget
+        self._ways: list[Function] = []
+        self._states: list[Function] = [bdd.false()]
+        self._is_complete = False
+
+    def number(self, state: State) -> int | None:
+        """The number of ticks from a state; None: it is in no layer."""
+        known = bdd.point(state)
+
+        def is_in(number: int) -> bool:
+            return bool(bdd.at(self._states[number], known) == bdd.true())
+
+        while not is_in(len(self._ways)):
+            if self._is_complete:
+                return None
+            self._extend()
+        return bisect_left(range(len(self._states)), True, key=is_in)
+
+    def way(self, number: int, state: State) -> Function:
+        """Inputs at a state, so many ticks away, that lead nearer."""
+        return bdd.at(self._ways[number - 1], bdd.point(state))
+
+    def _extend(self) -> None:
+        self._budget.check()
+        way = self._step(self._states[-1])
+        states = bdd.some(way, self._inputs)
+        self._is_complete = bool(states == self._states[-1])
+        self._ways.append(way)
+        self._states.append(states)
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """How to come to an aim."""
+
+    forced: Layers
+    """From where the tester can see to it."""
+    helped: Layers
+    """From where the program can help it to."""
+    goal: Function
+    """Over a state and a letter."""
+    shown: f.Formula
+    """The same of the past, but for what the program has to keep."""
+
+    def is_reached(self, tick: Letter) -> bool:
+        """Whether a tick, with the state before it, is the goal."""
+        return bool(bdd.at(self.goal, bdd.point(tick)) == bdd.true())
+
+    def distance(self, state: State) -> tuple[int, bool] | None:
+        """The ticks to go, and whether that can be forced; None: there is no way."""
+        forced = self.forced.number(state)
+        if forced is not None:
+            return forced, True
+        helped = self.helped.number(state)
+        return None if helped is None else (helped, False)
+
+    def options(self, state: State) -> Function | None:
+        """The inputs that lead nearer; None: there are none."""
+        found = self.distance(state)
+        if found is None:
+            return None
+        number, is_forced = found
+        return (self.forced if is_forced else self.helped).way(number, state)

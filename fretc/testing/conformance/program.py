@@ -1,0 +1,228 @@
+"""The program under test: a line of inputs goes in, a line of outputs comes out, tick by tick.
+
+First each side writes a header with the names of its columns. All that the program does is bounded
+here: how long it takes for a line, how long the line is; and it ends when the run does.
+"""
+
+from __future__ import annotations
+
+import os
+import selectors
+import signal
+import subprocess
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from shlex import join
+from types import TracebackType
+from typing import IO, Self
+
+from fretc.testing.exports.tables import Cell, cell_text, csv_text
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.rendering import visible
+from monitors.kernel.tables import InputError
+from monitors.kernel.variable_tables import read_variables
+from monitors.kernel.variables import Variable
+
+LONGEST_LINE = 1 << 16
+"""Bytes of a line that is read."""
+_LAST_WORDS = 2048
+"""Bytes of standard error that are kept."""
+_FAREWELL = 1.0
+"""Seconds that it has to end by itself once nothing more comes."""
+
+
+class ProgramError(Exception):
+    """The program does not keep to the protocol."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(diagnostic.message)
+        self.diagnostic = diagnostic
+
+
+class Program:
+    """A run of the program."""
+
+    def __init__(
+        self,
+        command: Sequence[str],
+        inputs: Sequence[str],
+        outputs: Mapping[str, Variable],
+        seconds: float,
+    ) -> None:
+        """A run that is yet to begin.
+
+        Args:
+            command: the program and its arguments; no shell reads them.
+            inputs: the columns that it is given.
+            outputs: the columns that it has to print.
+            seconds: within which each line has to come.
+        """
+        self._command, self._inputs, self._seconds = command, inputs, seconds
+        self._rows = read_variables(self._lines(), outputs, f"output of `{command[0]}`")
+        self._buffer = bytearray()
+        self._errors = bytearray()
+        self._tick = -1
+
+    def __enter__(self) -> Self:
+        """Start it.
+
+        Raises:
+            ProgramError: it cannot be started (F940).
+        """
+        try:
+            self._process = subprocess.Popen(
+                self._command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                bufsize=0,
+                start_new_session=True,  # Ctrl-C is for us alone, and its children end with it
+            )
+        except (OSError, ValueError) as error:
+            why = getattr(error, "strerror", None) or error
+            raise ProgramError(_not_started(self._command, str(why))) from error
+        self._output = _stream(self._process.stdout)
+        self._selector = selectors.DefaultSelector()
+        for stream in (self._output, _stream(self._process.stderr)):
+            self._selector.register(stream, selectors.EVENT_READ)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """End it, and whatever it has started."""
+        process = self._process
+        with suppress(OSError):
+            _stream(process.stdin).close()
+        with suppress(subprocess.TimeoutExpired):
+            if error is None:
+                process.wait(_FAREWELL)
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        self._selector.close()
+        for stream in (process.stdout, process.stderr):
+            _stream(stream).close()
+
+    def step(self, values: Sequence[Cell]) -> tuple[Cell, ...]:
+        """The outputs of the next tick, in the order of `outputs`.
+
+        Raises:
+            ProgramError: a line is wrong (F941), late (F942) or missing (F943).
+        """
+        if self._tick >= 0 and (self._buffer or self._reads(0)):
+            raise ProgramError(self._wrong("it came before the inputs of its tick"))
+        self._tick += 1
+        header = [self._inputs] if self._tick == 0 else []
+        for names in header:
+            self._send(csv_text(names, ()))
+        self._send(csv_text([cell_text(value) for value in values], ()))
+        try:
+            return next(self._rows)
+        except InputError as error:
+            raise ProgramError(self._wrong(str(error))) from error
+
+    def _send(self, line: str) -> None:
+        try:
+            _stream(self._process.stdin).write(line.encode())
+        except OSError:
+            raise ProgramError(self._ended()) from None
+
+    def _lines(self) -> Iterator[str]:
+        """The lines of its output, each as soon as it is there."""
+        while True:
+            due = time.monotonic() + self._seconds
+            while b"\n" not in self._buffer:
+                if len(self._buffer) > LONGEST_LINE:
+                    why = f"it is longer than {LONGEST_LINE} bytes"
+                    raise ProgramError(self._wrong(why))
+                if not self._reads(due - time.monotonic()):
+                    raise ProgramError(self._late())
+            line, _, rest = self._buffer.partition(b"\n")
+            self._buffer = rest
+            yield line.decode(errors="backslashreplace") + "\n"
+
+    def _reads(self, seconds: float) -> bool:
+        """Whether more of its output came in time.
+
+        Raises:
+            ProgramError: it has ended, and more is wanted.
+        """
+        due = time.monotonic() + seconds
+        while ready := self._selector.select(max(0.0, due - time.monotonic())):
+            for key, _ in ready:
+                found = os.read(key.fd, LONGEST_LINE)
+                if not found:
+                    self._selector.unregister(key.fileobj)
+                    if key.fileobj is self._output:
+                        raise ProgramError(self._ended())
+                elif key.fileobj is self._output:
+                    self._buffer += found
+                    return True
+                else:
+                    self._errors = (self._errors + found)[-_LAST_WORDS:]
+        return False
+
+    # Messages
+
+    def _wrong(self, why: str) -> Diagnostic:
+        """F941."""
+        return Diagnostic(
+            Code.PROGRAM_LINE,
+            visible(f"at tick {self._tick} the program under test printed a wrong line: {why}"),
+            help="it prints one line with the names of its outputs, and then for each line of "
+            "inputs one line of outputs; `docs/test.md` has an example",
+        )
+
+    def _late(self) -> Diagnostic:
+        """F942."""
+        return Diagnostic(
+            Code.PROGRAM_SILENT,
+            f"at tick {max(self._tick, 0)} the program under test printed no line within "
+            f"{self._seconds:g} s",
+            help="it has to flush each line as it is printed; `--line-time` gives it more time",
+        )
+
+    def _ended(self) -> Diagnostic:
+        """F943."""
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(_FAREWELL)
+        while True:  # what it said last
+            ready = [k for k, _ in self._selector.select(0) if k.fileobj is not self._output]
+            found = b"".join(os.read(key.fd, _LAST_WORDS) for key in ready)
+            if not found:
+                break
+            self._errors = (self._errors + found)[-_LAST_WORDS:]
+        status = self._process.returncode
+        how = "closed its output" if status is None else _ending(status)
+        said = self._errors.decode(errors="backslashreplace").strip().splitlines()
+        last = f"; its last words: {said[-1]}" if said else ""
+        return Diagnostic(
+            Code.PROGRAM_ENDED,
+            visible(f"at tick {max(self._tick, 0)} the program under test {how}{last}"),
+            help="it has to go on until its standard input ends",
+        )
+
+
+def _stream(pipe: IO[bytes] | None) -> IO[bytes]:
+    assert pipe is not None, "all three are pipes"
+    return pipe
+
+
+def _ending(status: int) -> str:
+    if status < 0:
+        return f"ended by signal {-status}"
+    return f"ended with exit status {status}"
+
+
+def _not_started(command: Sequence[str], why: str) -> Diagnostic:
+    """F940."""
+    return Diagnostic(
+        Code.PROGRAM_NOT_STARTED,
+        visible(f"`{join(command)}` cannot be started: {why}"),
+        help="`--against` takes a program and its arguments; no shell reads them",
+    )

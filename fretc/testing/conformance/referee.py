@@ -1,0 +1,120 @@
+"""What is said of a run of the program: by the emitted monitor of all requirements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from compiler.explanation.reasons import why
+from compiler.formalization.formalized import Formalized
+from compiler.targets.python.monitor import text
+from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.roles import Roles
+from fretc.testing.exports.tables import Cell
+from fretc.testing.words import Word, letters
+from fretish.bindings.declarations import Role
+from monitors.kernel.tables import InputError
+from monitors.kernel.variables import Variable
+from monitors.kernel.verdicts import VIOLATED
+from monitors.loading import load
+
+Tick = Mapping[str, Cell]
+"""The value of each column at one tick."""
+Truths = Mapping[str, bool | None]
+"""Of atoms, at one tick."""
+
+
+class Referee:
+    """The monitor of requirements and assumptions, tick by tick."""
+
+    def __init__(
+        self, rules: Sequence[Formalized], assumptions: Sequence[Formalized], roles: Roles
+    ) -> None:
+        """Before the first tick.
+
+        Raises:
+            BeyondError: a column belongs neither to the inputs nor to the outputs.
+        """
+        self._rules = [*rules, *assumptions]
+        self._assumed = {each.id for each in assumptions}
+        self._monitor = load("monitors.py", text(*self._rules))
+        self._truths: Callable[..., Sequence[bool | None]] | None
+        self._truths = getattr(self._monitor, "truths", None)
+        columns: dict[str, Variable] = getattr(
+            self._monitor,
+            "VARIABLES",
+            {name: Variable(own, "truth") for name, own in self._monitor.PROPOSITIONS.items()},
+        )
+        for name in columns:
+            if name not in roles:
+                raise BeyondError(f"`{name}` is no value that a program is given, or gives")
+        self._names = tuple(columns)
+        self.inputs = tuple(name for name in columns if roles[name] is Role.INPUT)
+        self.outputs = {name: own for name, own in columns.items() if roles[name] is Role.OUTPUT}
+
+    def begin(self) -> None:
+        """Forget everything."""
+        self._monitor.reset()
+
+    def step(self, values: Tick) -> Truths:
+        """The truth of all atoms at the next tick; None: unknown.
+
+        Raises:
+            InputError: a value is of the wrong kind.
+        """
+        row: list[Any] = [values[name] for name in self._names]
+        try:
+            truths = row if self._truths is None else self._truths(*row)
+            self._monitor.advance([truths])
+        except (TypeError, ValueError) as error:
+            raise InputError(str(error)) from error
+        return dict(zip(self._monitor.PROPOSITIONS, truths, strict=True))
+
+    def broken(self) -> tuple[str, ...]:
+        """The requirements that are violated; none of them where an assumption is."""
+        said = zip(self._rules, self._monitor.verdicts(), strict=True)
+        found = tuple(rule.id for rule, verdict in said if verdict == VIOLATED)
+        return () if self._assumed.intersection(found) else found
+
+    def is_over(self) -> bool:
+        """Whether an assumption is violated: nothing that follows counts."""
+        said = zip(self._rules, self._monitor.verdicts(), strict=True)
+        return any(verdict == VIOLATED and rule.id in self._assumed for rule, verdict in said)
+
+    def triggered(self) -> frozenset[str]:
+        """The requirements of which a demand has begun."""
+        marks = zip(self._rules, self._monitor.must.marks(), strict=True)
+        return frozenset(rule.id for rule, mark in marks if mark.last >= 0)
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """What was seen of the program, from its start on."""
+
+    rows: tuple[Tick, ...]
+    truths: tuple[Truths, ...]
+    broken: tuple[str, ...]
+    """The requirements that its last tick violates; none before it does."""
+    triggered: frozenset[str]
+
+    def columns(self) -> dict[str, int]:
+        """Each atom over time; what is unknown counts as false."""
+        found: dict[str, int] = {}
+        for tick, truths in enumerate(self.truths):
+            for name, truth in truths.items():
+                found[name] = found.get(name, 0) | (bool(truth) << tick)
+        return found
+
+    @property
+    def is_known(self) -> bool:
+        """Whether no atom was ever unknown."""
+        return all(truth is not None for truths in self.truths for truth in truths.values())
+
+
+def reason(rule: Formalized, run: Run) -> str:
+    """Why the run violates the rule, in words."""
+    if not run.is_known:
+        return "whatever the unknown values are"
+    word = Word((), run.columns(), len(run.rows))
+    return why(rule, letters(rule, word), ends=True)

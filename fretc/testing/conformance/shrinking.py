@@ -1,0 +1,72 @@
+"""A run that shows a violation, made shorter: each try is a run of the program from its start.
+
+Ticks are left out as long as the same requirement is violated; then each input stays as it was a
+tick before where it can. In the end no single tick can be left out. Source: Zeller, Hildebrandt,
+Simplifying and isolating failure-inducing input, TSE 28 (2002).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from fretc.testing.conformance.referee import Run, Tick
+
+MOST = 400
+"""Runs for one failure."""
+Rows = tuple[Tick, ...]
+
+
+@dataclass
+class Shrinking:
+    """The shortest run so far."""
+
+    id: str
+    """The requirement that is violated."""
+    inputs: Sequence[str]
+    play: Callable[[Sequence[Tick]], Run]
+    best: Run
+    tries: int = 0
+
+    def again(self) -> bool:
+        """Whether the same inputs do the same once more."""
+        return self._is_shorter(self.best.rows)
+
+    def shrink(self) -> Run:
+        """The shortest run that was found."""
+        self._leave_out_ticks()
+        while self.tries < MOST and any(self._is_shorter(rows) for rows in self._calmer()):
+            pass
+        return self.best
+
+    def _leave_out_ticks(self) -> None:
+        size = len(self.best.rows)
+        while size and self.tries < MOST:
+            if not any(self._is_shorter(rows) for rows in self._without(size)):
+                size //= 2
+
+    def _without(self, size: int) -> Iterator[Rows]:
+        """The run without some ticks in a row, the last ones first."""
+        rows = self.best.rows
+        for start in range(len(rows) - size, -1, -size):
+            yield rows[:start] + rows[start + size :]
+
+    def _calmer(self) -> Iterator[Rows]:
+        """The run with one input that stays as it was, where it changed."""
+        rows = self.best.rows
+        for tick in range(1, len(rows)):
+            for name in self.inputs:
+                was = rows[tick - 1][name]
+                if rows[tick][name] != was:
+                    yield (*rows[:tick], {**rows[tick], name: was}, *rows[tick + 1 :])
+
+    def _is_shorter(self, rows: Rows) -> bool:
+        """Whether inputs violate the requirement, too; they are the best then."""
+        if not rows or self.tries >= MOST:
+            return False
+        self.tries += 1
+        run = self.play(rows)
+        if self.id not in run.broken:
+            return False
+        self.best = run
+        return True

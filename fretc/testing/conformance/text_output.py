@@ -1,0 +1,101 @@
+"""What `fretc test --against` prints: a row for each requirement, and each failure as lanes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from shlex import join
+
+from fretc.analysis.reasons import listed
+from fretc.analysis.text_output import Line, drawn
+from fretc.testing.conformance.findings import Conformance, Failure, Outcome, Situated
+from fretish.bindings.declarations import Role
+from fretish.diagnostics import signs
+
+
+def lines(found: Conformance, roles: Mapping[str, Role]) -> Iterator[Line]:
+    """All that was seen.
+
+    Args:
+        found: of a program.
+        roles: of its columns.
+    """
+    sign = signs.BAD if found.failures else signs.GOOD if found.is_complete else signs.UNKNOWN
+    yield f"{sign.glyph} {_headline(found)}", sign.colour
+    yield "", None
+    yield from _table(found)
+    for failure in found.failures:
+        yield "", None
+        yield from _failure(failure, roles)
+    rest = [*_rest(found)]
+    if rest:
+        yield "", None
+        yield from rest
+
+
+def _headline(found: Conformance) -> str:
+    size = f"{_some(found.runs, 'run')} of {_some(found.ticks, 'tick')} together"
+    name = f"`{join(found.command)}`"
+    if found.failures:
+        broken = listed([each.requirement for each in found.failures])
+        return f"{name} violates {broken}: {size}"
+    if not found.is_complete:
+        return f"{name} violates nothing in {size}; not all was tested"
+    return f"{name} conforms in {size}"
+
+
+def _some(count: int, what: str) -> str:
+    return f"{count:,} {what}{'' if count == 1 else 's'}".replace(",", " ")
+
+
+def _table(found: Conformance) -> Iterator[Line]:
+    broken = {each.requirement for each in found.failures}
+    width = max(map(len, found.requirements), default=0)
+    for id in found.requirements:
+        own = [each for each in found.situations if each.requirement == id]
+        counts = {kind: sum(each.outcome is kind for each in own) for kind in Outcome}
+        shown = ", ".join(f"{count} {kind}" for kind, count in counts.items() if count)
+        sign = signs.BAD if id in broken else signs.GOOD if found.whole else signs.UNKNOWN
+        if id in found.not_judged:
+            sign, shown = signs.UNKNOWN, f"not judged: {found.not_judged[id]}"
+        elif id in broken:
+            shown = f"violated; {shown}" if shown else "violated"
+        elif id in found.untried:
+            sign, shown = signs.UNKNOWN, f"never triggered; {shown}" if shown else "never triggered"
+        yield f"  {sign.glyph} {id:<{width}}  {shown}".rstrip(), sign.colour
+
+
+def _failure(failure: Failure, roles: Mapping[str, Role]) -> Iterator[Line]:
+    ticks = sum(row.count for row in failure.rows)
+    text = f"{failure.requirement} is violated at tick {ticks - 1}: {failure.because}"
+    yield f"{signs.BAD.glyph} {text}", signs.BAD.colour
+    yield f"  {failure.sentence}", None
+    play = [row.values for row in failure.rows for _ in range(row.count)]
+    shown = [{name: "" if value is None else value for name, value in row.items()} for row in play]
+    for row in drawn(shown, roles):
+        yield f"    {row}", None
+    if not failure.again:
+        yield "  once more with the same inputs, the program did something else", None
+    elif ticks < failure.ticks:
+        yield (
+            f"  found on {_some(failure.ticks, 'tick')}, shortened by {failure.tries} runs",
+            None,
+        )
+
+
+def _rest(found: Conformance) -> Iterator[Line]:
+    """What was not reached, in words; of what is up to the program the keys."""
+    for id in found.requirements:
+        own = [each for each in found.situations if each.requirement == id]
+        free = [each.situation for each in own if each.outcome is Outcome.UP_TO_PROGRAM]
+        if free:
+            text = f"{id}: up to the program, and not seen: {', '.join(free)}"
+            yield f"{signs.UNUSED.glyph} {text}", signs.UNUSED.colour
+        yield from _missing(own)
+
+
+def _missing(own: Sequence[Situated]) -> Iterator[Line]:
+    for each in own:
+        if each.outcome in (Outcome.NOT_REACHED, Outcome.NOT_SEARCHED):
+            why = f": {each.why}" if each.why else ""
+            text = f"{each.requirement}: {each.outcome}: {each.words}{why}"
+            yield f"{signs.UNKNOWN.glyph} {text}", signs.UNKNOWN.colour

@@ -1,0 +1,130 @@
+"""The files of `fretc test --emit`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from enum import StrEnum
+from pathlib import PurePosixPath
+from typing import assert_never
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render, to_json
+from compiler.formalization.formalized import Formalized
+from compiler.targets.python import monitor as emitted
+from fretc.testing.exports import simulator
+from fretc.testing.exports.tables import Table, csv_text, table, ticks
+from fretc.testing.suite import Suite, Test
+from monitors.kernel.verdicts import Verdict
+
+
+class Form(StrEnum):
+    """What tests are written as; the values are the words of `--emit`."""
+
+    PYTEST = "pytest"
+    CSV = "csv"
+    FRET = "fret"
+
+
+INDEX = "tests.csv"
+"""The table of all tests, beside their files."""
+Left = Mapping[str, str]
+"""Why a test is in no file, by its name."""
+
+
+def files(
+    suite: Suite, rules: Sequence[Formalized], form: Form
+) -> tuple[tuple[Artifact, ...], Left]:
+    """All files of a suite, and the tests that are in none of them.
+
+    Args:
+        suite: made of the rules.
+        rules: the requirements.
+        form: of the files.
+    """
+    by_id = {rule.id: rule for rule in rules}
+    why = simulator.refusal if form is Form.FRET else _no_monitor
+    reasons = ((test.name, why(by_id[test.requirement], test)) for test in suite.tests)
+    left = {name: reason for name, reason in reasons if reason is not None}
+    tests = [test for test in suite.tests if test.name not in left]
+    tested = [by_id[id] for id in dict.fromkeys(test.requirement for test in tests)]
+    match form:
+        case Form.PYTEST:
+            made = [*emitted.emit(tested), *(_pytest(rule, suite) for rule in tested)]
+        case Form.CSV:
+            tables = {test.name: table(by_id[test.requirement], test) for test in tests}
+            made = [*emitted.emit(tested), *(_csv(name, each) for name, each in tables.items())]
+            made.append(_index(tests, tables))
+        case Form.FRET:
+            made = [*_fret(tests, by_id)]
+        case _:
+            assert_never(form)
+    return tuple(made), left
+
+
+def _no_monitor(rule: Formalized, test: Test) -> str | None:
+    """Why there is no monitor for a test; None: there is one."""
+    wrong = emitted.refuse(rule)
+    return None if wrong is None else wrong.message
+
+
+def _tests(suite: Suite, rule: Formalized) -> list[Test]:
+    return [test for test in suite.tests if test.requirement == rule.id]
+
+
+def _pytest(rule: Formalized, suite: Suite) -> Artifact:
+    """`test_<id>.py`."""
+    (monitor,) = emitted.emit((rule,))
+    tests = [(test, _function(test), table(rule, test)) for test in _tests(suite, rule)]
+    text = render(
+        "tests/test_monitor.py.j2",
+        id=rule.id,
+        sentence=next(each.sentence for each in suite.requirements if each.id == rule.id),
+        monitor=monitor.path.name,
+        tests=tests,
+        violated=Verdict.VIOLATED,
+        pending=Verdict.PENDING,
+        satisfied=Verdict.SATISFIED,
+        version=__version__,
+    )
+    return Artifact(PurePosixPath(f"test_{monitor.path.stem.removesuffix('_monitor')}.py"), text)
+
+
+def _function(test: Test) -> str:
+    return f"test_{test.name.replace('-', '_')}"
+
+
+def _csv(name: str, own: Table) -> Artifact:
+    """`<name>.csv`."""
+    return Artifact(PurePosixPath(f"{name}.csv"), csv_text(own.names, ticks(own.rows)))
+
+
+_COLUMNS = ("file", "requirement", "ticks", "verdict", "finite", "decided", "first_violation")
+
+
+def _index(tests: Sequence[Test], tables: Mapping[str, Table]) -> Artifact:
+    """What is expected of each table, and the option with which a monitor reads it."""
+    rows = (
+        (
+            f"{test.name}.csv",
+            test.requirement,
+            test.ticks,
+            test.verdict,
+            "" if test.finite is None else str(test.finite).lower(),
+            test.decided,
+            test.first_violation,
+            "--propositions" if tables[test.name].of_truths else "",
+            test.words,
+        )
+        for test in tests
+    )
+    return Artifact(PurePosixPath(INDEX), csv_text((*_COLUMNS, "option", "words"), rows))
+
+
+def _fret(tests: Sequence[Test], rules: Mapping[str, Formalized]) -> Iterator[Artifact]:
+    """`ltlsim.json` with all traces, and each of them as CSV."""
+    text = f"{to_json(simulator.traces(rules, tests))}\n"
+    yield Artifact(PurePosixPath("ltlsim.json"), text)
+    for test in tests:
+        path = PurePosixPath(f"{test.name}.csv")
+        yield Artifact(path, simulator.table(rules[test.requirement], test))

@@ -1,0 +1,118 @@
+"""Traces that LTLSIM, the simulator of FRET, imports: all as JSON, and each as CSV.
+
+Sources: FRET, `LTLSimDialog.js` (`handleImportTraces`: a list of traces, each linked to a
+requirement) and `LTLSimController.js` (`setTrace`: values tick by tick in one list, kinds and
+ranges beside them; `addTrace`: CSV without quotes). Comparisons are no columns: LTLSIM computes
+them from the numbers.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from compiler.formalization.formalized import Formalized
+from compiler.logic.printing import is_compound
+from fretc.testing.exports.tables import Row, columns, csv_text
+from fretc.testing.suite import Polarity, Test
+
+LEAST = 4
+"""Ticks of a trace: with fewer of them LTLSIM has problems, it says."""
+Numbers = tuple[float, ...]
+
+
+def refusal(rule: Formalized, test: Test) -> str | None:
+    """Why LTLSIM cannot show a test; None: it can."""
+    if test.polarity is Polarity.UNKNOWN:
+        return "a value is unknown"
+    names = _names(test)
+    if any(not re.fullmatch(r"\w+", name, re.ASCII) for name in names):
+        return "a name is no word"
+    missing = {*rule.variables} - {*names}
+    return f"no number is known for `{min(missing)}`" if missing else None
+
+
+def traces(rules: Mapping[str, Formalized], tests: Sequence[Test]) -> list[dict[str, Any]]:
+    """What LTLSIM imports as JSON.
+
+    Args:
+        rules: by their ids.
+        tests: none of them refused.
+    """
+    return [_trace(rules[test.requirement], test) for test in tests]
+
+
+def _trace(rule: Formalized, test: Test) -> dict[str, Any]:
+    names, rows = _numbers(rule, test)
+    kinds = [isinstance(test.rows[0].values.get(name), bool) for name in names]
+    every = [*zip(*rows, strict=True)]
+    return {
+        "traceID": test.name,
+        "traceDescription": _description(test),
+        "traceLinkedRequirementIDs": [re.sub(r"[ .+-]", "_", test.requirement)],
+        "theTrace": {
+            "traceLength": len(rows),
+            "keys": names,
+            "type": ["category" if is_truth else "number" for is_truth in kinds],
+            "canChange": [True] * len(names),
+            "minval": [min(0, *column) for column in every],
+            "maxval": [max(1, *column) for column in every],
+            "values": [value for row in rows for value in row],
+        },
+        "saveToReqID": "*",
+        "saveToComponent": "*",
+        "saveToProject": rule.requirement.fret.get("project", "") or "*",
+    }
+
+
+def _description(test: Test) -> str:
+    held = "true" if test.finite else "false"
+    shown = f"{test.words}. The formulas are {held} up to tick {test.ticks - 1}: {test.because}"
+    if test.ticks < LEAST:
+        last = test.ticks - 1
+        return f"{shown}. It ends at tick {last}, which is repeated here: look at the past formula"
+    return shown
+
+
+def table(rule: Formalized, test: Test) -> str:
+    """What LTLSIM imports as CSV; its trace is to be as long before."""
+    names, rows = _numbers(rule, test)
+    ends = [0] * (len(rows) - 1) + [1]
+    return csv_text(("LAST", *names), ((end, *row) for end, row in zip(ends, rows, strict=True)))
+
+
+def _names(test: Test) -> tuple[str, ...]:
+    """What is no comparison."""
+    return tuple(name for name in test.rows[0].values if not is_compound(name))
+
+
+def _numbers(rule: Formalized, test: Test) -> tuple[list[str], list[Numbers]]:
+    """Names and the numbers of each tick: LTLSIM has no words and no truth values.
+
+    The words of an enumerated signal are constants: the place of each in its list.
+    """
+    names = _names(test)
+    signals = rule.declarations.signals if rule.declarations else {}
+    used = [signals[name].values for name in names if name in signals and signals[name].values]
+    words = {word: float(place) for values in used for place, word in enumerate(values)}
+    constants = [word for word in words if word not in names]
+    tail = tuple(words[word] for word in constants)
+    rows = _long_enough(columns(test, names))
+    return [*names, *constants], [(*_as_numbers(row, words), *tail) for row in rows]
+
+
+def _long_enough(rows: Sequence[Row]) -> list[Row]:
+    """Row by row; the last one is repeated where there are too few."""
+    each = [(1, values) for count, values in rows for _ in range(count)]
+    return each + each[-1:] * (LEAST - len(each))
+
+
+def _as_numbers(row: Row, words: Mapping[str, float]) -> Numbers:
+    def number(value: object) -> float:
+        if isinstance(value, str):
+            return words[value]
+        assert isinstance(value, bool | int | float)
+        return value + 0
+
+    return tuple(map(number, row[1]))

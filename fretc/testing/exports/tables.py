@@ -1,0 +1,70 @@
+"""A test as the table that the emitted monitor of its requirement reads."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from compiler.formalization.formalized import Formalized
+from compiler.targets.python.comparisons import front
+from fretc.analysis.arena.alphabet import Value
+from fretc.testing.suite import Test
+
+Cell = Value | None
+Row = tuple[int, tuple[Cell, ...]]
+"""How many ticks, and the value of each column."""
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A test, by the columns of a monitor."""
+
+    names: tuple[str, ...]
+    rows: tuple[Row, ...]
+    of_truths: bool
+    """Whether the columns are propositions where the monitor wants variables: the test has no
+    numbers that make its comparisons so. The monitor reads it with `--propositions`."""
+
+
+def table(rule: Formalized, test: Test) -> Table:
+    """The columns of a test that the monitor of its requirement reads."""
+    variables = front((rule,), rule.watched)
+    names = rule.watched if variables is None else tuple(variables.inputs)
+    known = all(row.values.keys() >= {*names} for row in test.rows)
+    if not known:
+        names = rule.watched
+    return Table(names, columns(test, names), of_truths=not known)
+
+
+def columns(test: Test, names: Sequence[str]) -> tuple[Row, ...]:
+    """Some columns of a test; ticks that are equal in them are one row."""
+    found = ((row.count, tuple(row.values[name] for name in names)) for row in test.rows)
+    # 0, 0.0 and False are equal, and are not the same
+    grouped = groupby(found, key=lambda row: [(type(cell), cell) for cell in row[1]])
+    runs = ([*group] for _, group in grouped)
+    return tuple((sum(count for count, _ in run), run[0][1]) for run in runs)
+
+
+def csv_text(names: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """CSV with a header."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def ticks(rows: Iterable[Row]) -> Iterator[tuple[str, ...]]:
+    """One row of text for each tick."""
+    for count, values in rows:
+        yield from [tuple(map(cell_text, values))] * count
+
+
+def cell_text(value: Cell) -> str:
+    """As monitors read it; nothing where it is unknown."""
+    if value is None:
+        return ""
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,0 +1,1 @@
+"""Tests on a stage: as logs of real messages, and as missions of the simulated robot."""

@@ -1,0 +1,168 @@
+"""What the field of a signal may hold: few contents, with the value that an audit reads of each.
+
+Nothing is solved for: comparisons change their truth at their numbers only, so the numbers, what
+lies between them and what lies beyond are tried, and the code that audits logs says which do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+
+from fretc.logs.signals.signals import clearance, sample
+from fretc.logs.signals.words import word
+from fretc.testing.staging.messages import Content, Field, message
+from fretish import expressions as e
+from fretish.bindings.declarations import Reading, Reduce, Signal
+from fretish.units import unit
+
+_MOST_NUMBERS = 4
+"""Of one comparison: their sums and differences are tried, too."""
+_FARTHEST = 99.0
+"""Metres that a beam reaches."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """A content of a signal's field."""
+
+    content: Content | None
+    """None: no message comes at all."""
+    value: float
+    """What the audit reads of it, as `sample` and `word` have it; NaN: unknown."""
+    nominal: Fraction | str | None
+    """The number in base units, or the word, that it stands for."""
+
+
+def choices(
+    signal: Signal, field: Field, read_by: Iterable[e.Expression], wished: Iterable[object]
+) -> tuple[Choice, ...]:
+    """What is tried for a signal, in this order: what is wished for, numbers of comparisons, none.
+
+    Args:
+        signal: with its unit and its reduction.
+        field: where it is read from.
+        read_by: the expressions that name it.
+        wished: words, truth values, and numbers in the signal's unit; None asks for unknown.
+    """
+    found = dict.fromkeys(_nominal(signal, each) for each in wished if each is not None)
+    if signal.values:
+        found |= dict.fromkeys(signal.values)
+    else:
+        found |= dict.fromkeys(_points(signal.name, read_by))
+    made = [each for nominal in found for each in _made(signal, field, nominal)]
+    return (*made, *_unknown(signal, field))
+
+
+def _nominal(signal: Signal, value: object) -> Fraction | str:
+    if isinstance(value, str):
+        return value
+    exact = Fraction(str(value)) if isinstance(value, float) else Fraction(int(str(int(value))))  # type: ignore[call-overload]
+    return exact * signal.unit.factor
+
+
+def _points(name: str, read_by: Iterable[e.Expression]) -> list[Fraction]:
+    """The numbers at which a comparison may change, what lies between, and what lies beyond."""
+    points = {Fraction(0), Fraction(1)}
+    for expression in read_by:
+        for part in e.parts(expression):
+            if isinstance(part, e.Comparison) and any(n.id == name for n in e.names(part)):
+                points |= set(_sums([*_constants(part)][:_MOST_NUMBERS]))
+    ordered = sorted(points)
+    between = [(low + high) / 2 for low, high in pairwise(ordered)]
+    reach = max(abs(ordered[0]), abs(ordered[-1]), Fraction(1))
+    return [*ordered, *between, ordered[0] - reach, ordered[-1] + reach]
+
+
+def _constants(part: e.Expression) -> Iterator[Fraction]:
+    for each in e.parts(part):
+        if isinstance(each, e.Number):
+            yield Fraction(each.digits)
+        elif isinstance(each, e.Quantity) and (measure := unit(each.unit)) is not None:
+            yield Fraction(each.digits) * measure.factor
+
+
+def _sums(numbers: Sequence[Fraction]) -> Iterator[Fraction]:
+    """Each with itself, its negative and none of it, added up in each way."""
+    if not numbers:
+        yield Fraction(0)
+        return
+    first, *others = numbers
+    for rest in _sums(others):
+        yield from (rest, rest + first, rest - first)
+
+
+def _made(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[Choice]:
+    for content in _contents(signal, field, nominal):
+        if isinstance(content, str) or _fits(content, field):
+            value = read(signal, field, content)
+            if value is not None:
+                yield Choice(content, value, nominal)
+
+
+def _contents(signal: Signal, field: Field, nominal: Fraction | str) -> Iterator[Content]:
+    if isinstance(nominal, str):
+        place = signal.values.index(nominal) if nominal in signal.values else None
+        if place is not None:
+            yield signal.numbers[place] if signal.numbers else nominal
+        return
+    if signal.reduce is Reduce.OUTLINE:
+        yield from ([beam] for beam in _beams(signal, float(nominal)))
+        return
+    number = nominal / signal.unit.factor
+    exact: float = float(number) if field.has_nan else int(number)
+    if field.has_nan or number.denominator == 1:
+        yield [exact] if signal.path.each else exact
+
+
+def _fits(content: float | Sequence[float], field: Field) -> bool:
+    if field.has_nan or field.base == "string":
+        return field.has_nan
+    number = content[0] if isinstance(content, Sequence) else content
+    if field.base == "bool":
+        return number in (0, 1)
+    limits = np.iinfo(
+        {"octet": "uint8", "byte": "uint8", "char": "uint8"}.get(field.base, field.base)
+    )
+    return limits.min <= number <= limits.max
+
+
+def _beams(signal: Signal, gap: float) -> Iterator[float]:
+    """The two ranges of a beam straight ahead whose end is so far from the outline, or about so."""
+    if gap == 0 and signal.invalid.negative_infinity is Reading.NEAR:
+        yield -math.inf
+    low, high = np.float32(0), np.float32(_FARTHEST)
+    while np.nextafter(low, high) < high:
+        middle = np.float32((low + high) / 2)
+        if clearance(signal, np.array([middle], np.float32), 0.0, 0.0) < gap:
+            low = middle
+        else:
+            high = middle
+    yield from (float(high), float(low))
+
+
+def _unknown(signal: Signal, field: Field) -> Iterator[Choice]:
+    """How the signal is made unknown: by NaN, or by no message."""
+    if field.has_nan:
+        content: Content = [math.nan] if signal.path.each else math.nan
+        value = read(signal, field, content)
+        if value is not None and math.isnan(value):
+            yield Choice(content, value, None)
+            return
+    yield Choice(None, math.nan, None)
+
+
+def read(signal: Signal, field: Field, content: Content) -> float | None:
+    """What an audit reads of a message with that content; None where it finds no value in it."""
+    made = message(field.message, 0, {signal.path: content})
+    value = (
+        word(signal, made)
+        if signal.values
+        else sample(signal, made, single=field.base == "float32")
+    )
+    return None if isinstance(value, str) else value

@@ -1,0 +1,113 @@
+"""Logs of tests: written, audited at once, and kept where the audit says what the test expects."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Literal
+
+from compiler.project.folder import Project
+from compiler.targets.python import monitor as monitors
+from fretc.audit.many_logs import audited
+from fretc.audit.plan import Plan, planned
+from fretc.testing.staging.messages import NoStageError
+from fretc.testing.staging.stage import EPOCH, Staged, staged
+from fretc.testing.suite import Test
+from fretish.diagnostics.diagnostic import Diagnostic
+from monitors.kernel import Monitor
+from monitors.kernel.verdicts import INCONCLUSIVE, Verdict
+from monitors.loading import load
+from simulation.recording import Topic, recording
+
+Outcome = Literal["confirmed", "cannot be staged", "not confirmed"]
+
+
+@dataclass(frozen=True, slots=True)
+class StagedTest:
+    """What became of a test."""
+
+    test: Test
+    outcome: Outcome
+    why: str = ""
+    """Why there is no log; empty: there is one."""
+    lead: int = 0
+    """Ticks of the log before those of the test."""
+
+
+def logs(
+    project: Project, tests: Sequence[Test], folder: Path, tell: Callable[[int], None]
+) -> Iterator[StagedTest]:
+    """A log for each test that can be staged, `folder/NAME.mcap`.
+
+    A log is there once its audit has given the verdict that the test expects.
+
+    Args:
+        project: whose requirements the tests are of.
+        tests: of its suite.
+        folder: that exists.
+        tell: is called with the number of tests that are done.
+
+    Raises:
+        OSError: a log cannot be written.
+    """
+    declarations = project.declarations
+    plan = planned(project)
+    rules = {rule.id: rule for rule in project.rules}
+    monitor = cache(lambda id: load(f"{id}_staged", monitors.text(rules[id])))
+    with tempfile.TemporaryDirectory(dir=folder, prefix=".staging.") as temporary:
+        for done, test in enumerate(tests, start=1):
+            try:
+                if declarations is None or not isinstance(plan, Plan):
+                    raise NoStageError(_first(plan))
+                yield _log(plan, test, monitor(test.requirement), Path(temporary), folder)
+            except NoStageError as error:
+                yield StagedTest(test, "cannot be staged", str(error))
+            tell(done)
+
+
+def _first(plan: Plan | tuple[Diagnostic, ...]) -> str:
+    assert not isinstance(plan, Plan)
+    return plan[0].message
+
+
+def _log(plan: Plan, test: Test, monitor: Monitor, temporary: Path, folder: Path) -> StagedTest:
+    claim = next((each for each in plan.claims if each.id == test.requirement), None)
+    if claim is None:
+        raise NoStageError(f"{test.requirement} is not audited")
+    if claim.chance is not None:
+        raise NoStageError("one run decides nothing of a requirement with a probability")
+    stage = staged(test, plan.declarations, monitor)
+    path = temporary / f"{test.name}.mcap"
+    _write(stage, test, path)
+    verdicts = {each.requirement: each.verdict for each in audited(plan, str(path)).results}
+    expected, actual = _expected(test, plan), verdicts[test.requirement]
+    if actual != expected:
+        why = f"the audit of it says {actual}, not {expected}"
+        return StagedTest(test, "not confirmed", why, stage.lead)
+    shutil.move(path, folder / path.name)
+    return StagedTest(test, "confirmed", "", stage.lead)
+
+
+def _expected(test: Test, plan: Plan) -> str:
+    """The verdict of the audit: the clock says what is open at the end."""
+    end = Verdict(plan.declarations.clock.end)
+    return str(end if test.verdict == INCONCLUSIVE else test.verdict)
+
+
+def _write(stage: Staged, test: Test, path: Path) -> None:
+    topics = {each.topic: Topic(each.topic, each.type) for each in stage.messages}
+    about = {
+        "test": test.name,
+        "requirement": test.requirement,
+        "words": test.words,
+        "verdict": str(test.verdict),
+        "lead": str(stage.lead),
+    }
+    with recording(path, epoch=EPOCH, topics=tuple(topics.values())) as log:
+        for each in stage.messages:
+            log.write(each.topic, each.message, each.time)
+        log.finish("test", about)

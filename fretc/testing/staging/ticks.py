@@ -1,0 +1,155 @@
+"""What each proposition has to be at each tick of a log, so that the audit sees those of a test.
+
+`... for 200 ms` looks back: what it names has to hold at the ticks before, which may lie before the
+test. Then the log has some ticks more in front, which change nothing of the verdict.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from fretc.testing.staging.messages import NoStageError
+from fretc.testing.suite import Test
+from fretish import expressions as e
+from fretish.bindings.declarations import Proposition
+from fretish.bindings.expressions import ticks_back
+from monitors.kernel import Monitor
+from monitors.kernel.verdicts import Truth
+
+Truths = Sequence[Truth]
+_MOST = 6
+"""Propositions of which all combinations are tried before the test."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What the messages of a tick decide of a proposition."""
+
+    proposition: Proposition
+    expression: e.Expression
+    """Without its duration."""
+    back: int
+    """Ticks before the one that sees it over which it has to last."""
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """The ticks of a log."""
+
+    lead: int
+    """How many stand before those of the test."""
+    wanted: Mapping[str, Truths]
+    """Proposition → what its part has to be at each tick."""
+
+
+def part(proposition: Proposition, period: int) -> Part:
+    """A proposition without its duration.
+
+    Args:
+        proposition: of the bindings.
+        period: nanoseconds of a tick.
+
+    Raises:
+        NoStageError: it looks back in another way.
+    """
+    expression, back = proposition.expression, 0
+    if isinstance(expression, e.Persistence):
+        back = -(-expression.duration // period)
+        expression = expression.arg
+    if any(isinstance(each, e.Persistence) for each in e.parts(expression)):
+        raise NoStageError(f"`for` stands within the expression of `{proposition.name}`")
+    if ticks_back(expression):
+        raise NoStageError(f"`{proposition.name}` reads numbers of the tick before")
+    return Part(proposition, expression, back)
+
+
+def course(test: Test, parts: Sequence[Part], monitor: Monitor) -> Course:
+    """The ticks of a test, with others before them where they need some.
+
+    Args:
+        test: its rows have the truth of each proposition.
+        parts: of the propositions of the monitor, in its order.
+        monitor: of the requirement.
+
+    Raises:
+        NoStageError: what looks back cannot be so.
+    """
+    columns = {one.proposition.name: _column(test, one.proposition.name) for one in parts}
+    most = max((one.back for one in parts), default=0)
+    for lead in sorted({0, most, 2 * most}):
+        for letter in _letters(parts, columns) if lead else [{}]:
+            wanted, seen = {}, {}
+            for one in parts:
+                name = one.proposition.name
+                wanted[name] = _lasting([letter.get(name)] * lead, columns[name], one)
+                seen[name] = _seen(wanted[name], one)
+            same = all(seen[name][lead:] == columns[name] for name in columns)
+            if same and (lead == 0 or _unchanged(test, lead, seen, monitor)):
+                return Course(lead, wanted)
+    raise NoStageError(_impossible(parts))
+
+
+def _impossible(parts: Sequence[Part]) -> str:
+    names = ", ".join(f"`{one.proposition.name}`" for one in parts if one.back)
+    if not names:
+        return "what is unknown in it counts as known"
+    return f"{names} cannot become true and false so soon: it looks back in time"
+
+
+def _column(test: Test, name: str) -> list[Truth]:
+    column: list[Truth] = []
+    for row in test.rows:
+        if name not in row.values:
+            raise NoStageError(f"the test does not say what `{name}` is")
+        value = row.values[name]
+        assert value is None or isinstance(value, bool), (test.name, name)
+        column += [value] * row.count
+    return column
+
+
+def _letters(parts: Sequence[Part], columns: Mapping[str, Truths]) -> Iterator[Mapping[str, Truth]]:
+    """What may stand before the test: all that looks back is left open."""
+    free = [one.proposition.name for one in parts if not one.back]
+    first = {name: columns[name][0] for name in free}
+    yield first
+    for values in product((False, True), repeat=len(free)) if len(free) <= _MOST else ():
+        yield dict(zip(free, values, strict=True))
+
+
+def _lasting(before: Sequence[Truth], column: Truths, one: Part) -> list[Truth]:
+    """What a part has to be so that what looks back at it is the column."""
+    if not one.back:
+        return [*before, *column]
+    lead = len(before)
+    wanted: list[Truth] = [False] * (lead + len(column))
+    for value in (None, True):
+        for tick, truth in enumerate(column):
+            if truth is value:
+                for k in range(max(0, lead + tick - one.back), lead + tick):
+                    wanted[k] = True
+                wanted[lead + tick] = value
+    return wanted
+
+
+def _seen(wanted: Truths, one: Part) -> list[Truth]:
+    """What the audit sees of a proposition whose part is so."""
+    seen: list[Truth] = []
+    for tick in range(len(wanted)):
+        window = wanted[max(0, tick - one.back) : tick + 1]
+        begun: Truth = True if tick >= one.back else None
+        truth = False if False in window else None if None in window else begun
+        seen.append(one.proposition.on_unknown if truth is None else truth)
+    return seen
+
+
+def _unchanged(test: Test, lead: int, seen: Mapping[str, Truths], monitor: Monitor) -> bool:
+    """Whether the monitor says of the longer run what it says of the test."""
+    monitor.reset()
+    for tick in range(lead + test.ticks):
+        monitor.advance([tuple(seen[name][tick] for name in monitor.PROPOSITIONS)])
+    (standing,) = monitor.standings()
+    first = standing.first_violation
+    moved = None if first is None else first - lead
+    return str(standing.verdict) == test.verdict and moved == test.first_violation

@@ -1,0 +1,1 @@
+"""Monitors in other languages, compiled and compared with their sentences."""

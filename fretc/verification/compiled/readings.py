@@ -1,0 +1,120 @@
+"""What a rail tells of a requirement after a tick, in any language; and that of the text in Python.
+
+The monitor in Python is the reference for unknown values, triggers, answers, deadlines and open
+demands: `fretc.verification.monitor` proves it from its own text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from compiler.formalization.formalized import Formalized
+from compiler.program.lowering import program
+from compiler.program.program import MARKS
+from fretc.verification.monitor.machine import Cells
+from fretc.verification.monitor.rails import Letter
+from monitors.kernel import Monitor
+from monitors.kernel.verdicts import Truth
+
+
+class Reading(NamedTuple):
+    """One rail of a requirement after a tick."""
+
+    left: int
+    """Ticks to the deadline of the open demand; -1: none is ahead."""
+    violated: int
+    failed: int
+    trigger: int
+    breach: int
+    open: int
+    settled: int
+    answer: int
+
+
+NAMES = (*(f"value of `{name}`" for name in Reading._fields), "verdict from the two readings")
+"""Of the values that a step tells."""
+
+
+def judged(certain: Reading, possible: Reading) -> tuple[str, Truth]:
+    """The verdict whatever follows, and FRET's finite one, from what both rails tell."""
+    if certain.violated == 1:
+        verdict = "violated"
+    else:
+        settled = certain.settled == 1 and possible.violated == 0
+        verdict = "satisfied" if settled else "pending"
+    if certain.failed == 1:
+        return verdict, False
+    return verdict, None if possible.failed == 1 else True
+
+
+class PythonRail:
+    """A rail of a monitor in Python, with what it remembers in ticks from now."""
+
+    def __init__(
+        self, monitor: Monitor, rule: Formalized, atoms: Sequence[str], *, doubt: bool
+    ) -> None:
+        """Before the first tick.
+
+        Args:
+            monitor: that of the rule alone, as fretc writes it.
+            rule: it.
+            atoms: the order of the values in a letter.
+            doubt: whether unknown values count as true.
+        """
+        self._rail: Any = monitor.RAIL(doubt=doubt)
+        self._cells = Cells(self._rail)
+        self._horizon = monitor.REQUIREMENTS[0].horizon
+        self._order = tuple(atoms.index(name) for name in monitor.PROPOSITIONS)
+        (prefix,) = (n[: -len("_open")] for n in self._rail.__slots__ if n.endswith("_open"))
+        self._names = {mark: f"{prefix}_{mark}" for mark in MARKS}
+        (requirement,) = program({rule.id: rule.watch}).requirements
+        self._ages: tuple[str, ...] = () if self._horizon is None else ("open",)
+        if requirement.renewed and self._ages:
+            self._ages = ("open", "last")
+        self._now = 0 if self._horizon is None else self._horizon + 2
+
+    def save(self) -> Hashable:
+        """Its cells, whether it is broken or doomed, and how old a demand is."""
+        latched = tuple(self._mark(name) >= 0 for name in ("broken", "doomed"))
+        ages = tuple([self._age(name) for name in self._ages])
+        return self._cells.save(), latched, ages
+
+    def step(self, state: Any, letter: Letter) -> tuple[object, ...]:
+        """What it tells one tick after a state; and that the verdict follows from it."""
+        cells, latched, ages = state
+        self._cells.load(cells)
+        self._rail.tick = self._now
+        values: Mapping[str, int] = dict(zip(self._ages, ages, strict=True))
+        for name, is_on in zip(("broken", "doomed"), latched, strict=True):
+            setattr(self._rail, self._names[name], 0 if is_on else -1)
+        for name in ("open", "last"):
+            age = values.get(name, -1)
+            setattr(self._rail, self._names[name], self._now - age if age >= 0 else -1)
+        self._rail.advance((tuple([letter[place] for place in self._order]),))
+        return (*self._reading(), True)
+
+    def _mark(self, name: str) -> int:
+        return int(getattr(self._rail, self._names[name]))
+
+    def _age(self, name: str) -> int:
+        """How old it is, at most one tick more than matters; -1: there is none."""
+        tick = self._mark(name)
+        assert self._horizon is not None
+        return min(self._rail.tick - tick, self._horizon + 1) if tick >= 0 else -1
+
+    def _reading(self) -> Reading:
+        signals, marks = self._rail.signals()[0], self._rail.marks()[0]
+        left = -1
+        if marks.open >= 0 and self._horizon is not None:
+            left = max(-1, marks.open + self._horizon - self._rail.tick)
+        return Reading(
+            left,
+            marks.violated >= 0,
+            bool(marks.broken >= 0 or signals.fails),
+            bool(signals.trigger),
+            bool(signals.breach),
+            bool(signals.owed),
+            bool(signals.settled),
+            bool(signals.answer),
+        )

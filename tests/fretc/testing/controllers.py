@@ -1,0 +1,88 @@
+"""A program that keeps three requirements, and programs that are wrong in one place each."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+
+from compiler.formalization.formalized import Formalized
+from fretc.testing.conformance.campaign import Campaign
+from fretc.testing.conformance.findings import Conformance
+from fretc.testing.conformance.program import Program
+from tests.requirement_sets import roles, rule, rules
+
+SENTENCES = (
+    "upon start the line shall within 3 ticks satisfy run",
+    "whenever stop & !start the line shall immediately satisfy !run",
+    "upon stop & !start the line shall for 2 ticks satisfy alarm",
+)
+INPUTS, OUTPUTS = ("start", "stop"), ("alarm", "run")
+PROMISE = "whenever start the plant shall for 3 ticks satisfy !stop"
+"""Without it the first two fight."""
+ASSUMED = rule("A1", PROMISE)
+RULES: Mapping[str, Formalized] = {each.id: each for each in rules(*SENTENCES)}
+RIGHT = """\
+import sys
+
+was_start = was_halted = False
+left = 0  # ticks for which the alarm goes on
+due = -1  # ticks until the line runs; -1: nothing asks for it
+starts = 0
+names = sys.stdin.readline().strip().split(",")
+print("alarm,run", flush=True)
+while line := sys.stdin.readline():
+    row = dict(zip(names, line.strip().split(",")))
+    start, stop = row["start"] == "true", row["stop"] == "true"
+    halted = stop and not start
+    if start and not was_start:
+        starts += 1
+        due = 2 if due < 0 else due
+    run = due == 0 and not halted
+    due -= due >= 0
+    if halted and not was_halted:
+        left = 3
+    alarm = left > 0
+    left -= alarm
+    was_start, was_halted = start, halted
+    print(f"{int(alarm)},{int(run)}", flush=True)
+"""
+FAULTS: Mapping[str, tuple[str, str]] = {
+    "never runs": ("run = due == 0 and not halted", "run = False"),
+    "always runs": ("run = due == 0 and not halted", "run = True"),
+    "runs a tick late": ("due = 2", "due = 4"),
+    "counts anew at a second start": ("2 if due < 0 else due", "2"),
+    "runs for the first start only": ("due = 2 if due < 0", "due = 2 if starts == 1"),
+    "runs for two starts only": ("due = 2 if due < 0", "due = 2 if due < 0 and starts < 3"),
+    "takes a start for a level": ("if start and not was_start", "if start and left == 0"),
+    "runs on while it is halted": ("due == 0 and not halted", "due == 0 or was_halted"),
+    "alarm ends a tick early": ("left = 3", "left = 2"),
+    "alarm is a tick late": ("alarm = left > 0", "alarm = 0 < left < 3"),
+    "alarm for the first stop only": ("left = 3", "left, halted = 3 * (starts < 9), 1; starts = 9"),
+    "alarm ends with the stop": ("alarm = left > 0", "alarm = left > 0 and halted"),
+    "alarm ends with a start": ("alarm = left > 0", "alarm = left > 0 and not start"),
+    "a second stop makes the alarm no longer": ("if halted and", "if not left and halted and"),
+    "a shorter alarm after a start": ("left = 3", "left = 2 if starts else 3"),
+}
+"""What is replaced in `RIGHT`, and by what: each program violates one of them on some run."""
+
+
+def program(fault: str | None = None) -> str:
+    """Its text."""
+    if fault is None:
+        return RIGHT
+    was, wrong = FAULTS[fault]
+    assert RIGHT.count(was) == 1, fault
+    return RIGHT.replace(was, wrong)
+
+
+def seen_of(folder: Path, text: str) -> Conformance:
+    """What is seen of a program."""
+    path = folder / "program.py"
+    path.write_text(text)
+    command = [sys.executable, "-ISE", str(path)]
+    campaign = Campaign([*RULES.values()], [ASSUMED], roles(INPUTS, OUTPUTS), 60)
+    columns = campaign.referee.inputs, campaign.referee.outputs
+    campaign.run(partial(Program, command, *columns, seconds=60), lambda words: None)
+    return campaign.findings(command)

@@ -1,0 +1,171 @@
+"""What is emitted runs by itself, agrees with the suite, and fails where a monitor is wrong."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import subprocess
+import sys
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+from compiler.formalization.formalized import Formalized
+from fretc.testing.assembly import suite
+from fretc.testing.exports.files import INDEX, Form, files
+from fretc.testing.generation import batch
+from fretc.testing.suite import Polarity, Suite
+from monitors.loading import executed, load
+from tests.each import each
+from tests.requirement_sets import rules
+
+SENTENCES = (
+    "upon a the sw shall within 3 ticks satisfy x",
+    "in b mode whenever a the sw shall for 2 ticks satisfy x & !y",
+    "whenever a the sw shall until b satisfy y",
+    "upon level > 5 the sw shall within 600 ticks satisfy speed < 0.5 | x",
+)
+
+
+def made(*sentences: str) -> tuple[Suite, tuple[Formalized, ...]]:
+    """A suite, each requirement by itself."""
+    every = rules(*sentences)
+    return suite(every, (), [batch(each, (), 60) for each in every]), every
+
+
+def written(folder: Path, form: Form, *sentences: str) -> tuple[Suite, tuple[Formalized, ...]]:
+    found, every = made(*sentences)
+    artifacts, _ = files(found, every, form)
+    for artifact in artifacts:
+        (folder / artifact.path).write_text(artifact.text)
+    return found, every
+
+
+def functions(folder: Path, name: str) -> list[str]:
+    """The tests of an emitted file that fail, without pytest."""
+    path = folder / name
+    text = path.read_text().replace("Path(__file__)", f"Path({str(path)!r})")
+    module = executed(text, name)
+    failed = []
+    for function in dir(module):
+        if function.startswith("test_"):
+            try:
+                getattr(module, function)()
+            except AssertionError:
+                failed.append(function)
+    return failed
+
+
+@pytest.mark.slow
+@each("sentence", SENTENCES)
+def test_emitted_tests_pass(sentence: str, tmp_path: Path) -> None:
+    found, _ = written(tmp_path, Form.PYTEST, sentence)
+    text = (tmp_path / "test_r1.py").read_text()
+    assert len(re.findall(r"^def test_", text, re.MULTILINE)) == len(found.tests)
+    assert functions(tmp_path, "test_r1.py") == []
+
+
+@pytest.mark.slow
+def test_long_bounds_stay_short(tmp_path: Path) -> None:
+    found, _ = written(tmp_path, Form.PYTEST, SENTENCES[3])
+    assert max(test.ticks for test in found.tests) > 600
+    assert len((tmp_path / "test_r1.py").read_text()) < 40000
+
+
+@pytest.mark.slow
+def test_pytest_runs_them_from_anywhere(tmp_path: Path) -> None:
+    written(tmp_path, Form.PYTEST, *SENTENCES[:2])
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)]
+    ran = subprocess.run(command, cwd="/", capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stdout
+
+
+FAULTS = (
+    (r">= 3\b", ">= 2"),
+    (r">= 3\b", ">= 4"),
+    (r"\band not ", "and "),
+    (r" and ", " or "),
+    (r"r1_broken = tick", "r1_broken = tick + 1"),
+    (r"= 0$", "= 1"),
+    (r"\+ 1\b", "+ 2"),
+    (r"if not ", "if "),
+    (r"< 0 and ", "< 0 or "),
+)
+"""What is replaced in the step of a rail, at each place by itself."""
+TICKS = 6
+
+
+def faulty(text: str) -> list[str]:
+    """Monitors that are wrong at one place."""
+    begin = text.index("        for (", text.index("# The requirements -"))
+    end = text.index("if tick == self.tick", begin)
+    return [
+        text[: begin + found.start()] + wrong + text[begin + found.end() :]
+        for pattern, wrong in FAULTS
+        for found in re.finditer(pattern, text[begin:end], re.MULTILINE)
+    ]
+
+
+def judgements(text: str) -> list[object]:
+    """What a monitor says of all runs of some ticks, tick by tick."""
+    monitor = load("r1_monitor.py", text)
+    found: list[object] = []
+    for word in product(product((False, True), repeat=len(monitor.PROPOSITIONS)), repeat=TICKS):
+        monitor.reset()
+        for row in word:
+            monitor.advance([row])
+            (standing,) = monitor.standings()
+            found.append((*monitor.verdicts(), standing.finite, standing.first_violation))
+    return found
+
+
+@pytest.mark.slow
+def test_a_wrong_monitor_fails(tmp_path: Path) -> None:
+    written(tmp_path, Form.PYTEST, SENTENCES[0])
+    path = tmp_path / "r1_monitor.py"
+    right = path.read_text()
+    expected = judgements(right)
+    wrong = [text for text in faulty(right) if judgements(text) != expected]
+    assert len(wrong) >= 5
+    for text in wrong:
+        path.write_text(text)
+        assert functions(tmp_path, "test_r1.py"), set(text.splitlines()) - {*right.splitlines()}
+
+
+@each("sentence", SENTENCES[:3])
+def test_tables_are_read_by_the_monitor(sentence: str, tmp_path: Path) -> None:
+    """Each ends with the verdict that the index states."""
+    written(tmp_path, Form.CSV, sentence)
+    with (tmp_path / INDEX).open(newline="") as lines:
+        rows = [*csv.DictReader(lines)]
+    assert rows
+    command = [sys.executable, "-ISE", "r1_monitor.py", "--format", "json"]
+    for option in {row["option"] for row in rows}:
+        own = [row for row in rows if row["option"] == option]
+        names = [*filter(None, [option]), *(row["file"] for row in own)]
+        ran = subprocess.run(
+            [*command, *names], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
+        found = [json.loads(line) for line in ran.stdout.splitlines()]
+        assert [row["verdict"] for row in found] == [row["verdict"] for row in own], ran.stderr
+        assert [str(row["ticks"]) for row in found] == [row["ticks"] for row in own]
+
+
+def test_traces_of_the_simulator_have_its_form(tmp_path: Path) -> None:
+    found, _ = written(tmp_path, Form.FRET, *SENTENCES[:3])
+    traces = json.loads((tmp_path / "ltlsim.json").read_text())
+    shown = [test for test in found.tests if test.polarity is not Polarity.UNKNOWN]
+    assert [known["traceID"] for known in traces] == [test.name for test in shown]
+    for known, test in zip(traces, shown, strict=True):
+        trace = known["theTrace"]
+        size = len(trace["keys"])
+        assert trace["traceLength"] == max(4, test.ticks)
+        assert len(trace["values"]) == size * trace["traceLength"]
+        assert {len(trace[key]) for key in ("type", "canChange", "minval", "maxval")} == {size}
+        lines = (tmp_path / f"{test.name}.csv").read_text().splitlines()
+        assert lines[0].split(",") == ["LAST", *trace["keys"]]
+        values = [float(cell) for line in lines[1:] for cell in line.split(",")[1:]]
+        assert values == trace["values"]
+        assert [line.split(",")[0] for line in lines[1:]] == ["0"] * (len(lines) - 2) + ["1"]
