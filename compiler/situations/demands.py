@@ -84,10 +84,11 @@ def _eventually(known: Facts) -> Rows:
 
 def _always(known: Facts) -> Rows:
     q = known.answer
+    missed = f.and_(known.inside, f.previous(known.stage.open(f.TRUE)), f.not_(q))
     yield "answered-at-once", f.and_(_first(known), q)
     yield "missed-at-once", f.and_(_first(known), f.not_(q))
-    yield "missed-later", f.and_(known.was_open, f.not_(q))
-    yield "missed-by-one", _at_its_end(known, f.and_(known.was_open, f.not_(q)))
+    yield "missed-later", missed
+    yield "missed-by-one", _at_its_end(known, missed)
 
 
 def _within(known: Facts) -> Rows:

@@ -186,23 +186,28 @@ class Facts:
 
     @cached_property
     def asks_for_answer(self) -> f.Formula:
-        """The response at this tick decides something."""
-        match self.demand.kind:
+        """The response at this tick decides something, if only one more breach."""
+        stage, demand = self.stage, self.demand
+        match demand.kind:
             case Kind.IMMEDIATELY:
                 return self.triggered
             case Kind.NEXT:
                 return self.was_open
-            case Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
-                return self.waiting
-            case Kind.WITHIN | Kind.FOR | Kind.NOT_AFTER:
+            case Kind.ALWAYS:
+                return stage.open(f.TRUE)
+            case Kind.FOR:
+                return stage.open(f.TRUE, f.Interval(0, demand.ticks))
+            case Kind.FINALLY | Kind.EVENTUALLY | Kind.WITHIN | Kind.NOT_AFTER:
                 return self.waiting
             case Kind.AFTER:
-                clash = f.and_(self.triggered, self.oldest(self.demand.ticks + 1))
+                clash = f.and_(self.triggered, self.oldest(demand.ticks + 1))
                 return f.and_(self.waiting, f.not_(clash))
-            case Kind.UNTIL | Kind.BEFORE:
-                return f.and_(self.waiting, f.not_(self.demand.stop))
+            case Kind.UNTIL:
+                return stage.open(f.not_(demand.stop))
+            case Kind.BEFORE:
+                return f.and_(self.waiting, f.not_(demand.stop))
             case _:
-                assert_never(self.demand.kind)
+                assert_never(demand.kind)
 
     @cached_property
     def asks_for_stop(self) -> f.Formula:

@@ -210,7 +210,7 @@ class At:
             case "always":
                 if fresh:
                     yield "answered-at-once" if q[at] else "missed-at-once"
-                if oldest is not None and not q[at]:
+                if any(t < at for t in self.triggers) and not q[at]:
                     yield "missed-later"
             case "within":
                 if fresh and q[at]:
