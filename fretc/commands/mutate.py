@@ -52,7 +52,7 @@ def mutate(
     changed in small ways, as somebody might have written or meant it (docs/coverage.md). A run
     notices a change where the verdict, or the ticks of a violation, are not what they were.
 
-    What the tests prove to say the same is left out: no run could notice it.
+    A change that tests (`--tests`) prove to mean the same is left out: no run could notice it.
 
     Exit status: 0 every change is noticed, 2 bad use or bad input (what could be judged is printed
     all the same), 3 some are not.

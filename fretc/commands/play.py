@@ -49,6 +49,9 @@ def play(
     one file, asks nothing of the network, and judges with the monitors of `--emit js`. It starts
     from the traces of `fretc explain`, and from those of `fretc test` and `fretc analyze` where
     they have been made.
+
+    Exit status: 0 the page has all requirements, 2 bad use or input, or a requirement of which no
+    monitor can be made: the page names it.
     """
     from compiler.formalization.formalize import clashes
     from compiler.project.paths import companions

@@ -112,10 +112,10 @@ def test(
 
     FILE holds requirements, or is a folder of such files: in place of `--requirements`. Each
     situation of a sentence is met by a shortest run that keeps it and by one that breaks it, and
-    each sentence that might have been meant in its place is told from it by some run. The other
-    requirements are kept by all of them.
+    each sentence that might have been meant in its place gets another verdict on some run. All runs
+    keep the other requirements.
 
-    With `--against` a program is tested in place of that: its inputs react to its outputs.
+    With `--against` a program is tested, and no tests are made: its inputs react to its outputs.
 
     Exit status: 0 all is met or proved impossible, or the program conforms, 1 it violates a
     requirement, 2 bad use or input, 3 not all was searched, or tested.
