@@ -293,6 +293,9 @@ def _last(sentence: s.Sentence, kind: Kind) -> str:
     """The last tick that a demand is about."""
     bound = s.duration(sentence.timing)
     span = "" if bound is None else duration_text(bound)
+    several = sentence.condition is not None
+    first = "the first open trigger" if several else "the trigger"
+    newest = "the newest trigger" if several else "the trigger"
     match kind:
         case Kind.IMMEDIATELY:
             return "the trigger"
@@ -300,10 +303,12 @@ def _last(sentence: s.Sentence, kind: Kind) -> str:
             return "the tick after the trigger"
         case Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
             return "the last tick of the scope"
-        case Kind.WITHIN | Kind.FOR | Kind.NOT_AFTER:
-            return f"the last tick that counts ({span} after the trigger)"
+        case Kind.FOR:
+            return f"the last tick that counts ({span} after {newest})"
+        case Kind.WITHIN | Kind.NOT_AFTER:
+            return f"the last tick that counts ({span} after {first})"
         case Kind.AFTER:
-            return f"the one tick that counts ({span} after the trigger, and one more)"
+            return f"the one tick that counts ({span} after {first}, and one more)"
         case Kind.UNTIL | Kind.BEFORE:
             return "the last tick before the stop"
         case _:

@@ -61,7 +61,7 @@ def test_tests_of_one_requirement_are_drawn(fretc: Fretc, folder: Path) -> None:
     )
     assert (
         "✔ r1-answered-at-last-tick-kept: satisfied\n"
-        "  `run` at the last tick that counts (2 ticks after the trigger); R1 is kept\n"
+        "  `run` at the last tick that counts (2 ticks after the first open trigger); R1 is kept\n"
         "    tick   0  1  2\n"
         "    run    0  0  1\n"
         "    start  1  0  0\n"
