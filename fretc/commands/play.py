@@ -14,6 +14,7 @@ from fretc.terminal.options import (
     output_option,
     path_option,
     requirements_option,
+    tests_option,
 )
 from fretc.terminal.output import BAD, SHOWN, deliver, say, stop
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -30,9 +31,7 @@ T = TypeVar("T")
 @click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
 @requirements_option
 @path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
-@path_option(
-    "--tests", help="What `fretc test` made; build/tests/suite.json, if it is there and none given."
-)
+@tests_option
 @analysis_option
 @output_option(default="build/play.html", show_default=True, help="The page; `-` prints it.")
 def play(
