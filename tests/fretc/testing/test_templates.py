@@ -16,7 +16,7 @@ from tests.effort import some
 from tests.requirement_sets import rule
 from tests.strategies import Template, templates
 
-ALL = [*templates()]
+ALL = [*templates((0, 1, 2, 3))]
 TRIED = some(ALL, 41, first=7)
 """Every one of the 504, or one here and there."""
 
