@@ -11,7 +11,7 @@ from fretc.logs.stream import Tick, Withdrawn
 from monitors import kernel
 from monitors.kernel import Column, Monitor, Outcome
 from monitors.kernel.stepping import Standing
-from monitors.kernel.verdicts import Truth, Verdict, truth
+from monitors.kernel.verdicts import Truth, Verdict
 from monitors.loading import load
 from monitors.ticking import Ledger
 
@@ -55,7 +55,8 @@ class Judges:
             rows: further ticks, which the monitors forget.
         """
         ahead = tuple(rows)
-        return tuple(_owed(_ahead(each, ahead) if ahead else each) for each in self.monitors)
+        monitors = (_ahead(each, ahead) if ahead else each for each in self.monitors)
+        return tuple(standing.owed for monitor in monitors for standing in monitor.standings())
 
     def last_triggers(self) -> tuple[int | None, ...]:
         """Of each requirement the time of the last tick that has triggered it for certain."""
@@ -79,11 +80,6 @@ class Judges:
                 monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine
             ).verdict
         )
-
-
-def _owed(monitor: Monitor) -> Truth:
-    (certain,), (possible,) = monitor.must.signals(), monitor.may.signals()
-    return truth(certain.owed, possible.owed) if monitor.tick >= 0 else None
 
 
 def _ahead(monitor: Monitor, rows: Sequence[Mapping[str, Truth]]) -> Monitor:

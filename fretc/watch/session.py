@@ -115,6 +115,11 @@ class Session:
         return self._stream.origin
 
     @property
+    def first_tick(self) -> int | None:
+        """The time of the first tick."""
+        return self._judges.ledger.time(0)
+
+    @property
     def ticks(self) -> int:
         """How many were judged."""
         return self._judges.count
