@@ -18,7 +18,7 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.program.program import Counter
-from compiler.program.rails import Rail, Reading, Ring, rail
+from compiler.program.rails import Reading, Ring, rail
 from compiler.targets.c.printer import Printer
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
@@ -82,27 +82,20 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
 @deep
 def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
     """The header and the source of one monitor for all of the rules."""
-    propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
-    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
+    printer = printed(name, rules)
     meanings = {each: text for rule in rules for each, text in in_words(rule).items()}
-    guard = f"{name.upper()}_H"
-    reserved = _RESERVED | {guard, *filter(_TAKEN.fullmatch, propositions)}
-    names = legal_names(propositions, reserved, names=spoken)
-    prefixes = prefixes_of([rule.id for rule in rules])
-    members = legal_names(prefixes, reserved, names=prefixes)
-    made = rail(program({rule.id: rule.watch for rule in rules}), members)
-    printer = Printer.of(made, names)
-    values = _values(made, printer) | {"base": base, "header": f"{name}.h"}
+    values = _values(printer) | {"base": base, "header": f"{name}.h"}
     values["title"] = ", ".join(rule.id for rule in rules)
     source = render("c/monitor.c.j2", **values)
+    inputs = printer.names.items()
     header = render(
         "c/monitor.h.j2",
         **values,
-        guard=guard,
+        guard=_guard(name),
         rules=[described(rule) for rule in rules],
         tick=str(rules[0].clock) if rules[0].clock else "not declared",
         version=__version__,
-        inputs=[{"name": names[each], "text": meanings.get(each, each)} for each in propositions],
+        inputs=[{"name": own, "text": meanings.get(each, each)} for each, own in inputs],
         bytes=2 * printer.bytes,
         operations=_operations(source, len(rules)),
     )
@@ -112,8 +105,30 @@ def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact,
     )
 
 
-def _values(made: Rail, printer: Printer) -> dict[str, Any]:
+def printed(name: str, rules: Sequence[Formalized]) -> Printer:
+    """The words of C for a monitor of all of the rules.
+
+    Args:
+        name: of its header, without the ending.
+        rules: none of them refused.
+    """
+    propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
+    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
+    reserved = _RESERVED | {_guard(name), *filter(_TAKEN.fullmatch, propositions)}
+    names = legal_names(propositions, reserved, names=spoken)
+    prefixes = prefixes_of([rule.id for rule in rules])
+    members = legal_names(prefixes, reserved, names=prefixes)
+    made = rail(program({rule.id: rule.watch for rule in rules}), members)
+    return Printer.of(made, names)
+
+
+def _guard(name: str) -> str:
+    return f"{name.upper()}_H"
+
+
+def _values(printer: Printer) -> dict[str, Any]:
     """What both templates place."""
+    made = printer.rail
     return {
         "members": printer.members(),
         "literals": [*printer.literals()],

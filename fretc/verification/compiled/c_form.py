@@ -125,6 +125,11 @@ def tokens(text: str) -> Tokens:
     return tuple(found)
 
 
+def without_comments(text: str) -> str:
+    """A text in this form, with blanks for comments: each statement keeps its line."""
+    return re.sub(r"/\*.*?\*/", lambda comment: re.sub(r".", " ", comment[0]), text, flags=re.S)
+
+
 def same(given: Tokens, written: Tokens) -> None:
     """Raises StrangeTextError, with the place, where two texts differ."""
     if given == written:

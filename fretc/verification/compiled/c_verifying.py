@@ -118,19 +118,42 @@ def _confined(
     return outcome
 
 
+@dataclass(frozen=True, slots=True)
+class Original:
+    """What fretc writes where a monitor in C is given, and the names in it."""
+
+    rules: tuple[Formalized, ...]
+    """In the order of their outcomes."""
+    text: str
+    header: str
+    base: str
+    """What the names of its functions begin with."""
+
+
+def original(rule: Formalized, given: Given, others: Sequence[Formalized]) -> Original:
+    """What fretc writes for the requirements of a monitor, whose header is that of fretc.
+
+    Raises:
+        StrangeTextError: the header is another one, or the rule is not among the requirements.
+    """
+    rules = _rules(given, (rule, *others))
+    if rule.id not in [each.id for each in rules]:
+        raise StrangeTextError("the monitor is of other requirements")
+    text, header = _written(given, rules)
+    same(tokens(given.header), tokens(header))
+    (base,) = re.findall(r"^} (\w+)_outcomes;$", header, re.MULTILINE)
+    return Original(tuple(rules), text, header, base)
+
+
 def _planned(rule: Formalized, given: Given, others: Sequence[Formalized]) -> Plan:
     """Where the requirement is.
 
     Raises:
         StrangeTextError: the texts are not in the form that fretc writes.
     """
-    rules = _rules(given, (rule, *others))
-    if rule.id not in [each.id for each in rules]:
-        raise StrangeTextError("the monitor is of other requirements")
-    own, own_header = _written(given, rules)
-    same(tokens(given.header), tokens(own_header))
-    (base,) = re.findall(r"^} (\w+)_outcomes;$", own_header, re.MULTILINE)
-    form = formed(given.text, own, base)
+    own = original(rule, given, others)
+    rules, own_header, base = own.rules, own.header, own.base
+    form = formed(given.text, own.text, base)
     place = [each.id for each in rules].index(rule.id)
     part = form.part(_OF_OUTCOMES.findall(own_header)[place][0])
     cells = _members(own_header, f"{base}_rail")

@@ -26,7 +26,8 @@ class Method:
     """A layer, or a prover that is asked beside the layers."""
 
     name: str
-    """That of `--layer` or `--with`; a module of this package has the name, and `prove` in it."""
+    """That of `--layer` or `--with`; a module of this package has it, with `_` for `-`, and `prove`
+    in it."""
     claim: str
     """What it proves, as the help of `fretc verify` says it."""
     of_requirement: bool = False
@@ -47,7 +48,8 @@ class Method:
         Raises:
             NotAMonitorError: the given text is no generated monitor.
         """
-        module = import_module(f"fretc.verification.layers.{self.name}")
+        name = self.name.replace("-", "_")
+        module = import_module(f"fretc.verification.layers.{name}")
         return cast("Iterable[Proof] | Diagnostic", module.prove(rules, project, request))
 
 
@@ -57,6 +59,11 @@ TABLE = (
         "the text of a monitor means what its sentence says",
         of_requirement=True,
         needs_monitor=True,
+    ),
+    Method(
+        "frama-c",
+        "no input makes a monitor in C do what C leaves undefined",
+        of_requirement=True,
     ),
     Method(
         Layer.LOOP,

@@ -24,7 +24,7 @@ from fretc.verification.engines.sandbox import Limits
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from tests import meaning
-from tests.c_monitors import Source, compiled, of_python
+from tests.c_monitors import Source, compiled, given, of_python
 from tests.each import each
 from tests.monitoring import rule
 from tests.strategies import templates
@@ -47,13 +47,6 @@ SENTENCES = (
     "when p the sw shall after 2 ticks satisfy q",
     "whenever p the sw shall immediately satisfy x < 3",
 )
-
-
-def given(*rules: Formalized) -> Given:
-    """What `--emit c` writes for them."""
-    source = Source.of(*rules)
-    header = source.source.removesuffix(".c") + ".h"
-    return Given(source.source, source.texts[source.source], header, source.texts[header])
 
 
 def edited(monitor: Given, old: str, new: str) -> Given:
