@@ -58,9 +58,10 @@ if TYPE_CHECKING:
 @click.option(
     "--emit",
     "emitted",
-    type=click.Choice(("pytest", "csv", "fret", "mcap", "scenario")),
-    help="Write the tests: for pytest, as tables for monitors, for the simulator of FRET, as logs "
-    "of messages for audits, or as missions of the simulated robot that show the same.",
+    type=click.Choice(("pytest", "csv", "fret", "c", "mcap", "scenario")),
+    help="Write the tests: for pytest, as tables for monitors, for the simulator of FRET, as a "
+    "self-test in C, as logs of messages for audits, or as missions of the simulated robot that "
+    "show the same.",
 )
 @path_option(
     "--emit-to", default="build/tests", show_default=True, help="Folder for `--emit`; `-` prints."

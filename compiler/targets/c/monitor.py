@@ -7,7 +7,8 @@ may hold. Its state is a struct; a step takes the same time whatever was unknown
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -71,11 +72,36 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
     """`<id>_monitor.h` and `.c` for each rule, or `monitors.h` and `.c` for all."""
     if options.one_file:
         return _files("monitors", "monitors", rules)
+    return tuple(file for name, base, rule in _apart(rules) for file in _files(name, base, [rule]))
+
+
+def _apart(rules: Sequence[Formalized]) -> Iterator[tuple[str, str, Formalized]]:
+    """The name of the files of each rule, and what its names begin with."""
     bases = prefixes_of([rule.id for rule in rules])
+    for rule in rules:
+        yield f"{module(stem(rule))}_monitor", bases[rule.id], rule
+
+
+@dataclass(frozen=True, slots=True)
+class Interface:
+    """What a caller of the monitor of one requirement names."""
+
+    file: str
+    """The name of its files, without the ending."""
+    base: str
+    """What the names of its types and functions begin with."""
+    inputs: Mapping[str, str]
+    """Proposition → the member of the inputs; in their order."""
+    outcome: str
+    """The member of the outcomes."""
+
+
+def interface(rules: Sequence[Formalized]) -> tuple[Interface, ...]:
+    """Of each rule, in files of its own as `emit` writes them."""
+    every = [(name, base, printed(name, [rule])) for name, base, rule in _apart(rules)]
     return tuple(
-        file
-        for rule in rules
-        for file in _files(f"{module(stem(rule))}_monitor", bases[rule.id], [rule])
+        Interface(name, base, printer.names, printer.rail.readings[0].prefix)
+        for name, base, printer in every
     )
 
 

@@ -11,8 +11,10 @@ from compiler.files.artifact import Artifact
 from compiler.files.edition import __version__
 from compiler.files.templating import render, to_json
 from compiler.formalization.formalized import Formalized
+from compiler.targets.c import monitor as c
 from compiler.targets.python import monitor as emitted
 from fretc.testing.exports import simulator
+from fretc.testing.exports.self_test import self_test
 from fretc.testing.exports.tables import Table, csv_text, table, ticks
 from fretc.testing.suite import Suite, Test
 from monitors.kernel.verdicts import Verdict
@@ -24,6 +26,7 @@ class Form(StrEnum):
     PYTEST = "pytest"
     CSV = "csv"
     FRET = "fret"
+    C = "c"
 
 
 INDEX = "tests.csv"
@@ -43,8 +46,7 @@ def files(
         form: of the files.
     """
     by_id = {rule.id: rule for rule in rules}
-    why = simulator.refusal if form is Form.FRET else _no_monitor
-    reasons = ((test.name, why(by_id[test.requirement], test)) for test in suite.tests)
+    reasons = ((each.name, _refusal(by_id[each.requirement], each, form)) for each in suite.tests)
     left = {name: reason for name, reason in reasons if reason is not None}
     tests = [test for test in suite.tests if test.name not in left]
     tested = [by_id[id] for id in dict.fromkeys(test.requirement for test in tests)]
@@ -57,14 +59,24 @@ def files(
             made.append(_index(tests, tables))
         case Form.FRET:
             made = [*_fret(tests, by_id)]
+        case Form.C:
+            made = [*c.emit(tested), self_test(tested, tests)] if tested else []
         case _:
             assert_never(form)
     return tuple(made), left
 
 
-def _no_monitor(rule: Formalized, test: Test) -> str | None:
-    """Why there is no monitor for a test; None: there is one."""
-    wrong = emitted.refuse(rule)
+def _refusal(rule: Formalized, test: Test, form: Form) -> str | None:
+    """Why a test cannot be written so, as where there is no monitor; None: it can."""
+    match form:
+        case Form.FRET:
+            return simulator.refusal(rule, test)
+        case Form.C:
+            wrong = c.refuse(rule)
+        case Form.PYTEST | Form.CSV:
+            wrong = emitted.refuse(rule)
+        case _:
+            assert_never(form)
     return None if wrong is None else wrong.message
 
 
