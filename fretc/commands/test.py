@@ -63,6 +63,14 @@ if TYPE_CHECKING:
     "self-test in C, as logs of messages for audits, or as missions of the simulated robot that "
     "show the same.",
 )
+@click.option(
+    "--language",
+    "languages",
+    multiple=True,
+    type=click.Choice(("python", "c", "js")),
+    help="The language of the monitor that tests for pytest step, maybe several; python if none "
+    "is given.",
+)
 @path_option(
     "--emit-to", default="build/tests", show_default=True, help="Folder for `--emit`; `-` prints."
 )
@@ -99,6 +107,7 @@ def test(
     show: str | None,
     seconds: float,
     emitted: str | None,
+    languages: tuple[str, ...],
     emit_to: str,
     runs: int,
     jobs: int,
@@ -138,6 +147,9 @@ def test(
         raise SystemExit(BAD)
     sources = [requirement.wording.source.name for requirement in project.requirements]
     protected = [*sources, *companions(sources), *filter(None, [bindings])]
+    if languages and emitted != "pytest":
+        why = "`--language` is about the tests of `--emit pytest`"
+        stop(Diagnostic(Code.BAD_USAGE, why, help="ask for these, or leave it out"))
     if against is not None:
         if emitted is not None or show is not None:
             clash = "`--against` tests a program, and makes no tests to emit or show"
@@ -158,7 +170,7 @@ def test(
         click.echo(coloured([*_lines(suite, rules, show)]), nl=False)
     outputs: dict[Path, str] = {} if output == "-" else {Path(output): text}
     if emitted is not None and on_stage is None:
-        outputs |= _files(suite, rules, emitted, emit_to)
+        outputs |= _files(suite, rules, emitted, emit_to, languages)
     deliver(outputs, protected)
     if stopped:
         raise SystemExit(INTERRUPTED)
@@ -194,11 +206,19 @@ def _made(
     return suite(rules, assumed, found), stopped
 
 
-def _files(suite: Suite, rules: Sequence[Formalized], emitted: str, output: str) -> dict[Path, str]:
+def _files(
+    suite: Suite,
+    rules: Sequence[Formalized],
+    emitted: str,
+    output: str,
+    languages: Sequence[str],
+) -> dict[Path, str]:
     """The tests as files; those that cannot be written so are named."""
     from fretc.testing.exports.files import Form, files
+    from fretc.testing.exports.pytest_file import Language
 
-    artifacts, left = files(suite, rules, Form(emitted))
+    chosen = [each for each in Language if each in languages] or [Language.PYTHON]
+    artifacts, left = files(suite, rules, Form(emitted), chosen)
     for why in dict.fromkeys(left.values()):
         names = [name for name in left if left[name] == why]
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
