@@ -120,6 +120,7 @@ class Flow:
 
     def tell(
         self,
+        outcomes: Sequence[str],
         given: Sequence[Fields],
         own: Sequence[Fields],
         expression: Callable[[str, Tokens], Tokens] = lambda _, value: value,
@@ -127,6 +128,7 @@ class Flow:
         """What is read of each requirement, at the end.
 
         Args:
+            outcomes: their names.
             given: the fields of each outcome.
             own: those that fretc writes: their names must be the same.
             expression: what a field's value is made of.
@@ -136,9 +138,9 @@ class Flow:
         """
         if self.conditions or [*map(_names, given)] != [*map(_names, own)]:
             raise strange([token for fields in given for _, value in fields for token in value])
-        for place, fields in enumerate(given):
+        for outcome, fields in zip(outcomes, given, strict=True):
             for name, value in fields:
-                self.change([f"&{place}"], self.names(expression(name, value), value))
+                self.change([f"&{outcome}"], self.names(expression(name, value), value))
 
 
 def _names(fields: Fields) -> list[str]:

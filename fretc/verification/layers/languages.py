@@ -56,7 +56,7 @@ TABLE = (
         "javascript",
         "run for its proof, and there is no `node`",
         "install Node.js: see nodejs.org, or `apt install nodejs`",
-        "JavaScript means the same everywhere: it was run by",
+        "other engines run the text as this one did",
     ),
 )
 
