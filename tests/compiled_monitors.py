@@ -90,7 +90,9 @@ class Tongue:
     comments: tuple[str, str]
     """Those that are free, and one of them."""
     start: str
-    """What stands before the part that is free to change."""
+    """Here begins the part that is changed."""
+    end: str
+    """Here it ends."""
     edits: Sequence[tuple[str, str]]
     """Mistakes, as what is found and what takes its place."""
     told: Callable[[Path, Given, Formalized, Rows], list[list[c_monitors.Outcome]]]
@@ -102,9 +104,9 @@ class Tongue:
 
     def faults(self, text: str) -> Iterator[str]:
         """The text with each mistake at each place, one at a time."""
-        start = text.index(self.start)
+        start, end = text.index(self.start), text.index(self.end)
         for old, new in self.edits:
-            for match in re.finditer(old, text[start:]):
+            for match in re.finditer(old, text[start:end]):
                 place = start + match.start()
                 yield text[:place] + match.expand(new) + text[place + len(match[0]) :]
 
@@ -179,19 +181,20 @@ def _reading(tick: int, told: dict[str, Any]) -> Reading:
 
 
 C = Tongue(
-    "c", c, given_c, (r"/\*.*?\*/", "/* mine\n */"), "_clear(",
+    "c", c, given_c, (r"/\*.*?\*/", "/* mine\n */"), "_clear(", "_judge(&",
     (*_SHARED, (r"!= FRETC", "== FRETC"), (r"\.certain;", ".possible;"),
      (r"(?m)^    +(rail|reading)->\w+ = .*;$", ";")),
     _told_by_c,
 )  # fmt: skip
 RUST = Tongue(
-    "rust", rust, given_rust, (r"(?<!/)// .*", "// mine\n//"), "impl Rail {",
+    "rust", rust, given_rust, (r"(?<!/)// .*", "// mine\n//"), "impl Rail {", "impl Default",
     (*_SHARED, (r"!= Some", "== Some"), (r"\(certain\[", "(possible["),
      (r": (\d+|-1),", ": 7,"), (r"(?m)^ +self\.\w+ = .*;$", "")),
     _told_by_rust,
 )  # fmt: skip
 JAVASCRIPT = Tongue(
-    "javascript", javascript, given_javascript, (r"// .*", "// mine\n/* too */"), "function rail(",
+    "javascript", javascript, given_javascript, (r"// .*", "// mine\n/* too */"),
+    "function rail(", "/** The truth of",
     (*_SHARED, (r"null \?", "true ?"), (r": (\d+|-1),", ": 7,"),
      (r"(?m)^  rail\.\w+ = .*;$", "")),
     _told_by_javascript,

@@ -59,6 +59,10 @@ class Grammar:
         return len(tokens) == 3 and tokens[2] in self.members.get((tokens[0], tokens[1]), ())
 
 
+_CALLS = ("(", "!")
+"""What makes a name a call, or a macro of Rust."""
+
+
 class Flow:
     """The step as far as it is read."""
 
@@ -79,11 +83,11 @@ class Flow:
         """
         names, place, grammar = set[str](), 0, self._grammar
         while place < len(value):
-            name, after = value[place], value[place + 1 : place + 2]
+            name, after = (*value[place : place + 2], "")[:2]
             if grammar.is_member(value[place : place + 3]):
                 names.add(value[place + 2])
                 place += 3
-            elif name in self._local and after not in (["("], ("(",)):
+            elif name in self._local and after not in _CALLS:
                 names.add(name)
                 place += 1
             elif name in grammar.signs or NUMBER.fullmatch(name):

@@ -14,6 +14,7 @@ from fretc.verification.compiled.flow import Form
 from fretc.verification.compiled.text import StrangeTextError
 from fretc.verification.monitor.equivalence import Machine
 from fretc.verification.monitor.rails import Letter, Stepping
+from fretc.verification.monitor.verifying import NotAMonitorError
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +131,7 @@ class Language(Protocol):
             rules: those that it may implement.
 
         Raises:
+            NotAMonitorError: it names no requirement.
             StrangeTextError: it has another form.
         """
 
@@ -156,11 +158,12 @@ def implemented(ids: Sequence[str], rules: Sequence[Formalized]) -> tuple[Formal
     """The rules with the ids that a text tells.
 
     Raises:
-        StrangeTextError: one of them is not there, or there is no id.
+        NotAMonitorError: there is none.
+        StrangeTextError: one of them is not there.
     """
     by_id = {each.id: each for each in rules}
     if not ids:
-        raise StrangeTextError("it names no requirement")
+        raise NotAMonitorError("it names no requirement")
     for id in ids:
         if id not in by_id:
             raise StrangeTextError(

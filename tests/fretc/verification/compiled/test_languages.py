@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
+from tempfile import mkdtemp
 
 import pytest
 
@@ -175,8 +176,7 @@ def test_faults_are_refuted_or_refused_or_of_no_effect(
         kind = KINDS[examined.outcome.result]
         found[kind] += 1
         if kind == SAME:
-            folder = tmp_path / str(found[SAME])
-            folder.mkdir()
+            folder = Path(mkdtemp(dir=tmp_path))
             machine = load("r1", text(one))
             rows = [[choose.choice([False, True, None]) for _ in "mpq"] for _ in range(2000)]
             assert tongue.told(folder, faulty, one, rows) == [*of_python(machine, rows)], wrong
