@@ -16,7 +16,6 @@ import pytest
 from compiler.formalization.formalized import Formalized
 from compiler.targets.c.monitor import TARGET
 from compiler.targets.target import Options
-from fretc.verification.compiled.c_verifying import Given
 from monitors.kernel import Monitor
 from monitors.kernel.stepping import Marks
 from monitors.kernel.verdicts import Requirement, Signals, Truth
@@ -76,13 +75,6 @@ class Source:
     def source(self) -> str:
         """The name of the file in C."""
         return next(name for name in self.texts if name.endswith(".c"))
-
-
-def given(*rules: Formalized) -> Given:
-    """What `--emit c` writes for them."""
-    source = Source.of(*rules)
-    header = source.source.removesuffix(".c") + ".h"
-    return Given(source.source, source.texts[source.source], header, source.texts[header])
 
 
 def _members(header: str, name: str, kind: str) -> tuple[str, ...]:

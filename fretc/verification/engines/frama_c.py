@@ -14,7 +14,6 @@ import re
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -54,7 +53,6 @@ def program() -> str | None:
     return shutil.which("frama-c")
 
 
-@cache
 def answer(path: str, asked: Run, limits: Limits) -> tuple[Outcome, str]:
     """The outcome of all machines, and the name, version and options of Frama-C.
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Layer, Proof, proof
 from compiler.project.folder import Project
 from compiler.targets.c.monitor import TARGET
-from fretc.verification.compiled.c_analysis import analysed
-from fretc.verification.compiled.c_verifying import Given
+from fretc.verification.c.analysis import analysed
+from fretc.verification.compiled.plan import Given
 from fretc.verification.engines import frama_c
 from fretc.verification.layers.request import Request, unknown
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -20,7 +20,7 @@ CLAIM = "the text in C does nothing that C leaves undefined, and each counter ke
 
 def prove(
     rules: Sequence[Formalized], project: Project, request: Request
-) -> list[Proof] | Diagnostic:
+) -> Iterator[Proof] | Diagnostic:
     """A proof for each rule: of the monitor that is given, else of the one that fretc writes."""
     program = frama_c.program()
     if program is None:
@@ -35,25 +35,41 @@ def prove(
             f"`--with frama-c` takes a monitor in C, and `{request.monitor.name}` is none",
             help="name a file that `--emit c` wrote",
         )
-    return [_proof(rule, project, request, program) for rule in rules]
+    return _proofs(rules, project, request, program)
 
 
-def _proof(rule: Formalized, project: Project, request: Request, program: str) -> Proof:
-    request.progress(f"{rule.id}: Frama-C")
-    refused = TARGET.refuse(rule)
-    if refused is not None:
-        return unknown(rule.id, Layer.MONITOR, CLAIM, refused.message)
-    examined = analysed(rule, _given(rule, request), program, request.limits, project.rules)
+def _proofs(
+    rules: Sequence[Formalized], project: Project, request: Request, program: str
+) -> Iterator[Proof]:
+    accepted = list[Formalized]()
+    for rule in rules:
+        refused = TARGET.refuse(rule)
+        if refused is None:
+            accepted.append(rule)
+        else:
+            yield unknown(rule.id, Layer.MONITOR, CLAIM, refused.message)
     machines = " and ".join(f"`{name}`" for name in frama_c.MACHINES)
     under = (f"C is that of the machines {machines} of Frama-C: an `int` has 16 or 32 bits",)
-    engine, artefacts = examined.compiler, examined.artefacts
-    return proof(rule.id, Layer.MONITOR, CLAIM, examined.outcome, engine, under, artefacts)
+    for given, own in _given(accepted, request):
+        request.progress(f"{given.name}: Frama-C")
+        found = analysed(own, given, program, request.limits, project.rules)
+        for rule, outcome, engine, artefacts in found:
+            yield proof(rule.id, Layer.MONITOR, CLAIM, outcome, engine, under, artefacts)
 
 
-def _given(rule: Formalized, request: Request) -> Given:
+def _given(
+    rules: Sequence[Formalized], request: Request
+) -> Iterator[tuple[Given, Sequence[Formalized]]]:
+    """The text that is given, else one for each rule; with the rules that it is about."""
     if request.monitor is not None and request.header is not None:
-        texts = [(each.name, each.text) for each in (request.monitor, request.header)]
-    else:
-        texts = [(str(each.path), each.text) for each in TARGET.emit((rule,))]
+        texts = (request.monitor, request.header)
+        yield _named([(PurePath(each.name).name, each.text) for each in texts]), rules
+        return
+    for rule in rules:
+        yield _named([(str(each.path), each.text) for each in TARGET.emit((rule,))]), [rule]
+
+
+def _named(texts: Sequence[tuple[str, str]]) -> Given:
+    """The file in C comes before its header."""
     (name, text), (header_name, header) = texts
-    return Given(PurePath(name).name, text, PurePath(header_name).name, header)
+    return Given(name, text, header_name, header)

@@ -3,7 +3,6 @@
 
 import os
 import re
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,13 +10,14 @@ import pytest
 
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Outcome, Proof, Result
-from fretc.verification.compiled.c_analysis import analysed, prepared
+from fretc.verification.c.analysis import analysed, prepared
+from fretc.verification.c.language import checked
 from fretc.verification.engines.frama_c import Run, answer, program
 from fretc.verification.engines.sandbox import Limits
 from fretc.verification.reader import Proofs, read
 from tests import meaning
-from tests.c_monitors import given
 from tests.command import Fretc, write
+from tests.compiled_monitors import given_c as given
 from tests.each import each
 from tests.monitoring import rule
 from tests.strategies import templates
@@ -34,7 +34,8 @@ RING = "only in m upon c the sw shall after 40 ticks satisfy z"
 
 
 def asked(*rules: Formalized) -> Run:
-    return prepared(rules[0], given(*rules), rules)
+    own = given(*rules)
+    return prepared(own, checked(own, rules))
 
 
 def check(run: Run) -> Outcome:
@@ -133,7 +134,8 @@ def test_what_stands_in_comments_is_no_annotation() -> None:
         (own.text.replace(BEGIN, f"{BEGIN}/*@ admit\n \\false; */"), own.header),
         (own.text, own.header.replace("int32_t left;", "/*@ x */ int32_t left;")),
     ):
-        run = prepared(one, replace(own, text=text, header=header))
+        monitor = replace(own, text=text, header=header)
+        run = prepared(monitor, checked(monitor, [one]))
         assert "@" not in run.text + run.header[1]
         assert run.text.count("\n") == text.count("\n")
 
@@ -142,7 +144,7 @@ def test_a_text_of_another_form_is_refused() -> None:
     one = rule(WITHIN)
     own = given(one)
     strange = own.text.replace(BEGIN, f"{BEGIN}#ifdef __FRAMAC__\n#endif\n")
-    examined = analysed(one, replace(own, text=strange), "", LIMITS)
+    (examined,) = analysed([one], replace(own, text=strange), "", LIMITS)
     assert examined.outcome.result is Result.NOT_CHECKED
     assert "not laid out" in examined.outcome.detail
     assert examined.artefacts.keys() == {own.name, own.header_name}
@@ -166,7 +168,6 @@ class Fake:
         self.folder = folder
 
     def says(self, report: str, output: str = SUMMARY, more: str = "") -> Outcome:
-        answer.cache_clear()
         (self.folder / "report").write_text(report)
         (self.folder / "output").write_text(output)
         path = self.folder / "frama-c"
@@ -179,9 +180,8 @@ class Fake:
 
 
 @pytest.fixture
-def fake(tmp_path: Path) -> Iterator[Fake]:
-    yield Fake(tmp_path)
-    answer.cache_clear()
+def fake(tmp_path: Path) -> Fake:
+    return Fake(tmp_path)
 
 
 def test_all_valid_without_alarms_is_proved(fake: Fake) -> None:
