@@ -1,6 +1,5 @@
 """Monitors in each language are proved; a fault in one is refuted, refused, or of no effect."""
 
-import os
 import random
 import re
 from collections import Counter
@@ -32,10 +31,10 @@ from tests.compiled_monitors import (
     Tongue,
 )
 from tests.each import each
+from tests.effort import FULL
 from tests.monitoring import rule
 from tests.strategies import templates
 
-FULL = os.environ.get("HYPOTHESIS_PROFILE") == "full"
 LIMITS = Limits(seconds=20)
 
 
