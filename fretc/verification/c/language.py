@@ -62,10 +62,10 @@ def base(given: Given) -> str:
 
 def _written(given: Given, rules: Sequence[Formalized]) -> tuple[str, str]:
     """What fretc writes for these rules: in one file if the header has the name of that."""
-    for one_file in (False, True):
+    for one_file in (False, True) if len(rules) == 1 else (True,):
         files = {str(f.path): f.text for f in TARGET.emit(rules, Options(one_file=one_file))}
         header = files.get(given.header_name)
-        if header is not None and (one_file or len(rules) == 1):
+        if header is not None:
             return files[given.header_name.removesuffix(".h") + ".c"], header
     raise StrangeTextError(f"`{given.header_name}` is not the name that fretc gives the header")
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 import re
 import shutil
 import subprocess
@@ -24,6 +23,7 @@ from fretc.testing.generation import batch
 from fretc.testing.suite import Polarity, Suite
 from monitors.loading import executed, load
 from tests.each import each
+from tests.effort import FULL
 from tests.requirement_sets import rules
 
 SENTENCES = (
@@ -149,7 +149,6 @@ def test_a_wrong_monitor_fails(tmp_path: Path) -> None:
         assert functions(tmp_path, "test_r1.py"), set(text.splitlines()) - {*right.splitlines()}
 
 
-FULL = os.environ.get("HYPOTHESIS_PROFILE") == "full"
 ALL = (*Language,)
 needs_both = pytest.mark.skipif(
     not (shutil.which("cc") and shutil.which("node")), reason="needs cc and Node"

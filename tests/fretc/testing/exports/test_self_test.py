@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 from pathlib import Path
@@ -14,6 +13,7 @@ from fretc.testing.exports.self_test import NAME
 from tests import meaning
 from tests.c_monitors import CHECKED, STRICT, compiler
 from tests.each import each
+from tests.effort import FULL
 from tests.fretc.testing.exports.test_files import SENTENCES, SHORT, written
 from tests.strategies import templates
 
@@ -24,7 +24,6 @@ OTHERS = (
     "before m mode the sw shall until p satisfy q",
 )
 """Scopes, a ring, an end that is decided late or never."""
-FULL = os.environ.get("HYPOTHESIS_PROFILE") == "full"
 _BARE = ("-ffreestanding", "-fno-stack-protector", "-fno-pic")
 _MAIN = """#include <stdio.h>
 int fretc_self_test(void);

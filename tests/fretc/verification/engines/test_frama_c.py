@@ -1,7 +1,6 @@
 # ruff: noqa: E501
 """Frama-C: what is believed of its output; what it says of each template, and of planted faults."""
 
-import os
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +18,7 @@ from tests import meaning
 from tests.command import Fretc, write
 from tests.compiled_monitors import given_c as given
 from tests.each import each
+from tests.effort import FULL
 from tests.monitoring import rule
 from tests.strategies import templates
 
@@ -27,7 +27,6 @@ PROGRAM = program() or ""
 needs_frama_c = pytest.mark.skipif(
     not PROGRAM, reason="needs Frama-C, 862 MB: apt-get install frama-c-base"
 )
-FULL = os.environ.get("HYPOTHESIS_PROFILE") == "full"
 
 WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
 RING = "only in m upon c the sw shall after 40 ticks satisfy z"
