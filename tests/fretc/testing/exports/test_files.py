@@ -23,7 +23,7 @@ from fretc.testing.generation import batch
 from fretc.testing.suite import Polarity, Suite
 from monitors.loading import executed, load
 from tests.each import each
-from tests.effort import FULL
+from tests.effort import some
 from tests.requirement_sets import rules
 
 SENTENCES = (
@@ -180,7 +180,7 @@ WRONG = (
 
 @needs_both
 @pytest.mark.slow
-@each("wrong", WRONG if FULL else WRONG[::3])
+@each("wrong", some(WRONG, 3))
 def test_a_wrong_monitor_fails_in_its_language(
     wrong: tuple[str, str, str, str], tmp_path: Path
 ) -> None:
