@@ -33,12 +33,9 @@ def remade(records: Sequence[Proof], rules: Sequence[Formalized]) -> Remade:
         return Remade(None, None)
     ((name, language),) = found.items()
     for files in _written(language, records, rules) if language.module.tool() else ():
-        texts = {
-            each: files[each] for each in hashes if sha256(files.get(each, "")) == hashes[each]
-        }
-        if texts.keys() == hashes.keys():
-            sources = {each: Source(each, text) for each, text in texts.items()}
-            return Remade(sources.pop(name), *sources.values(), *(() if sources else (None,)))
+        if all(sha256(files.get(each, "")) == value for each, value in hashes.items()):
+            headers = [Source(each, files[each]) for each in hashes if each != name]
+            return Remade(Source(name, files[name]), next(iter(headers), None))
     return Remade(None, None)
 
 
