@@ -43,7 +43,7 @@ def analysed(
         run = prepared(given, found)
     except StrangeTextError as error:
         for rule in rules:
-            yield Examined(rule, not_checked(str(error)), "Frama-C", artefacts)
+            yield Examined(rule, not_checked(str(error)), frama_c.NAME, artefacts)
         return
     outcome, engine = frama_c.answer(program, run, limits)
     artefacts[f"{PurePath(given.name).stem}_driver.c"] = sha256(run.driver)

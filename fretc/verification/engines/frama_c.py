@@ -21,6 +21,7 @@ from compiler.logic.claims import Outcome, not_checked, proved
 from fretc.verification.engines.programs import STARTED, Completion, run
 from fretc.verification.engines.sandbox import Limits
 
+NAME = "Frama-C"
 MACHINES = ("x86_16", "x86_64")
 """Frama-C's names of machines: with an `int` of 16 bits and with one of 32."""
 _OPTIONS = (
@@ -67,14 +68,14 @@ def answer(path: str, asked: Run, limits: Limits) -> tuple[Outcome, str]:
         asked: the texts.
         limits: of each machine; the seconds are those of a clock.
     """
-    name = "Frama-C"
+    name = NAME
     with TemporaryDirectory(prefix="fretc-") as folder:
         try:
             version = _version(path, Path(folder))
             if version is None:
                 return not_checked("`frama-c` tells no version: it is not Frama-C"), name
             options = [*_OPTIONS, f"-eva-auto-loop-unroll={asked.loops}", f"-main={asked.entry}"]
-            name = f"Frama-C {version}, {' '.join(options)}"
+            name = f"{NAME} {version}, {' '.join(options)}"
             _write(asked, Path(folder))
             for machine in MACHINES:
                 whole = [path, *options, f"-machdep={machine}"]

@@ -6,24 +6,21 @@ from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import Layer, Proof, proof
+from compiler.logic.claims import Layer, Proof, not_checked, proof
 from compiler.project.folder import Project
 from compiler.targets.c.monitor import TARGET
 from fretc.verification.c.analysis import analysed
 from fretc.verification.compiled.plan import Given
 from fretc.verification.engines import frama_c
-from fretc.verification.layers.request import Request, unknown
+from fretc.verification.layers.request import Request
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 CLAIM = "the text in C does nothing that C leaves undefined, and each counter keeps its range"
 
 
-def prove(
-    rules: Sequence[Formalized], project: Project, request: Request
-) -> Iterator[Proof] | Diagnostic:
-    """A proof for each rule: of the monitor that is given, else of the one that fretc writes."""
-    program = frama_c.program()
-    if program is None:
+def refusal(request: Request) -> Diagnostic | None:
+    """F908 where Frama-C is not installed, F907 for a monitor that is not in C."""
+    if frama_c.program() is None:
         return Diagnostic(
             Code.MISSING_EXTRA,
             "`--with frama-c` needs Frama-C, and there is no `frama-c` on the PATH",
@@ -35,6 +32,19 @@ def prove(
             f"`--with frama-c` takes a monitor in C, and `{request.monitor.name}` is none",
             help="name a file that `--emit c` wrote",
         )
+    return None
+
+
+def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+    """A proof for each rule: of the monitor that is given, else of the one that fretc writes.
+
+    Raises:
+        NotAMonitorError: the given text names no requirement.
+    """
+    refused, program = refusal(request), frama_c.program()
+    if refused is not None or program is None:
+        reason = refused.message if refused else ""
+        return (_not_checked(rule, reason) for rule in rules)
     return _proofs(rules, project, request, program)
 
 
@@ -47,7 +57,7 @@ def _proofs(
         if refused is None:
             accepted.append(rule)
         else:
-            yield unknown(rule.id, Layer.MONITOR, CLAIM, refused.message)
+            yield _not_checked(rule, refused.message)
     machines = " and ".join(f"`{name}`" for name in frama_c.MACHINES)
     under = (f"C is that of the machines {machines} of Frama-C: an `int` has 16 or 32 bits",)
     for given, own in _given(accepted, request):
@@ -55,6 +65,10 @@ def _proofs(
         found = analysed(own, given, program, request.limits, project.rules)
         for rule, outcome, engine, artefacts in found:
             yield proof(rule.id, Layer.MONITOR, CLAIM, outcome, engine, under, artefacts)
+
+
+def _not_checked(rule: Formalized, reason: str) -> Proof:
+    return proof(rule.id, Layer.MONITOR, CLAIM, not_checked(reason), frama_c.NAME)
 
 
 def _given(

@@ -7,12 +7,17 @@ from pathlib import Path
 
 import pytest
 
+from compiler.files.edition import __version__
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import Outcome, Proof, Result
+from compiler.logic.claims import SCHEMA, Document, Layer, Outcome, Proof, Result, proof, proved
+from compiler.project.folder import load
+from fretc.reproduction.outcome import Finding
+from fretc.reproduction.proofs import prove_again
 from fretc.verification.c.analysis import analysed, prepared
 from fretc.verification.c.language import checked
 from fretc.verification.engines.frama_c import Run, answer, program
 from fretc.verification.engines.sandbox import Limits
+from fretc.verification.layers.frama_c import CLAIM
 from fretc.verification.reader import Proofs, read
 from tests import meaning
 from tests.command import Fretc, write
@@ -236,6 +241,22 @@ def test_without_frama_c_the_command_says_how_to_get_it(
     assert result.status == 2
     assert "F908" in result.err
     assert "apt install frama-c-base" in result.err
+
+
+def test_a_proof_that_cannot_be_made_again_is_not_checked(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Neither standing nor different, where Frama-C is not installed."""
+    project = load([write("r1.fret", "the sw shall always satisfy p")])
+    (rule,) = project.rules
+    claim = proof(rule.id, Layer.MONITOR, CLAIM, proved("as it is"), "Frama-C 25.0, -eva")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    document = Document(SCHEMA, __version__, (claim,))
+    found = prove_again(project, Proofs("v.json", "", document), LIMITS, ["r1"], print)
+    assert isinstance(found, tuple)
+    (again,) = found
+    assert again.finding is Finding.UNKNOWN
+    assert "no `frama-c` on the PATH" in again.reasons[0]
 
 
 def test_a_monitor_in_python_is_none_in_c(
