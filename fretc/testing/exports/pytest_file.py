@@ -15,7 +15,7 @@ from compiler.targets.c import monitor as c
 from compiler.targets.javascript import monitor as javascript
 from compiler.targets.python import monitor as python
 from compiler.targets.target import Target
-from fretc.testing.exports.tables import Table, columns, table
+from fretc.testing.exports.tables import Table, table, truths
 from fretc.testing.suite import Test
 from monitors.kernel.verdicts import Verdict
 
@@ -90,7 +90,5 @@ def pytest_file(
 
 def _case(rule: Formalized, test: Test, languages: Sequence[Language]) -> _Case:
     own = table(rule, test)
-    truths = None
-    if Language.C in languages and own.names != rule.watched:
-        truths = Table(rule.watched, columns(test, rule.watched), of_truths=True)
-    return _Case(test, f"test_{test.name.replace('-', '_')}", own, truths)
+    more = truths(rule, test) if Language.C in languages and own.names != rule.watched else None
+    return _Case(test, f"test_{test.name.replace('-', '_')}", own, more)

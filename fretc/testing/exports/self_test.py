@@ -12,7 +12,7 @@ from compiler.files.edition import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.targets.c.monitor import Interface, interface
-from fretc.testing.exports.tables import Cell, columns
+from fretc.testing.exports.tables import Cell, truths
 from fretc.testing.suite import Test
 from monitors.kernel.verdicts import Verdict
 
@@ -55,7 +55,7 @@ def _requirements(rules: Sequence[Formalized], tests: Sequence[Test]) -> Iterato
 
 
 def _test(rule: Formalized, test: Test, number: int) -> dict[str, Any]:
-    rows = columns(test, rule.watched)
+    rows = truths(rule, test).rows
     return {
         "number": number,
         "name": test.name,

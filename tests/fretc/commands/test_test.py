@@ -151,3 +151,19 @@ def test_the_self_test_stands_beside_the_monitors(fretc: Fretc, folder: Path) ->
     names = {path.name for path in (folder / "build/tests/c").iterdir()}
     monitors = {f"r{i}_monitor.{ending}" for i in (1, 2) for ending in ("c", "h")}
     assert names == monitors | {"fretc_self_test.c"}
+
+
+def test_tests_of_a_file_are_written_again_as_they_are(fretc: Fretc, folder: Path) -> None:
+    assert fretc("test", str(folder), "--emit", "csv").status == 0
+    made = {path.name: path.read_text() for path in Path("build/tests/csv").iterdir()}
+    Path("build/tests/suite.json").rename("kept.json")
+    again = fretc(
+        "test", str(folder), "--suite", "kept.json", "--emit", "csv", "--emit-to", "again"
+    )
+    assert (again.status, Path("build/tests/suite.json").exists()) == (0, False)
+    assert {path.name: path.read_text() for path in Path("again/csv").iterdir()} == made
+    text = Path("kept.json").read_text()
+    Path("kept.json").write_text(text.replace('"verdict": "violated"', '"verdict": "satisfied"', 1))
+    wrong = fretc("test", str(folder), "--suite", "kept.json", "--emit", "csv", "--emit-to", "new")
+    assert (wrong.status, Path("new").exists()) == (2, False)
+    assert "expects what the monitor does not say: violated" in wrong.err
