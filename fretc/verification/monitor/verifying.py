@@ -53,6 +53,7 @@ _FEWEST, _TICKS = 4, 40_000
 
 
 MOST_STATES = 10**6
+_FALSE = Column(0, 0)
 
 
 class NotAMonitorError(Exception):
@@ -368,17 +369,43 @@ def _columns_compared(
 ) -> tuple[int, Word | None]:
     """The ticks on which both programs agree; and a trace on which they do not."""
     bound, never = rule.ticks or 0, excluded(rule)
-    choose = random.Random(bound)
-    length = 4 * bound + 50
-    count = min(DRAWN, max(_FEWEST, _TICKS // length))
-    for number in range(count):
-        odds = 0.02 if number % 2 else 0.0
-        drawn = {name: _drawn(choose, length, bound, odds) for name in atoms}
-        drawn = _possible(drawn, never, length)
-        tick = _first_difference(monitor, place, drawn, length)
+    is_alone = len(monitor.REQUIREMENTS) == 1
+    traces = _traces(monitor, bound, *((tuple(atoms), never) if is_alone or never else ((), ())))
+    for columns, ticks in traces:
+        tick = ticks[place]
         if tick is not None:
-            return 0, tuple(_rows(drawn, tick + 1))
-    return count * length, None
+            return 0, tuple(_rows({n: columns.get(n, _FALSE) for n in atoms}, tick + 1))
+    return len(traces) * _length(bound), None
+
+
+def _length(bound: int) -> int:
+    """Of the traces for a bound, in ticks."""
+    return 4 * bound + 50
+
+
+@lru_cache(maxsize=16)
+def _traces(
+    monitor: Monitor, bound: int, atoms: tuple[str, ...], never: tuple[Exclusion, ...]
+) -> tuple[tuple[Mapping[str, Column], tuple[int | None, ...]], ...]:
+    """Drawn traces, with the first tick for each requirement at which both programs differ.
+
+    Requirements of one file and one bound share them.
+
+    Args:
+        monitor: of one requirement or several.
+        bound: what edges depend on.
+        atoms: the propositions that are drawn; none: all of the monitor.
+        never: what they cannot be together.
+    """
+    choose, length = random.Random(bound), _length(bound)
+    found = []
+    for number in range(min(DRAWN, max(_FEWEST, _TICKS // length))):
+        odds = 0.02 if number % 2 else 0.0
+        names = atoms or monitor.PROPOSITIONS
+        drawn = {name: _drawn(choose, length, bound, odds) for name in names}
+        drawn = _possible(drawn, never, length)
+        found.append((drawn, _first_differences(monitor, drawn, length)))
+    return tuple(found)
 
 
 def _possible(
@@ -397,34 +424,35 @@ def _possible(
     return found
 
 
-def _first_difference(
-    monitor: Monitor, place: int, columns: Mapping[str, Column], length: int
-) -> int | None:
-    """The first tick at which the signals of both programs differ, on either rail.
+def _first_differences(
+    monitor: Monitor, columns: Mapping[str, Column], length: int
+) -> tuple[int | None, ...]:
+    """For each requirement the first tick at which the signals of both programs differ, on a rail.
 
     Propositions without a column are false.
     """
-    every = (1 << length) - 1
-    columns = {**dict.fromkeys(monitor.PROPOSITIONS, Column(0, 0)), **columns}
+    every, places = (1 << length) - 1, range(len(monitor.REQUIREMENTS))
+    columns = {**dict.fromkeys(monitor.PROPOSITIONS, _FALSE), **columns}
     try:
         must, may = (
-            monitor.columns(every, **literals_of(monitor, columns, every, doubt))[place]
+            monitor.columns(every, **literals_of(monitor, columns, every, doubt))
             for doubt in (False, True)
         )
-        beyond = any(column >> length for column in (*must, *may))
+        beyond = [any(each >> length for each in (*must[i], *may[i])) for i in places]
     except Exception:
-        return length - 1
-    if beyond:
-        return length - 1
+        return (length - 1,) * len(places)
+    found: list[int | None] = [length - 1 if is_beyond else None for is_beyond in beyond]
     monitor.reset()
     values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
     for tick in range(length):
         monitor.advance([tuple([column[tick] for column in values])])
         for rail, expected in ((monitor.must, must), (monitor.may, may)):
-            actual = [bool(value) for value in rail.signals()[place]]
-            if actual != [bool(column >> tick & 1) for column in expected]:
-                return tick
-    return None
+            signals = rail.signals()
+            for place in [place for place in places if found[place] is None]:
+                now = [bool(column >> tick & 1) for column in expected[place]]
+                if [bool(value) for value in signals[place]] != now:
+                    found[place] = tick
+    return tuple(found)
 
 
 def _drawn(choose: random.Random, length: int, bound: int, unknown: float) -> Column:
