@@ -7,7 +7,7 @@ so a step that looks at the number of the tick cannot hide. The automaton knows 
 values only. The other signals of a monitor (triggers, answers, open demands, marks; all of them
 with unknown values too) are compared with the text that fretc writes for the sentence, state by
 state (`fretc.verification.monitor.rails`), and its column program with the one in that text, term
-by term (`fretc.verification.monitor.column_terms`); the text that fretc writes needs neither. The
+by term (`fretc.verification.monitor.columns`); the text that fretc writes needs neither. The
 column program is also compared with the steps on random traces, some with unknown values: that
 shows where they differ.
 """
@@ -15,18 +15,16 @@ shows where they differ.
 from __future__ import annotations
 
 import ast
-import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, excluded
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
-from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
 from compiler.targets.python.monitor import prefixes_of
 from fretc.verification.monitor import front_terms, rails
-from fretc.verification.monitor.column_terms import Terms
+from fretc.verification.monitor.columns import Terms, Word, agreed
 from fretc.verification.monitor.equivalence import (
     Difference,
     Equivalence,
@@ -38,30 +36,16 @@ from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.slices import Alone, slice_of
 from fretc.verification.monitor.statements import StrangeError
 from fretc.verification.monitor.text_check import own, strange
-from monitors.kernel import Column, Monitor
-from monitors.kernel.columns import column, truths
-from monitors.kernel.stepping import literals_of
+from monitors.kernel import Monitor
 from monitors.kernel.variables import Variable
-from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from monitors.source_text import kernel
 
-DRAWN = 20
-"""Traces on which the column program is compared, where the bound is small."""
-_FEWEST, _TICKS = 4, 40_000
-"""At least so many traces; at most so many ticks in all, if there are more traces than that."""
-
-
 MOST_STATES = 10**6
-_FALSE = Column(0, 0)
 
 
 class NotAMonitorError(Exception):
     """The text cannot be executed as a generated monitor; the message says why."""
-
-
-Word = tuple[tuple[Truth, ...], ...]
-"""The values of the propositions at each tick; None: unknown."""
 
 
 def verified(
@@ -155,7 +139,7 @@ def _compared(
         fault = _front_compared(rule, (generated, whole), text, monitor, atoms)
         if fault is not None:
             return fault
-    ticks, word = _columns_compared(rule, monitor, place, needed)
+    ticks, word = agreed(rule, monitor, place, needed)
     if word is not None:
         return _disagreement(atoms, word)
     if text == generated or (whole is not None and _is_like(whole, text)):
@@ -359,118 +343,3 @@ def _demand_monitor(text: str) -> None:
     targets = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
     if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in targets):
         raise NotAMonitorError("it names no `MONITOR`")
-
-
-# Columns --------------------------------------------------------------------------------------
-
-
-def _columns_compared(
-    rule: Formalized, monitor: Monitor, place: int, atoms: Sequence[str]
-) -> tuple[int, Word | None]:
-    """The ticks on which both programs agree; and a trace on which they do not."""
-    bound, never = rule.ticks or 0, excluded(rule)
-    is_alone = len(monitor.REQUIREMENTS) == 1
-    traces = _traces(monitor, bound, *((tuple(atoms), never) if is_alone or never else ((), ())))
-    for columns, ticks in traces:
-        tick = ticks[place]
-        if tick is not None:
-            return 0, tuple(_rows({n: columns.get(n, _FALSE) for n in atoms}, tick + 1))
-    return len(traces) * _length(bound), None
-
-
-def _length(bound: int) -> int:
-    """Of the traces for a bound, in ticks."""
-    return 4 * bound + 50
-
-
-@lru_cache(maxsize=16)
-def _traces(
-    monitor: Monitor, bound: int, atoms: tuple[str, ...], never: tuple[Exclusion, ...]
-) -> tuple[tuple[Mapping[str, Column], tuple[int | None, ...]], ...]:
-    """Drawn traces, with the first tick for each requirement at which both programs differ.
-
-    Requirements of one file and one bound share them.
-
-    Args:
-        monitor: of one requirement or several.
-        bound: what edges depend on.
-        atoms: the propositions that are drawn; none: all of the monitor.
-        never: what they cannot be together.
-    """
-    choose, length = random.Random(bound), _length(bound)
-    found = []
-    for number in range(min(DRAWN, max(_FEWEST, _TICKS // length))):
-        odds = 0.02 if number % 2 else 0.0
-        names = atoms or monitor.PROPOSITIONS
-        drawn = {name: _drawn(choose, length, bound, odds) for name in names}
-        drawn = _possible(drawn, never, length)
-        found.append((drawn, _first_differences(monitor, drawn, length)))
-    return tuple(found)
-
-
-def _possible(
-    columns: Mapping[str, Column], excluded: Sequence[Exclusion], length: int
-) -> dict[str, Column]:
-    """The columns with unknown values where they cannot be what they are."""
-    every, found = (1 << length) - 1, dict(columns)
-    for exclusion in excluded:
-        at = every
-        for name, value in exclusion:
-            true, unknown = found[name]
-            at &= true if value else every ^ (true | unknown)
-        for name, _ in exclusion:
-            true, unknown = found[name]
-            found[name] = Column(true & ~at, unknown | at)
-    return found
-
-
-def _first_differences(
-    monitor: Monitor, columns: Mapping[str, Column], length: int
-) -> tuple[int | None, ...]:
-    """For each requirement the first tick at which the signals of both programs differ, on a rail.
-
-    Propositions without a column are false.
-    """
-    every, places = (1 << length) - 1, range(len(monitor.REQUIREMENTS))
-    columns = {**dict.fromkeys(monitor.PROPOSITIONS, _FALSE), **columns}
-    try:
-        must, may = (
-            monitor.columns(every, **literals_of(monitor, columns, every, doubt))
-            for doubt in (False, True)
-        )
-        beyond = [any(each >> length for each in (*must[i], *may[i])) for i in places]
-    except Exception:
-        return (length - 1,) * len(places)
-    found: list[int | None] = [length - 1 if is_beyond else None for is_beyond in beyond]
-    monitor.reset()
-    values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
-    for tick in range(length):
-        monitor.advance([tuple([column[tick] for column in values])])
-        for rail, expected in ((monitor.must, must), (monitor.may, may)):
-            signals = rail.signals()
-            for place in [place for place in places if found[place] is None]:
-                now = [bool(column >> tick & 1) for column in expected[place]]
-                if [bool(value) for value in signals[place]] != now:
-                    found[place] = tick
-    return tuple(found)
-
-
-def _drawn(choose: random.Random, length: int, bound: int, unknown: float) -> Column:
-    """A column with odds of its own, or of runs about as long as the bound: edges matter."""
-    if choose.random() < 0.5:
-        odds = choose.choice((0.02, 0.2, 0.5, 0.95))
-        codes = bytearray(choose.random() < odds for _ in range(length))
-    else:
-        codes, value = bytearray(), choose.randrange(2)
-        while len(codes) < length:
-            run = choose.choice((1, 1, 2, bound - 1, bound, bound + 1, bound + 2))
-            codes += bytes((value,)) * run
-            value = 1 - value
-        del codes[length:]
-    if unknown:
-        codes = bytearray(2 if choose.random() < unknown else code for code in codes)
-    return column(codes)
-
-
-def _rows(columns: Mapping[str, Column], length: int) -> Iterator[tuple[Truth, ...]]:
-    return (tuple(column.at(tick) for column in columns.values()) for tick in range(length))
