@@ -34,7 +34,8 @@ fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front
 fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
 simulation.world  simulation.nodes  simulation
-fretc.play  fretc.terminal  fretc.campaigns  fretc.testing.staging  fretc.api  fretc.commands  fretc
+fretc.play  fretc.terminal  fretc.campaigns  fretc.testing.staging
+fretc.watch.sources  fretc.watch  fretc.api  fretc.commands  fretc
 """.split()
 ROOMS = {package.partition(".")[0] for package in ORDER}
 NOT = {  # what stands above, and is still not to be known
@@ -228,3 +229,9 @@ def test_the_kernel_needs_nothing_of_ours_but_itself() -> None:
 def test_the_interceptor_needs_the_standard_library_only() -> None:
     """Its text is copied into every emitted one."""
     assert libraries(ROOT / "monitors/interceptor.py") <= {*sys.stdlib_module_names}
+
+
+@pytest.mark.slow
+def test_the_ticks_need_the_standard_library_only() -> None:
+    """Their text is copied into every emitted node."""
+    assert libraries(ROOT / "monitors/ticking.py") <= {*sys.stdlib_module_names}

@@ -22,7 +22,7 @@ import numpy as np
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.signals.propositions import truth_values
-from fretc.logs.signals.samples import EXACT, Recording, Samples, Topic
+from fretc.logs.signals.samples import EXACT, Recording, Samples
 from fretc.logs.signals.signals import (
     FieldError,
     Sparse,
@@ -32,13 +32,14 @@ from fretc.logs.signals.signals import (
     optional_field,
     sample,
 )
-from fretc.logs.signals.traces import origin, proposition_states
+from fretc.logs.signals.traces import proposition_states
 from fretc.logs.signals.words import UNKNOWN, Foreign, shown, word
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.expressions import ticks_back
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.kernel.verdicts import Truth
+from monitors.ticking import Ticking
 
 MOST_TICKS = 1_000_000
 """Ticks that may pass at once: more are a mistake in the unit of time."""
@@ -83,13 +84,10 @@ class Stream:
         self._queues = {
             name: _Queue(signal, name in flags) for name, signal in declarations.signals.items()
         }
-        self._clock_times: list[int] = []
-        """Messages of the clock's topic, from the time that has passed on."""
-        self._firsts: dict[str, int] = {}
-        """The first message of each bound topic."""
+        clock = declarations.clock
+        self._ticking = Ticking(_topics(declarations), clock.period, clock.phase, clock.topic)
         self._end = 0
         """The last message of all bound topics."""
-        self._passed = 0
         self._recent: list[int] = []
         """The last ticks, from that of `_back` on; all of one time, if one of that time is one."""
         self._ended = False
@@ -129,16 +127,14 @@ class Stream:
             if isinstance(found, Diagnostic):
                 return found
             queue = self._queues[signal.name]
-            wrong = queue.refusal(found[1], self._passed)
+            wrong = queue.refusal(found[1], self._ticking.passed)
             if wrong is not None:
                 return wrong
             values.append((queue, *found))
         for queue, value, kind, foreign in values:
             queue.put(time, value, kind, foreign)
-        self._firsts[topic] = min(time, self._firsts.get(topic, time))
+        self._ticking.arrive(topic, time)
         self._end = max(self._end, time)
-        if topic == self._declarations.clock.topic:
-            self._clock_times.insert(bisect_right(self._clock_times, time), time)
         return None
 
     def _untimely(self, topic: str, time: int) -> Diagnostic | None:
@@ -154,11 +150,12 @@ class Stream:
                 f"a message of `{topic}` has the time {time}, which no clock tells",
                 help="give the time in nanoseconds",
             )
-        if time < self._passed:
+        passed = self._ticking.passed
+        if time < passed:
             return Diagnostic(
                 Code.OUT_OF_ORDER,
-                f"a message of `{topic}` is {self._passed - time} ns late: the ticks up to "
-                f"{self._passed} ns are judged",
+                f"a message of `{topic}` is {passed - time} ns late: the ticks up to "
+                f"{passed} ns are judged",
                 help="let time pass only up to where no message can come any more",
             )
         return None
@@ -169,7 +166,7 @@ class Stream:
         return tuple(
             finding
             for queue in self._queues.values()
-            if (finding := queue.finding(min(self._firsts.values(), default=0))) is not None
+            if (finding := queue.finding(self._ticking.start or 0)) is not None
         )
 
     # Ticks
@@ -182,10 +179,7 @@ class Stream:
         one, and with the first one where another begins later: while topics are missing, both may
         come true.
         """
-        placed = self._declarations.clock.period is None or self._last_tick is not None
-        if placed or not self._begun() or self._origin() is not None:
-            return ()
-        return tuple(sorted(self._topics() - self._begun().keys()))
+        return self._ticking.waiting
 
     def until(self, time: int) -> tuple[Tick, ...] | Diagnostic:
         """Let time pass: no message before `time` comes any more.
@@ -201,12 +195,10 @@ class Stream:
                 f"time cannot pass up to {time}: no clock tells that",
                 help="give the time in nanoseconds",
             )
-        before, self._passed = self._passed, max(time, self._passed)
-        times = self._due(self._passed - 1)
-        if isinstance(times, Diagnostic):
-            self._passed = before
-            return times
-        found = self._ticks(times, self._passed)
+        if (many := _too_many(self._ticking.due(time))) is not None:
+            return many
+        times = self._ticking.until(time)
+        found = self._ticks(times, self._ticking.passed)
         self._forget()
         return found
 
@@ -214,14 +206,12 @@ class Stream:
         """The ticks that are left where the log ends here: at the last message or time passed."""
         if (over := self._over()) is not None:
             return over
-        end, before = max(self._end, self._passed), self._passed
-        self._passed, self._ended = LATEST, True
-        times = self._due(end)
-        if isinstance(times, Diagnostic):
-            self._passed, self._ended = before, False
-            return times
-        last = times[-1] if times else self._last_tick
-        if last is None or last == end:
+        end = max(self._end, self._ticking.passed)
+        if (many := _too_many(self._ticking.ending(end))) is not None:
+            return many
+        self._ended = True
+        times = self._ticking.end(end)
+        if self._ticking.last is None or self._ticking.last == end:
             return End(self._ticks(times, end), None)
         *ticks, cut = self._ticks([*times, end], end)
         return End(tuple(ticks), cut.truth)
@@ -231,55 +221,12 @@ class Stream:
             return None
         return Diagnostic(Code.BAD_USAGE, "the stream has ended", help="begin a new one")
 
-    def _topics(self) -> set[str]:
-        return {signal.path.topic for signal in self._declarations.signals.values()}
-
-    def _begun(self) -> dict[str, int]:
-        return {topic: first for topic, first in self._firsts.items() if first < self._passed}
-
-    def _start(self) -> int:
-        return min(self._begun().values())
-
-    def _origin(self) -> int | None:
-        """Where the grid of ticks begins; None while messages that are still to come decide that.
-
-        A topic that has not begun can move it back to the start of the log, and, less than a tick
-        after that, forward to its own first message.
-        """
-        begun, period = self._begun(), self._declarations.clock.period
-        if period is None or not begun:
-            return None
-        start = min(begun.values())
-        found = origin(self._declarations, self._recording(start, start, {}), period)
-        if self._ended or self._topics() <= begun.keys():
-            return found
-        return start if self._passed >= start + period and found == start else None
-
-    def _due(self, last: int) -> list[int] | Diagnostic:
-        """The times of the new ticks up to `last`."""
-        clock = self._declarations.clock
-        if clock.period is None:
-            return self._clock_times[: bisect_right(self._clock_times, last)]
-        if self._last_tick is not None:
-            start = self._last_tick + clock.period
-        elif (first := self._origin()) is not None:
-            start = first + clock.phase
-        else:
-            return []
-        times = range(start, last + 1, clock.period)
-        if len(times) > MOST_TICKS:
-            return Diagnostic(
-                Code.TOO_LARGE,
-                f"{len(times)} ticks would pass at once",
-                help="give times in nanoseconds, all on one clock",
-            )
-        return list(times)
-
     def _ticks(self, times: Sequence[int], end: int) -> tuple[Tick, ...]:
         """What each of the new ticks sees, in a log that goes on up to `end`."""
         if not times:
             return ()
-        start, first = self._start(), None
+        start, first = self._ticking.start, None
+        assert start is not None, "no tick is placed before a message"
         before = self._recent
         if before:
             start = max(start, self._window())
@@ -308,15 +255,10 @@ class Stream:
         """The ticks that those to come look back to."""
         return ticks[bisect_left(ticks, ticks[-self._back :][0]) :]
 
-    @property
-    def _last_tick(self) -> int | None:
-        return self._recent[-1] if self._recent else None
-
     def _forget(self) -> None:
         """Drop what no later tick sees."""
-        if self._last_tick is None:
+        if not self._recent:
             return
-        del self._clock_times[: bisect_right(self._clock_times, self._last_tick)]
         for queue in self._queues.values():
             queue.forget(self._window())
 
@@ -330,7 +272,7 @@ class Stream:
             samples=samples,
             ticks=np.zeros(0, np.int64),
             gaps=(),
-            topics={name: _topic(name, first) for name, first in self._begun().items()},
+            topics={},
             nearest={},
             findings=(),
             intact=True,
@@ -499,9 +441,18 @@ def _is_single(signal: Signal, message: Message) -> bool:
     return getattr(value, "dtype", None) == np.float32
 
 
-def _topic(name: str, first: int) -> Topic:
-    """A topic of which nothing counts but when it begins."""
-    return Topic(name, "", "", 0, first, None, None, None, None)
+def _topics(declarations: Declarations) -> frozenset[str]:
+    return frozenset(signal.path.topic for signal in declarations.signals.values())
+
+
+def _too_many(times: Sequence[int]) -> Diagnostic | None:
+    if not isinstance(times, range) or len(times) <= MOST_TICKS:
+        return None
+    return Diagnostic(
+        Code.TOO_LARGE,
+        f"{len(times)} ticks would pass at once",
+        help="give times in nanoseconds, all on one clock",
+    )
 
 
 def _needs_messages(declarations: Declarations) -> Diagnostic:

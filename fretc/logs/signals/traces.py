@@ -23,6 +23,7 @@ from fretc.logs.signals.propositions import (
 )
 from fretc.logs.signals.samples import Recording, Times
 from fretish.bindings.declarations import Aggregate, Declarations, Proposition
+from monitors import ticking
 from monitors.kernel import Column
 
 
@@ -111,8 +112,8 @@ def origin(declarations: Declarations, recording: Recording, period: int) -> int
     """Where the grid of ticks begins at phase 0."""
     topics = {signal.path.topic for signal in declarations.signals.values()}
     firsts = (recording.topics[name].first_ns for name in topics if name in recording.topics)
-    last = max((first for first in firsts if first is not None), default=recording.start_ns)
-    return last if 0 <= last - recording.start_ns < period else recording.start_ns
+    begun = [first for first in firsts if first is not None]
+    return ticking.origin(recording.start_ns, begun, period)
 
 
 def proposition_states(

@@ -1,0 +1,1 @@
+"""Where messages come from: a middleware, or a log that is being recorded."""
