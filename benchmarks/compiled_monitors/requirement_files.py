@@ -58,8 +58,12 @@ class Task:
 
     @property
     def propositions(self) -> list[str]:
-        """In the order of the columns of `rows`."""
-        return list(dict.fromkeys(name for each in self.demands for name in each.names.values()))
+        """In the order of the columns of `rows`, and of the inputs that fretc writes."""
+        return _propositions(self.demands)
+
+
+def _propositions(demands: Sequence[Demand]) -> list[str]:
+    return list(dict.fromkeys(name for each in demands for name in each.rule().watched))
 
 
 def single(kind: str, bound: int | None = None) -> Task:
@@ -69,21 +73,22 @@ def single(kind: str, bound: int | None = None) -> Task:
     names = {name: name for name in workload.signals}
     demand = Demand("R1", kind, names, BOUNDS.get(kind, 0) if bound is None else bound)
     name = kind if bound is None else f"{kind}, a bound of {bound:,}"
-    return Task(name, [demand], np.stack([columns[each] for each in names], axis=1))
+    return Task(name, [demand], np.stack([columns[each] for each in _propositions([demand])], axis=1))
 
 
 def many(count: int) -> Task:
     """So many requirements, no two of them equal, over random values."""
     demands = [_demand(i) for i in range(count)]
-    width = len({name for each in demands for name in each.names.values()})
     rng = np.random.default_rng(0)
-    rows = rng.random((max(2_000, _TICKS // count), width)) < 0.2
-    return Task(f"{count:,} requirements", demands, rows)
+    shape = max(2_000, _TICKS // count), len(_propositions(demands))
+    return Task(f"{count:,} requirements", demands, rng.random(shape) < 0.2)
 
 
 def _demand(i: int) -> Demand:
-    kind = KINDS[i % len(KINDS)]
-    place, shift = i // len(KINDS) % _PROPOSITIONS, i // len(KINDS) // _PROPOSITIONS
-    places = {"a": place, "b": place + 1 + shift, "c": place + 11 + 2 * shift}
+    """Pairs of propositions are those of this requirement alone, so that none shares a part."""
+    number, i = i % len(KINDS), i // len(KINDS)
+    shift, a = i // _PROPOSITIONS, i + 10 * number
+    places = {"a": a, "b": a + 1 + 7 * number + shift, "c": a + 39 - shift}
+    kind = KINDS[number]
     used = {each: f"p{places[each] % _PROPOSITIONS}" for each in WORKLOADS[kind].signals}
-    return Demand(f"R{i + 1}", kind, used, BOUNDS.get(kind, 0))
+    return Demand(f"R{len(KINDS) * i + number + 1}", kind, used, BOUNDS.get(kind, 0))
