@@ -64,6 +64,13 @@ class Clock:
     rounding: Rounding = Rounding.EXACT
     phase: int = 0
     """Nanoseconds from where the grid of ticks would begin to where it does, less than a tick."""
+    lateness: int | None = None
+    """Nanoseconds after its time at which a tick is judged; None: when all messages are there."""
+
+    @property
+    def patience(self) -> int | None:
+        """The lateness that counts: by log time, which is that of arrival, nothing is ever late."""
+        return 0 if self.time is TimeSource.LOG_TIME else self.lateness
 
     @property
     def declared(self) -> bool:

@@ -23,11 +23,12 @@ from fretc.audit.measurements.violations import Demand, Moment, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
 from fretc.logs.likeness import fingerprint
-from fretc.logs.signals.rates import slow_topics
+from fretc.logs.signals.rates import late_topics, slow_topics
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.signals import blind_zones
-from fretc.logs.signals.traces import Timeline, Trace, trace
+from fretc.logs.signals.traces import Timeline, Trace, timeline, trace
 from fretc.logs.signals.words import Foreign, shown
+from fretc.logs.watch_records import clock_text
 from fretish import expressions as e
 from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
 from fretish.bindings.amounts import margin as margin_text
@@ -90,7 +91,9 @@ def examined(
 
     What sensors cannot see, which topics are too slow, and which samples are no truth value.
     """
-    slow = slow_topics(declarations, recording, signals_of(declarations, propositions))
+    signals = signals_of(declarations, propositions)
+    slow = slow_topics(declarations, recording, signals)
+    late = late_topics(declarations, recording, signals, timeline(declarations, recording).times)
     blind = (
         finding
         for name in propositions
@@ -99,7 +102,7 @@ def examined(
     expressions = [declarations.propositions[name].expression for name in propositions]
     flags = dict.fromkeys(name.id for each in expressions for name in e.truths(each))
     untrue = (_untrue(declarations.signals[name], recording) for name in flags)
-    found = (*recording.findings, *filter(None, untrue), *blind, *slow)
+    found = (*recording.findings, *filter(None, untrue), *blind, *slow, *late)
     return replace(recording, findings=found)
 
 
@@ -194,7 +197,7 @@ def _evidence(
         start_ns=recording.start_ns,
         end_ns=recording.end_ns,
         first_ns=int(truths.timeline.times[0]) if ticks else recording.start_ns,
-        clock=f"{declarations.clock}, by {declarations.clock.time}",
+        clock=clock_text(declarations.clock),
         answers=answers,
         states=tuple((at(tick), state) for tick, state in states(outcome)),
         triggers=tuple(at(t) for t in outcome.triggers),

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial, reduce
 from operator import add
 
-from fretc.logs import containers, log_diagnostics
+from fretc.logs import containers, log_diagnostics, watch_records
 from fretc.logs.first_messages import Examples
 from fretc.logs.mcap.container import BrokenError
 from fretc.logs.mcap.damage import Damage
@@ -33,6 +33,7 @@ from fretc.logs.storage.splits import ACTIVE, run_name, split
 from fretc.logs.topic_columns import Columns
 from fretc.logs.topics import clocks, never_stated, topic
 from fretc.logs.vocabulary import Vocabulary, Words
+from fretc.logs.watch_records import watched
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -103,7 +104,8 @@ def _read_log(
     beside: Sequence[Signal],
 ) -> Recording | Diagnostic:
     sources = [source for some in declarations.labels.values() for source in some]
-    asked = frozenset(source.text for source in sources if not source.is_path)
+    named = {source.text for source in sources if not source.is_path}
+    asked = frozenset(named) | watch_records.KEYS
     found = _opened(path, lambda: Columns(declarations, signals, beside), integrity, asked)
     if isinstance(found, Diagnostic):
         return found
@@ -360,12 +362,15 @@ def _recording(
         for signals in (wanted, beside)
     )
     start, end = columns.span((min(a for a, _ in run.spans), max(b for _, b in run.spans)))
+    watch = watched(columns, run.described, place)
+    missed = [columns.on_clock(span) for span in watch.missed]
+    gaps = tuple(sorted({*gaps, *missed}))
     return Recording(
         name=place.source.name,
         sha256=run.sha256,
         size=run.size,
         start_ns=min([start, *(gap[0] for gap in gaps)]),
-        end_ns=max([end, *(gap[1] for gap in gaps)]),
+        end_ns=max([end, *(gap[1] for gap in gaps), watch.until]),
         samples=samples,
         ticks=columns.ticks(),
         gaps=gaps,
@@ -377,9 +382,12 @@ def _recording(
             *never_stated(samples, examples, wanted),
             *log_diagnostics.few(damages, place),
             *run.notes,
+            *watch.findings,
         ),
-        intact=not run.damages,
+        intact=not run.damages and not watch.lost,
         checked=run.checked,
         beside=others,
         described=run.described,
+        origin=watch.origin,
+        late=columns.late(),
     )

@@ -18,8 +18,8 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.damage import LATEST
 from fretc.logs.mcap.messages import FileTimes, Messages
 from fretc.logs.mcap.payloads import Payloads
-from fretc.logs.signals.samples import Gap, Series, Times, Values
-from fretc.logs.signals.topic_clocks import JUMP, forward_fill, unset
+from fretc.logs.signals.samples import Gap, Late, Series, Times, Values
+from fretc.logs.signals.topic_clocks import JUMP, forward_fill, late, unset
 from fretc.logs.signals.words import Foreign
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.clock import TimeSource
@@ -324,6 +324,18 @@ class Columns:
         """Times of the clock's topic, where the clock ticks by message."""
         column = self.topics.get(self.clock.topic or "")
         return np.sort(np.array(column.times if column else [], np.int64))
+
+    def late(self) -> dict[str, Late]:
+        """Of each bound topic the messages that were late; none where no lateness is declared."""
+        lateness = self.clock.patience
+        if lateness is None or self.clock.time is TimeSource.LOG_TIME:
+            return {}
+        found = {
+            column.name: late(np.array(column.logs, np.int64), column.stamps(), lateness)
+            for column in self.topics.values()
+            if column.bound
+        }
+        return {name: each for name, each in found.items() if each is not None}
 
     def span(self, log: Gap) -> Gap:
         """First and last message of the bound topics, else of all; else those of the `log` log.

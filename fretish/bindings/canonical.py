@@ -21,7 +21,7 @@ from fretish.bindings.declarations import (
     Signal,
     short_type,
 )
-from fretish.clock import Clock
+from fretish.clock import Clock, TimeSource
 from fretish.reading.recursion import deep
 
 
@@ -34,7 +34,9 @@ def digest(value: Any) -> str:
 def clock(declared: Clock) -> Any:
     """What a tick is; how durations are rounded shows in the formulas of those that are."""
     where = [declared.period, declared.topic, declared.phase]
-    return [*where, str(declared.time), str(declared.end)]
+    by_arrival = declared.time is TimeSource.LOG_TIME or declared.lateness is None
+    waits = [] if by_arrival else [declared.lateness]
+    return [*where, str(declared.time), str(declared.end), *waits]
 
 
 def bound(declarations: Declarations, names: Iterable[str]) -> Any:

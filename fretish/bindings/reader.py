@@ -35,7 +35,7 @@ from fretish.bindings.definitions import circle
 from fretish.bindings.fields import Fields
 from fretish.bindings.interceptor import Loop
 from fretish.bindings.words import words
-from fretish.clock import Clock, End, Rounding, TimeSource
+from fretish.clock import Clock, End, Rounding, TimeSource, in_words
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.parser import parse_value
@@ -46,7 +46,9 @@ from fretish.reading.toml_text import Tables, as_key, read
 _TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run")
 _TOPIC = re.compile(r"[A-Za-z_~/]\S*")
 """A topic, and no duration: a duration begins with a digit."""
-_CLOCK = ("time", "tick", "phase", "end", "rounding")
+_MOST_LATENESS = 60 * 10**9
+"""Nanoseconds: a verdict that comes later than that is none of a watch."""
+_CLOCK = ("time", "tick", "phase", "lateness", "end", "rounding")
 _SIGNAL = (
     "path", "type", "reduce", "unit", "valid", "invalid", "max_age", "footprint", "sensor",
     "values", "role", "agg",
@@ -299,6 +301,7 @@ class _Reader(Fields):
             self._choice(table, ("clock", "end"), End, End.INCONCLUSIVE),
             self._choice(table, ("clock", "rounding"), Rounding, Rounding.EXACT),
             self._phase(table, period),
+            self._lateness(table),
         )
 
     def _tick(self, table: Mapping[str, Any]) -> tuple[int | None, str | None]:
@@ -328,6 +331,21 @@ class _Reader(Fields):
             return phase
         self._say(Code.BAD_PHASE, message, self.tables.value("clock", "phase"), mend)
         return 0
+
+    def _lateness(self, table: Mapping[str, Any]) -> int | None:
+        if "lateness" not in table:
+            return None
+        text = table["lateness"]
+        found = units.nanoseconds(text) if isinstance(text, str) else None
+        if found is not None and 0 <= found <= _MOST_LATENESS:
+            return found
+        self._say(
+            Code.BAD_LATENESS,
+            f"`lateness` must be a duration from 0 to {in_words(_MOST_LATENESS)}",
+            self.tables.value("clock", "lateness"),
+            'where messages take less than 50 ms, write `lateness = "50 ms"`',
+        )
+        return None
 
     # Signals
 

@@ -86,6 +86,7 @@ class Code(Enum):
     NO_INTERCEPTOR = ("F323", "the bindings declare no interceptor")
 
     BAD_PHASE = ("F337", "the phase of the clock is not within a tick")
+    BAD_LATENESS = ("F355", "the lateness of the clock is no duration that a watch can wait")
     PLAIN_PERCENT = ("F338", "a plain number stands beside a signal in percent")
     WHICH_UNIT = ("F350", "a bare number stands beside signals in several units")
     UNIT_IN_SENTENCE = ("F352", "a number of a sentence has a unit, which FRET does not know")
@@ -131,6 +132,10 @@ class Code(Enum):
     PHASES_NOT_JUDGED = ("F426", "a verdict was not computed for all phases of the ticks")
     PHASE_PROPOSED = ("F427", "another phase of the ticks keeps its verdicts more firmly")
     NO_WAY = ("F428", "the map has nothing to draw")
+    LATE_MESSAGES = ("F429", "messages came later than ticks wait for them")
+    GRID_OF_WATCH = ("F432", "the grid of ticks is that of the watch that recorded the log")
+    FOREIGN_GRID = ("F433", "the log names a grid of ticks that does not fit it")
+    MISSED = ("F434", "the watch that recorded the log has missed messages")
     GROWN = ("F431", "a log grew while it was read")
     LOG_OUT_OF_TIME = ("F440", "the audit of a log took longer than it may")
     AUDIT_OUT_OF_TIME = ("F441", "the time of an audit was over before all logs were judged")

@@ -14,8 +14,15 @@ from numpy.typing import NDArray
 
 from fretc.logs.signals.past_values import PastValues, Places, past_values
 from fretc.logs.signals.propositions import UNKNOWN, States, Steps, evaluate, truth_values
-from fretc.logs.signals.samples import Recording, Times, distinct
-from fretc.logs.signals.traces import combined, complete_from, first_before, origin, packed
+from fretc.logs.signals.samples import Late, Recording, Times, distinct
+from fretc.logs.signals.traces import (
+    combined,
+    complete_from,
+    first_before,
+    late_messages,
+    origin,
+    packed,
+)
 from fretish.bindings.declarations import Declarations, Proposition
 from monitors.kernel import Column
 
@@ -119,15 +126,16 @@ def _slide(
 ) -> Slide:
     period = declarations.clock.period
     assert period is not None
+    late = late_messages(proposition, declarations, recording)
     past = past_values(proposition, declarations, recording)
     if past is not None:
-        return _slide_of_past(past, start, length, period)
+        return _slide_of_past(past, late, start, length, period)
     steps = evaluate(proposition, declarations, recording)
     begun = recording.start_ns, complete_from(proposition, recording)
     first = _first(steps, proposition, begun, start, min(period - 1, length))
     later = _later(steps, proposition, start, length, period)
     cut = _cut(steps, proposition, start, length, period)
-    return _joined([first], later, cut, start, length, period)
+    return _joined([first], later, cut, late, start, length, period)
 
 
 Seen = tuple[Times, States]
@@ -135,9 +143,24 @@ Seen = tuple[Times, States]
 
 
 def _joined(
-    firsts: Sequence[Seen], later: Seen, cut: Seen, start: int, length: int, period: int
+    firsts: Sequence[Seen],
+    later: Seen,
+    cut: Seen,
+    late: Sequence[Late],
+    start: int,
+    length: int,
+    period: int,
 ) -> Slide:
-    """The slide of the first ticks, one after the other, and of all later ones."""
+    """The slide of the first ticks, one after the other, and of all later ones.
+
+    Each is given as if no message had been `late`.
+    """
+    end = np.array([start + length], np.int64)
+    if any(each.at(end)[0] for each in late):
+        cut = cut[0], np.full(len(cut[0]), UNKNOWN, np.int8)
+    ends = [min(start + (i + 1) * period - 1, start + length) for i in range(len(firsts))]
+    firsts = [_masked(seen, late, last) for seen, last in zip(firsts, ends, strict=True)]
+    later = _masked(later, late, start + length)
     later_times, later_states = later
     grid = start + np.arange(len(firsts), length // period + 1, dtype=np.int64) * period
     base = [states[:1] for _, states in firsts]
@@ -151,7 +174,23 @@ def _joined(
     return Slide(np.concatenate(base), phases[order], ticks[order], states[order], *cut)
 
 
-def _slide_of_past(past: PastValues, start: int, length: int, period: int) -> Slide:
+def _masked(seen: Seen, late: Sequence[Late], last: int) -> Seen:
+    """The same, and unknown at ticks for which a message was late; it counts up to `last`."""
+    for each in late:
+        times, states = seen
+        if not len(times):
+            break
+        edges = np.concatenate([each.firsts, each.lasts + 1])
+        edges = edges[(edges > times[0]) & (edges <= last)]
+        every = np.sort(np.append(times, edges), kind="stable")
+        states = states[times.searchsorted(every, "right") - 1]
+        seen = every, np.where(each.at(every), UNKNOWN, states).astype(np.int8)
+    return seen
+
+
+def _slide_of_past(
+    past: PastValues, late: Sequence[Late], start: int, length: int, period: int
+) -> Slide:
     """Of a proposition that looks back by ticks: a tick sees what each of them has in force.
 
     So its state changes where something comes, and a tick, two ticks, and so on, later.
@@ -166,7 +205,8 @@ def _slide_of_past(past: PastValues, start: int, length: int, period: int) -> Sl
         firsts.append((times, past.states(_places(past, times, tick, period))))
     times = _within(moments, start + back * period, start + length)
     later = times, past.states(_places(past, times, past.back, period))
-    return _joined(firsts, later, _cut_of_past(past, start, length, period), start, length, period)
+    cut = _cut_of_past(past, start, length, period)
+    return _joined(firsts, later, cut, late, start, length, period)
 
 
 def _places(past: PastValues, times: Times, before: int, period: int) -> list[Places]:

@@ -24,13 +24,13 @@ from numpy.typing import NDArray
 from compiler.files.edition import edition
 from compiler.files.text_files import Stamp, file_sha256, sha256, stamp, write
 from fretc.logs.signals.integrity import Checked, Integrity
-from fretc.logs.signals.samples import Recording, Samples, Topic
+from fretc.logs.signals.samples import Late, Recording, Samples, Topic
 from fretc.logs.storage.folders import is_folder
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
 
-SCHEMA = "fretc-columns-1"
+SCHEMA = "fretc-columns-2"
 SUFFIX = ".columns"
 """Of the folder that stands beside the evidence."""
 _MOST = 2**28
@@ -195,6 +195,10 @@ def _described(recording: Recording) -> tuple[dict[str, Any], list[Array]]:
             arrays.append(each.values)
         return found
 
+    late = {}
+    for topic, each in recording.late.items():
+        late[topic] = len(arrays)
+        arrays += [each.firsts, each.lasts]
     return {
         "name": recording.name,
         "sha256": recording.sha256,
@@ -208,6 +212,8 @@ def _described(recording: Recording) -> tuple[dict[str, Any], list[Array]]:
         "intact": recording.intact,
         "checked": {name: getattr(recording.checked, name) for name in Checked.__slots__},
         "described": dict(recording.described),
+        "origin": recording.origin,
+        "late": late,
     }, arrays
 
 
@@ -237,6 +243,8 @@ def _recording(
         checked=Checked(**about["checked"]),
         described={name: tuple(values) for name, values in about["described"].items()},
         beside=beside,
+        origin=about["origin"],
+        late={topic: Late(arrays[at], arrays[at + 1]) for topic, at in about["late"].items()},
     )
 
 

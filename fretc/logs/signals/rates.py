@@ -1,19 +1,22 @@
-"""Topics that come too seldom for the clock, or for the age up to which their samples count."""
+"""Topics that come too seldom, or too late, for the clock, or for the age of their samples."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from fretc.logs.signals.samples import Recording, Topic
+from fretc.logs.signals.samples import Recording, Times, Topic
 from fretish.bindings.amounts import duration, exact_duration
 from fretish.bindings.declarations import Declarations, Signal
-from fretish.clock import Clock
+from fretish.clock import Clock, in_words
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Span
 
 _JITTER = 1.1
 """A topic of 10 Hz also has steps a little above 100 ms."""
 _FEW = 10
 """Fewer messages have no rate."""
+_MOST_LATENESS = 2 * 10**9
+"""Nanoseconds: what is later is not late, but by another clock."""
 _EVENTS = 3
 """Where one step is so many times the middle one, messages come when something happens."""
 
@@ -48,6 +51,49 @@ def slow_topics(
                 continue
             slow.add(topic.name)
             yield _slow(signal, period, declarations.clock, tick)
+
+
+def late_topics(
+    declarations: Declarations, recording: Recording, signals: Sequence[str], ticks: Times
+) -> Iterator[Diagnostic]:
+    """F429 for each topic with messages that were late for a tick.
+
+    Args:
+        declarations: clock and signals.
+        recording: read with these signals.
+        signals: names of declared signals.
+        ticks: the times of all ticks.
+    """
+    read = {declarations.signals[name].path.topic: name for name in reversed(signals)}
+    if declarations.clock.topic:
+        read.setdefault(declarations.clock.topic, "")
+    for topic, late in recording.late.items():
+        count, over = late.missed(ticks)
+        if topic in read and count:
+            signal, of = declarations.signals.get(read[topic]), recording.topics[topic].count
+            yield late_messages(
+                topic, signal.span if signal else None, count, of, over, declarations.clock
+            )
+
+
+def late_messages(
+    topic: str, place: Span | None, count: int, of: int, over: int, clock: Clock
+) -> Diagnostic:
+    """F429; `over` is by how much the latest one missed its tick, beside the lateness."""
+    lateness = clock.patience or 0
+    needed = -(-(lateness + over) // 10**7) * 10**7
+    return Diagnostic(
+        Code.LATE_MESSAGES,
+        f"{count} of {of} messages of `{topic}` came more than {in_words(lateness)} after a tick "
+        f"that should have seen them, at most {in_words(lateness + over)}: what reads them is "
+        "unknown there",
+        place,
+        f'`lateness = "{in_words(needed)}"` under `[clock]` would have waited for them'
+        if needed <= _MOST_LATENESS
+        else "the clocks of publisher and recorder differ: set them, or use "
+        '`time = "log_time"` under `[clock]`',
+        Severity.WARNING,
+    )
 
 
 def _is_regular(topic: Topic) -> bool:

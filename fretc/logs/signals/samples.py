@@ -142,6 +142,35 @@ class Topic:
 
 
 @dataclass(frozen=True, slots=True)
+class Late:
+    """Messages of a topic that were late for ticks: those from `firsts[i]` to `lasts[i]`.
+
+    Both have shape (n,). What is late, and for which ticks, `monitors/ticking.py` says.
+    """
+
+    firsts: Times
+    lasts: Times
+
+    def at(self, ticks: Times) -> NDArray[np.bool_]:
+        """At which ticks a message is missing, shape (ticks,)."""
+        begun = np.sort(self.firsts).searchsorted(ticks, "right")
+        over = np.sort(self.lasts).searchsorted(ticks, "left")
+        return np.asarray(begun > over)
+
+    def missed(self, ticks: Times) -> tuple[int, int]:
+        """How many messages were late for any of the ticks, and how much later than allowed.
+
+        Args:
+            ticks: their times, in order.
+        """
+        first = ticks.searchsorted(self.firsts)
+        late = first < len(ticks)
+        late[late] &= ticks[first[late]] <= self.lasts[late]
+        over = self.lasts[late] + 1 - ticks[first[late]]
+        return int(late.sum()), int(over.max(initial=0))
+
+
+@dataclass(frozen=True, slots=True)
 class Recording:
     """The declared signals in one log.
 
@@ -170,6 +199,11 @@ class Recording:
     """Signals that were read for pictures; no verdict and no finding depends on them."""
     described: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """What the metadata of the log says, as far as labels ask for it: `build.version` → values."""
+    origin: int | None = None
+    """Where the grid of ticks begins, as the watch that recorded the log says; None: none says it.
+    """
+    late: Mapping[str, Late] = field(default_factory=dict)
+    """Of each topic the messages that were late, where the clock declares a lateness."""
     derived: dict[tuple[object, ...], Any] = field(
         default_factory=dict, init=False, compare=False, repr=False
     )

@@ -1,4 +1,4 @@
-"""The clock of one topic of a log: where it was never set, stands still, or jumps.
+"""The clock of one topic of a log: where it was never set, stands still, jumps, or is late.
 
 A message has a log time, at which it was recorded, and a declared time, by the clock that the
 bindings declare. All times are nanoseconds and stand in the order of the file.
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fretc.logs.signals.samples import Times
+from fretc.logs.signals.samples import Late, Times
 
 JUMP = 10**9
 """A step of more than this between two messages means that a clock was set: no message is so late.
@@ -62,6 +62,13 @@ def count_still(times: Times) -> int:
     starts = np.flatnonzero(np.append(True, times[1:] != times[:-1]))
     lengths = np.diff(np.append(starts, len(times)))
     return int(lengths[lengths >= STILL_RUN].sum())
+
+
+def late(log_times: Times, times: Times, lateness: int) -> Late | None:
+    """The messages of a topic that are late for any time; None: none is."""
+    lasts = log_times - lateness - 1
+    chosen = lasts >= times
+    return Late(times[chosen], lasts[chosen]) if chosen.any() else None
 
 
 @dataclass(frozen=True, slots=True)

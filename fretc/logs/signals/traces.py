@@ -21,7 +21,7 @@ from fretc.logs.signals.propositions import (
     evaluate,
     truth_values,
 )
-from fretc.logs.signals.samples import Recording, Times
+from fretc.logs.signals.samples import Late, Recording, Times
 from fretish.bindings.declarations import Aggregate, Declarations, Proposition
 from monitors import ticking
 from monitors.kernel import Column
@@ -60,7 +60,8 @@ def trace(declarations: Declarations, recording: Recording, names: Collection[st
     ticks by message, what happened at its own time. `any` of them makes it true, or
     else unknown if one of them is unknown; `all` makes it false, or else unknown; `last` is the
     last one. Without a step it sees what was in force before. `on_unknown` replaces what is then
-    unknown. A proposition that looks back by ticks sees what is in force at each of them.
+    unknown. A proposition that looks back by ticks sees what is in force at each of them. Where a
+    message of a topic that it reads was late, it is unknown, whatever `on_unknown` says.
 
     Args:
         declarations: clock, signals and propositions.
@@ -110,6 +111,8 @@ def timeline(declarations: Declarations, recording: Recording) -> Timeline:
 
 def origin(declarations: Declarations, recording: Recording, period: int) -> int:
     """Where the grid of ticks begins at phase 0."""
+    if recording.origin is not None:
+        return recording.origin
     topics = {signal.path.topic for signal in declarations.signals.values()}
     firsts = (recording.topics[name].first_ns for name in topics if name in recording.topics)
     begun = [first for first in firsts if first is not None]
@@ -125,6 +128,29 @@ def proposition_states(
     its own time.
     """
     proposition = declarations.propositions[name]
+    states = _timely_states(proposition, declarations, recording, ticks, first)
+    for late in late_messages(proposition, declarations, recording):
+        states[late.at(ticks)] = UNKNOWN
+    return states
+
+
+def late_messages(
+    proposition: Proposition, declarations: Declarations, recording: Recording
+) -> list[Late]:
+    """Of each topic on which its truth at a tick depends; all depends on the clock's topic."""
+    topics = {declarations.signals[name].path.topic for name in proposition.signals}
+    topics |= {declarations.clock.topic} if declarations.clock.topic else set()
+    return [late for topic, late in recording.late.items() if topic in topics]
+
+
+def _timely_states(
+    proposition: Proposition,
+    declarations: Declarations,
+    recording: Recording,
+    ticks: Times,
+    first: int | None,
+) -> States:
+    """What each tick would see had no message been late."""
     past = past_values(proposition, declarations, recording)
     if past is not None:
         _, upto = _windows(past.times, ticks)

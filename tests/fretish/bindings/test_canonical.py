@@ -84,7 +84,7 @@ OUTLINE: dict[str, Any] = {
 APART = {
     "signal": {"name", "unit_name", "role", "aggregate", "span", "numbers", *OUTLINE},
     "proposition": {"name", "text", "role", "kind", "modality", "action", "span"},
-    "clock": {"rounding"},
+    "clock": {"rounding", "lateness"},
 }
 """What no verdict depends on but through its formulas; the outline only where it is asked for."""
 
@@ -141,6 +141,14 @@ def test_what_is_told_to_people_and_to_other_tools_does_not_count() -> None:
 @pytest.mark.parametrize("field", CLOCK)
 def test_each_field_of_the_clock_counts(field: str) -> None:
     assert clock(replace(Clock(10**8), **{field: CLOCK[field]})) != clock(Clock(10**8))
+
+
+@pytest.mark.parametrize("time", TimeSource)
+def test_lateness_counts_where_messages_can_be_late(time: TimeSource) -> None:
+    of_before = clock(Clock(10**8, time=time))
+    late = [clock(Clock(10**8, time=time, lateness=each)) for each in (None, 0, 5)]
+    assert late[0] == of_before
+    assert len({str(each) for each in late}) == (1 if time is TimeSource.LOG_TIME else 3)
 
 
 def test_rounding_shows_in_the_formulas_of_those_that_are_rounded() -> None:

@@ -14,7 +14,7 @@ from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
 from fretc.audit.measurements.judgement import judged
 from fretc.audit.phases.by_shift import Phases, Stretch, phases
-from fretc.logs.signals.samples import Recording, Samples, Topic
+from fretc.logs.signals.samples import Late, Recording, Samples, Topic
 from fretc.logs.signals.traces import trace
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.reader import read_bindings
@@ -179,7 +179,19 @@ def logs(draw: st.DrawFn) -> Recording:
     last = max(times, default=0)
     gaps = draw(st.sampled_from([(), (), (), ((30, 41),), ((5, 5),)]))
     gaps = tuple(gap for gap in gaps if start <= gap[0] and gap[1] <= last)
-    return recorded(x, y, last, gaps, start)
+    log = recorded(x, y, last, gaps, start)
+    late = draw(st.dictionaries(st.sampled_from(["/x", "/y"]), late_spans(length)))
+    origin = draw(st.none() | st.integers(start, start + 11))
+    return replace(log, late=late, origin=origin)
+
+
+def late_spans(length: int) -> st.SearchStrategy[Late]:
+    spans = st.tuples(st.integers(0, length), st.integers(0, 20))
+    return st.lists(spans, min_size=1, max_size=3).map(
+        lambda some: Late(
+            np.array([first for first, _ in some]), np.array([first + more for first, more in some])
+        )
+    )
 
 
 LAST_TICK_CHANGES = recorded(

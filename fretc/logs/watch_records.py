@@ -1,0 +1,184 @@
+"""What a watch writes into its recording, and what a log of a stranger may claim instead.
+
+The metadata record `fretc.grid` says where the grid of ticks begins, as soon as it is placed, and
+`fretc.watch`, at the end, up to when was watched and what was missed meanwhile. Both name the clock
+by which they count. Nothing of a record counts that is of another clock, is not written like this,
+or names a place at which no grid of the log can begin. Times are nanoseconds.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fretc.logs.mcap.damage import LATEST
+from fretc.logs.signals.samples import Gap
+from fretc.logs.topic_columns import Columns
+from fretish.bindings.amounts import seconds
+from fretish.clock import Clock, TimeSource, in_words
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Span
+
+GRID, WATCH = "fretc.grid", "fretc.watch"
+"""The names of the records."""
+_OF_GRID = (f"{GRID}.clock", f"{GRID}.origin", f"{WATCH}.clock", f"{WATCH}.until")
+KEYS = frozenset({*_OF_GRID, f"{WATCH}.missed"})
+"""All that they say."""
+_TIME = re.compile(r"[1-9][0-9]{0,18}")
+_SPANS = re.compile(r"[1-9][0-9]{0,18}-[1-9][0-9]{0,18}( [1-9][0-9]{0,18}-[1-9][0-9]{0,18})*")
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """What the watch that recorded a log says of it, as far as that fits the log."""
+
+    origin: int | None = None
+    """Where the grid of ticks begins."""
+    until: int = 0
+    """Up to when was watched, on the declared clock."""
+    missed: tuple[Gap, ...] = ()
+    """When messages were lost: first and last receive time."""
+    lost: bool = False
+    """Whether messages were lost at all."""
+    findings: tuple[Diagnostic, ...] = ()
+
+
+def clock_text(clock: Clock) -> str:
+    """All of a clock on which the grid depends."""
+    by_stamps = clock.time is not TimeSource.LOG_TIME and clock.lateness is not None
+    waits = f", late after {in_words(clock.lateness or 0)}" if by_stamps else ""
+    return f"{clock}, by {clock.time}{waits}"
+
+
+def grid_record(clock: Clock, origin: int) -> dict[str, str]:
+    """The record of a grid."""
+    return {"clock": clock_text(clock), "origin": str(origin)}
+
+
+def watch_record(clock: Clock, until: int, missed: tuple[Gap, ...]) -> dict[str, str]:
+    """The record of a watch that has ended."""
+    spans = {"missed": " ".join(f"{a}-{b}" for a, b in missed)} if missed else {}
+    return {"clock": clock_text(clock), "until": str(until), **spans}
+
+
+_SHOWN = 80
+"""Characters of a text of a stranger."""
+
+
+def watched(columns: Columns, described: Mapping[str, tuple[str, ...]], place: Span) -> Watched:
+    """What the records of a log say, with a finding for each.
+
+    What was missed counts whatever the clock, and where nobody can tell when that was, too: it
+    makes things unknown, and nothing else.
+    """
+    lost, gaps = _missed(described.get(f"{WATCH}.missed", ()))
+    findings = [_missing(gaps, place)] if lost else []
+    if not columns.clock.declared:
+        return Watched(missed=gaps, lost=lost, findings=tuple(findings))
+    found = _grid({key: described[key] for key in _OF_GRID if key in described}, columns)
+    if isinstance(found, str):
+        return Watched(None, 0, gaps, lost, (*findings, _refused(found, place)))
+    origin, until = found
+    if origin is not None or until:
+        findings.append(_taken_over(origin, until, columns, place))
+    return Watched(origin, until, gaps, lost, tuple(findings))
+
+
+def _missed(texts: Sequence[str]) -> tuple[bool, tuple[Gap, ...]]:
+    """Whether anything was missed, and when."""
+    spans = [
+        (int(a), int(b))
+        for text in texts
+        if _SPANS.fullmatch(text)
+        for a, _, b in (span.partition("-") for span in text.split(" "))
+    ]
+    return bool(texts), tuple((a, b) for a, b in spans if a <= b < LATEST)
+
+
+def _grid(stated: Mapping[str, tuple[str, ...]], columns: Columns) -> tuple[int | None, int] | str:
+    """The origin and the end, or why they do not count."""
+    for key, values in stated.items():
+        if len(values) > 1:
+            return f"it has {len(values)} values of `{key}`"
+    clock = clock_text(columns.clock)
+    for record in (GRID, WATCH):
+        named = stated.get(f"{record}.clock", (clock,))[0]
+        if named != clock:
+            return f"it is of the clock `{named[:_SHOWN]}`, and not `{clock}`"
+    texts = [stated.get(key, ("",))[0] for key in (f"{GRID}.origin", f"{WATCH}.until")]
+    for text in texts:
+        if text and not (_TIME.fullmatch(text) and int(text) < LATEST):
+            return f"`{text[:_SHOWN]}` is no time in nanoseconds"
+    origin, until = (int(text) if text else 0 for text in texts)
+    if origin and not _fits(origin, columns):
+        return f"no grid of this log can begin at {origin}"
+    return origin or None, until
+
+
+def _fits(origin: int, columns: Columns) -> bool:
+    """Whether a watch can have placed its grid there.
+
+    It has done so by the messages that had come when the first tick was judged, or up to a period
+    later, where it waited for a topic: from the first of their times on, and less than a period
+    after it.
+    """
+    clock = columns.clock
+    if clock.period is None:
+        return False
+    judged = origin + clock.phase + (clock.patience or 0)
+    latest = _start(columns, judged)
+    earliest = _start(columns, judged + clock.period)
+    if earliest is None or latest is None:
+        return False
+    return earliest <= origin < latest + clock.period
+
+
+def _start(columns: Columns, arrival: int) -> int | None:
+    """The first time of all bound messages that had arrived by then."""
+    starts = [
+        int(times.min())
+        for column in columns.topics.values()
+        if column.bound
+        and len(times := column.stamps()[np.array(column.logs, np.int64) <= arrival])
+    ]
+    return min(starts, default=None)
+
+
+def _taken_over(origin: int | None, until: int, columns: Columns, place: Span) -> Diagnostic:
+    start = columns.span((origin or until, 0))[0]
+    parts = []
+    if origin is not None:
+        parts.append(f"the grid of ticks begins {in_words(origin - start)} after the first message")
+    if until > start:
+        parts.append(f"it was watched for {seconds((until - start) / 1e9)}")
+    return Diagnostic(
+        Code.GRID_OF_WATCH,
+        f"recorded by a watch: {', and '.join(parts)}",
+        place,
+        severity=Severity.NOTE,
+    )
+
+
+def _refused(why: str, place: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.FOREIGN_GRID,
+        f"what the log says of a watch does not count: {why}",
+        place,
+        "audit a recording with the clock of its watch",
+        Severity.WARNING,
+    )
+
+
+def _missing(gaps: Sequence[Gap], place: Span) -> Diagnostic:
+    length = sum(b - a for a, b in gaps)
+    times = "once" if len(gaps) == 1 else f"{len(gaps)} times"
+    how = f"{times}, for {seconds(length / 1e9)} in all: what came then is unknown"
+    return Diagnostic(
+        Code.MISSED,
+        f"the watch has missed messages {how if gaps else 'and does not say when'}",
+        place,
+        severity=Severity.WARNING,
+    )
