@@ -20,18 +20,15 @@ def prove(project: Project, request: Request) -> tuple[Proof, ...] | Diagnostic:
     Raises:
         NotAMonitorError: the given text is no generated monitor.
     """
-    asked = [method for method in TABLE if request.names(method.name)]
-    calls = [
-        *((method, (rule,)) for rule in project.rules for method in asked if method.of_requirement),
-        *((method, project.rules) for method in asked if not method.of_requirement),
-    ]
-    proofs: list[Proof] = []
-    for method, rules in calls:
-        results = method.prove(rules, project, request)
-        if isinstance(results, Diagnostic):
-            return results
-        proofs.extend(results)
-    return tuple(proofs)
+    single, common = list[Proof](), list[Proof]()
+    for method in TABLE:
+        if request.names(method.name):
+            results = method.prove(project.rules, project, request)
+            if isinstance(results, Diagnostic):
+                return results
+            (single if method.of_requirement else common).extend(results)
+    places = {rule.id: place for place, rule in enumerate(project.rules)}
+    return (*sorted(single, key=lambda each: places[each.requirement]), *common)
 
 
 def refusals(project: Project, request: Request) -> tuple[Diagnostic, ...]:

@@ -32,6 +32,8 @@ class Reading(NamedTuple):
     answer: int
 
 
+VERDICTS = ("pending", "satisfied", "violated")
+"""In the order of their numbers."""
 NAMES = (*(f"value of `{name}`" for name in Reading._fields), "verdict from the two readings")
 """Of the values that a step tells."""
 

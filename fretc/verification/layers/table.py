@@ -30,7 +30,7 @@ class Method:
     claim: str
     """What it proves, as the help of `fretc verify` says it."""
     of_requirement: bool = False
-    """Whether it takes one requirement at a time; else all of them together."""
+    """Whether each proof is about one requirement; else about what all have."""
     needs_monitor: bool = False
     """Whether it steps the monitor of a requirement, and its runs are runs of that monitor."""
 
@@ -40,7 +40,7 @@ class Method:
         """The proofs about the rules; a diagnostic where a text of the request has a mistake.
 
         Args:
-            rules: one where it takes one at a time, else those of the project.
+            rules: those that are asked about.
             project: all rules, and what the bindings declare.
             request: the texts that are given, the limits, and the other wishes.
 

@@ -15,8 +15,10 @@ shows where they differ.
 from __future__ import annotations
 
 import ast
+import pickle
 import random
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, excluded
@@ -76,15 +78,29 @@ def verified(
     Raises:
         NotAMonitorError: the text is no generated monitor.
     """
+    monitor = _opened(text)
+    return (
+        not_checked(monitor)
+        if isinstance(monitor, str)
+        else _compared(rule, text, monitor, limit, others)
+    )
+
+
+@lru_cache(maxsize=1)
+def _opened(text: str) -> Monitor | str:
+    """The monitor; or why it is not executed. A file of many requirements is opened once.
+
+    Raises:
+        NotAMonitorError: the text is no generated monitor.
+    """
     _demand_monitor(text)
     reason = strange(text)  # nothing else is executed
     if reason is not None:
-        return not_checked(reason)
+        return reason
     try:
-        monitor = load(f"{rule.id}_monitor", text)
+        return load("monitor", text)
     except Exception as error:
-        return not_checked(f"it cannot be executed: {type(error).__name__}: {error}")
-    return _compared(rule, text, monitor, limit, others)
+        return f"it cannot be executed: {type(error).__name__}: {error}"
 
 
 def _compared(
@@ -111,10 +127,10 @@ def _compared(
         fault = _front_compared(rule, generated, text, monitor, atoms, others)
         if fault is not None:
             return fault
-    ticks, word = _columns_compared(rule, monitor, place, atoms)
+    ticks, word = _columns_compared(rule, monitor, place, needed)
     if word is not None:
         return _disagreement(atoms, word)
-    if text == generated or _is_generated(text, monitor, (*others, rule)):
+    if text == generated or _is_generated(text, monitor, (rule, *others)):
         return _proved(result, ticks)
     states = _compared_with_generated(
         rule, generated, text, monitor, place, (atoms, len(needed)), limit
@@ -212,14 +228,28 @@ def _whole(atoms: Sequence[str], word: Word) -> Trace:
 def _is_generated(text: str, monitor: Monitor, rules: Sequence[Formalized]) -> bool:
     """Whether fretc writes this text for some of these rules, but for comments."""
     generated = _generated(monitor, rules)
-    return generated is not None and ast.dump(own(generated)) == ast.dump(own(text))
+    return generated is not None and _is_like(generated, text)
 
 
 def _generated(monitor: Monitor, rules: Sequence[Formalized]) -> str | None:
     """The text that fretc writes for the requirements of a monitor, where all are known."""
     by_id = {rule.id: rule for rule in rules}
     ids = [requirement.id for requirement in monitor.REQUIREMENTS]
-    return target.text(*(by_id[id] for id in ids)) if all(id in by_id for id in ids) else None
+    if not all(id in by_id for id in ids):
+        return None
+    return _text(pickle.dumps([by_id[id] for id in ids]))
+
+
+@lru_cache(maxsize=1)
+def _text(rules: bytes) -> str:
+    """What fretc writes for pickled rules: they have no hash, and a file of many needs it once."""
+    return target.text(*pickle.loads(rules))
+
+
+@lru_cache(maxsize=1)
+def _is_like(generated: str, text: str) -> bool:
+    """Whether both are one text, but for comments."""
+    return ast.dump(own(generated)) == ast.dump(own(text))
 
 
 def _front_compared(
@@ -236,7 +266,7 @@ def _front_compared(
     then what fretc writes for all of them counts.
     """
     fault = _differing(rule, text, generated, monitor, atoms)
-    written = None if fault is None else _generated(monitor, (*others, rule))
+    written = None if fault is None else _generated(monitor, (rule, *others))
     return fault if written is None else _differing(rule, text, written, monitor, atoms)
 
 
@@ -363,8 +393,12 @@ def _possible(
 def _first_difference(
     monitor: Monitor, place: int, columns: Mapping[str, Column], length: int
 ) -> int | None:
-    """The first tick at which the signals of both programs differ, on either rail."""
+    """The first tick at which the signals of both programs differ, on either rail.
+
+    Propositions without a column are false.
+    """
     every = (1 << length) - 1
+    columns = {**dict.fromkeys(monitor.PROPOSITIONS, Column(0, 0)), **columns}
     try:
         must, may = (
             monitor.columns(every, **literals_of(monitor, columns, every, doubt))[place]

@@ -14,7 +14,7 @@ import pytest
 
 from compiler.files.templating import template_root
 from compiler.logic.claims import Proof
-from fretc.verification.compiled import c_build
+from fretc.verification.c import build as c_build
 from fretc.verification.engines import crosshair
 from fretc.verification.engines import programs as external
 from fretc.verification.engines import sandbox as confined

@@ -54,9 +54,11 @@ def _prove(
     project: Project,
     request: Request,
 ) -> list[Proof] | Diagnostic:
-    names = "+".join(rule.id for rule in rules)
-    line = proof(names, Layer.AGENT, method.claim, not_checked("new"), method.name)
-    return mistake or [line]
+    ids = [rule.id for rule in rules]
+    names = ids if method.of_requirement else ["+".join(ids)]
+    return mistake or [
+        proof(name, Layer.AGENT, method.claim, not_checked("new"), method.name) for name in names
+    ]
 
 
 def asked(project: Project, *provers: str) -> list[tuple[str, str]] | Diagnostic:

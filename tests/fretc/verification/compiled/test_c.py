@@ -6,25 +6,39 @@ import random
 import re
 import shutil
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
-from itertools import count
 from pathlib import Path
 
 import pytest
 
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import Outcome, Result
+from compiler.logic.claims import Result
 from compiler.targets.python.monitor import text
-from fretc.verification.compiled.c_build import BuildError, built, compiler
-from fretc.verification.compiled.c_form import StrangeTextError
-from fretc.verification.compiled.c_verifying import Given, explored, prepared, verified
+from fretc.verification.c import language as c
+from fretc.verification.c.build import compiler
+from fretc.verification.compiled.plan import Given
 from fretc.verification.compiled.readings import PythonRail
+from fretc.verification.compiled.text import StrangeTextError
+from fretc.verification.compiled.tools import ToolError
+from fretc.verification.compiled.verifying import explored, verified
 from fretc.verification.engines.sandbox import Limits
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from tests import meaning
 from tests.c_monitors import Source, compiled, of_python
+from tests.compiled_monitors import (
+    FOR,
+    KINDS,
+    REFUSED,
+    REFUTED,
+    RING,
+    SAME,
+    SENTENCES,
+    WITHIN,
+    Checker,
+    edited,
+)
 from tests.each import each
 from tests.monitoring import rule
 from tests.strategies import templates
@@ -35,19 +49,6 @@ pytestmark = pytest.mark.skipif(not CC, reason="no C compiler is installed")
 needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
 FULL = os.environ.get("HYPOTHESIS_PROFILE") == "full"
 
-WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
-FOR = "upon p the sw shall for 2 ticks satisfy q & !m"
-RING = "only after m whenever p the sw shall within 2 ticks satisfy q"
-SENTENCES = (
-    WITHIN,
-    FOR,
-    RING,
-    "before m mode the sw shall always satisfy q",
-    "the sw shall until p satisfy q",
-    "when p the sw shall after 2 ticks satisfy q",
-    "whenever p the sw shall immediately satisfy x < 3",
-)
-
 
 def given(*rules: Formalized) -> Given:
     """What `--emit c` writes for them."""
@@ -56,49 +57,34 @@ def given(*rules: Formalized) -> Given:
     return Given(source.source, source.texts[source.source], header, source.texts[header])
 
 
-def edited(monitor: Given, old: str, new: str) -> Given:
-    assert monitor.text.count(old) == 1, (old, monitor.text.count(old))
-    return replace(monitor, text=monitor.text.replace(old, new))
-
-
-_NUMBERS = count()
-
-
-def check(
-    rule: Formalized, monitor: Given, folder: Path, others: Sequence[Formalized] = ()
-) -> Outcome:
-    """As `verified`, in this process; no two libraries have one file, for it is never unloaded."""
-    binary, plan = prepared(rule, monitor, CC, others)
-    path = folder / f"{next(_NUMBERS)}.so"
-    path.write_bytes(binary.data)
-    return explored(rule, path, plan, 10**5)
+@pytest.fixture
+def checker(tmp_path: Path) -> Checker:
+    return Checker(c, tmp_path)
 
 
 # What is right --------------------------------------------------------------------------------
 
 
-def test_each_requirement_of_one_text_is_proved(tmp_path: Path) -> None:
+def test_each_requirement_of_one_text_is_proved(checker: Checker) -> None:
     rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(SENTENCES)]
-    monitor = given(*rules)
-    for one in rules:
-        assert check(one, monitor, tmp_path, rules).result is Result.PROVED, one.sentence
+    for one, outcome in zip(rules, checker.outcomes(given(*rules), rules), strict=True):
+        assert outcome.result is Result.PROVED, one.sentence
 
 
 @pytest.mark.slow
 @each("scope", meaning.SCOPES)
-def test_every_template_is_proved(scope: str, tmp_path: Path) -> None:
+def test_every_template_is_proved(scope: str, checker: Checker) -> None:
     bounds = (0, 1, 2, 3) if FULL else (0, 3)
     sentences = [each.sentence for each in templates(bounds) if each.scope == scope]
     rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
-    monitor = given(*rules)
-    for one in rules:
-        assert check(one, monitor, tmp_path, rules).result is Result.PROVED, one.sentence
+    for one, outcome in zip(rules, checker.outcomes(given(*rules), rules), strict=True):
+        assert outcome.result is Result.PROVED, one.sentence
 
 
 @pytest.mark.slow
-def test_a_long_bound_is_proved_as_it_is(tmp_path: Path) -> None:
+def test_a_long_bound_is_proved_as_it_is(checker: Checker) -> None:
     one = rule("whenever p the sw shall within 1000 ticks satisfy q")
-    outcome = check(one, given(one), tmp_path)
+    outcome = checker.outcome(given(one), one)
     assert outcome.result is Result.PROVED
     assert "1002 states" in outcome.detail
 
@@ -106,24 +92,23 @@ def test_a_long_bound_is_proved_as_it_is(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_what_takes_too_long_is_not_proved() -> None:
     one = rule("whenever p the sw shall within 100000 ticks satisfy q")
-    found = verified(one, given(one), CC, Limits(seconds=2))
+    (found,) = verified([one], given(one), c, CC, Limits(seconds=2))
     assert found.outcome.result is Result.NOT_CHECKED
     assert found.outcome.detail.startswith("out of time")
 
 
-def test_too_many_states_are_not_proved(tmp_path: Path) -> None:
+def test_too_many_states_are_not_proved(checker: Checker) -> None:
     one = rule("whenever p the sw shall within 100 ticks satisfy q")
-    binary, plan = prepared(one, given(one), CC)
-    path = tmp_path / f"{next(_NUMBERS)}.so"
-    path.write_bytes(binary.data)
-    assert explored(one, path, plan, 150).result is Result.NOT_CHECKED
+    found = checker.prepared(given(one), one)
+    outcome = explored(one, found.executable, found.checked.plan(one), 150)
+    assert outcome.result is Result.NOT_CHECKED
 
 
-def test_comments_and_layout_are_free(tmp_path: Path) -> None:
+def test_comments_and_layout_are_free(checker: Checker) -> None:
     one = rule(WITHIN)
     monitor = given(one)
     loose = re.sub(r"/\*.*?\*/", "/* mine\n */", monitor.text).replace("    ", "\t")
-    assert check(one, replace(monitor, text=loose), tmp_path).result is Result.PROVED
+    assert checker.outcome(replace(monitor, text=loose), one).result is Result.PROVED
 
 
 @each("sentence", SENTENCES)
@@ -146,7 +131,6 @@ def test_the_reference_tells_what_the_monitor_in_python_tells(sentence: str) -> 
 
 # What is wrong --------------------------------------------------------------------------------
 
-REFUTED, REFUSED, SAME = "refuted", "refused", "same"
 FAULTS = (
     (WITHIN, "rail->oldest_1 >= 3", "rail->oldest_1 >= 2", REFUTED),
     (WITHIN, "rail->oldest_1 >= 3", "rail->oldest_1 > 2", SAME),
@@ -163,20 +147,13 @@ FAULTS = (
 )  # fmt: skip
 
 
-KINDS = {Result.COUNTEREXAMPLE: REFUTED, Result.PROVED: SAME, Result.NOT_CHECKED: REFUSED}
-
-
 @each("fault", FAULTS)
 def test_a_fault_comes_to_what_is_written_beside_it(
-    fault: tuple[str, str, str, str], tmp_path: Path
+    fault: tuple[str, str, str, str], checker: Checker
 ) -> None:
     sentence, old, new, expected = fault
     one = rule(sentence)
-    try:
-        kind = KINDS[check(one, edited(given(one), old, new), tmp_path).result]
-    except StrangeTextError:
-        kind = REFUSED
-    assert kind == expected
+    assert checker.kind(edited(given(one), old, new), one) == expected
 
 
 _EDITS = (
@@ -206,10 +183,11 @@ def test_faults_are_refuted_or_refused_or_of_no_effect(sentence: str, tmp_path: 
     monitor, source, found = given(one), Source.of(one), Counter[str]()
     drawn = choose.sample([*dict.fromkeys(faults(monitor.text))], 40)
     for wrong in drawn:
-        kind = KINDS[verified(one, replace(monitor, text=wrong), CC, LIMITS).outcome.result]
+        (examined,) = verified([one], replace(monitor, text=wrong), c, CC, LIMITS)
+        kind = KINDS[examined.outcome.result]
         found[kind] += 1
         if kind == SAME:
-            folder = tmp_path / str(next(_NUMBERS))
+            folder = tmp_path / str(found[SAME])
             folder.mkdir()
             texts = {**source.texts, source.source: wrong}
             program = compiled(folder, "gcc", replace(source, texts=texts), flags=["-std=c99"])
@@ -264,13 +242,13 @@ SINCE = "const bool since_1 = rail->oldest_1 >= 3;"
 def test_what_may_reach_further_is_refused(edit: tuple[str, str]) -> None:
     one = rule(WITHIN)
     with pytest.raises(StrangeTextError):
-        prepared(one, edited(given(one), *edit), CC)
+        c.checked(edited(given(one), *edit), [one])
 
 
 def test_a_ring_is_as_fretc_writes_it() -> None:
     one = rule("whenever p the sw shall immediately satisfy occurred(33, 35, q)")
     monitor = given(one)
-    prepared(one, monitor, CC)
+    c.checked(monitor, [one])
     for old, new in (
         ("/ 32u]", "/ 31u]"),
         ("[word] = 0u", "[word] = 1u"),
@@ -278,7 +256,7 @@ def test_a_ring_is_as_fretc_writes_it() -> None:
         ("reading->settled = false;", "reading->settled = rail->ring_since_1 > 0;"),
     ):
         with pytest.raises(StrangeTextError):
-            prepared(one, edited(monitor, old, new), CC)
+            c.checked(edited(monitor, old, new), [one])
 
 
 @each(
@@ -289,20 +267,20 @@ def test_a_header_of_another_form_is_refused(edit: tuple[str, str]) -> None:
     monitor = given(one)
     assert edit[0] in monitor.header
     with pytest.raises(StrangeTextError):
-        prepared(one, replace(monitor, header=monitor.header.replace(*edit)), CC)
+        c.checked(replace(monitor, header=monitor.header.replace(*edit)), [one])
 
 
 def test_a_monitor_of_other_requirements_is_refused() -> None:
     one, other = rule(WITHIN), rule(FOR, "R2")
     for rules, reason in (((), "R2"), ((other,), "other requirements")):
         with pytest.raises(StrangeTextError, match=reason):
-            prepared(one, given(other), CC, rules)
+            c.checked(given(other), (one, *rules)).plan(one)
 
 
-def test_what_does_not_compile_is_refused() -> None:
+def test_what_does_not_compile_is_refused(checker: Checker) -> None:
     one = rule(WITHIN)
-    with pytest.raises(BuildError, match="does not compile it"):
-        prepared(one, edited(given(one), SINCE, "const bool since_1 = 3 3;"), CC)
+    with pytest.raises(ToolError, match="does not compile it"):
+        checker.prepared(edited(given(one), SINCE, "const bool since_1 = 3 3;"), one)
 
 
 @pytest.mark.slow
@@ -310,13 +288,12 @@ def test_undefined_behaviour_ends_the_process_and_proves_nothing() -> None:
     """A `bool` that is never set is read."""
     one = rule(WITHIN)
     wrong = edited(given(one), "    rail->r1_broken = false;\n", "")
-    outcome = verified(one, wrong, CC, LIMITS).outcome
+    ((_, outcome, _, _),) = verified([one], wrong, c, CC, LIMITS)
     assert outcome.result is Result.NOT_CHECKED
     assert "crashed" in outcome.detail
 
 
-def test_a_binary_is_the_same_each_time() -> None:
+def test_a_binary_is_the_same_each_time(checker: Checker) -> None:
     one = rule(WITHIN)
-    first = prepared(one, given(one), CC)
-    built.cache_clear()
-    assert prepared(one, given(one), CC) == first
+    first, second = (checker.prepared(given(one), one) for _ in range(2))
+    assert (first.artefacts, first.engine) == (second.artefacts, second.engine)
