@@ -9,8 +9,17 @@ from pathlib import Path
 from benchmarks.compiled_monitors.requirement_files import BOUNDS, Demand
 
 _FOLDER = Path(__file__).parents[1] / "peers" / "copilot"
-_INCLUDES = "".join(f"#include <{name}.h>\n" for name in "stdint stdbool string stdlib math".split())
-_PLACES = (r"  \w+ \w+;", r"  \(\w+_cpy\)", r"  if ", r"  \(\w+_tmp\)", r"  \(\(\w+\)\[", r"  \(\w+_idx\)")
+_INCLUDES = "".join(
+    f"#include <{name}.h>\n" for name in "stdint stdbool string stdlib math".split()
+)
+_PLACES = (
+    r"  \w+ \w+;",
+    r"  \(\w+_cpy\)",
+    r"  if ",
+    r"  \(\w+_tmp\)",
+    r"  \(\(\w+\)\[",
+    r"  \(\w+_idx\)",
+)
 """How the lines of its step begin, in the order in which they come."""
 
 
@@ -22,8 +31,11 @@ def text(demands: Sequence[Demand], style: str) -> str | None:
         style: "library" or "counter", which has the library's operators where those count nothing.
     """
     files = [_file(each, style) for each in demands]
-    parts = [_renamed(place, each, file) for place, (each, file) in enumerate(zip(demands, files))
-             if file is not None]
+    parts = [
+        _renamed(place, each, file)
+        for place, (each, file) in enumerate(zip(demands, files, strict=True))
+        if file is not None
+    ]
     if len(parts) < len(files):
         return None
     names = dict.fromkeys(name for each in demands for name in each.names.values())
@@ -38,18 +50,18 @@ def text(demands: Sequence[Demand], style: str) -> str | None:
 
 def _file(demand: Demand, style: str) -> str | None:
     """What the generator wrote for such a requirement, with this bound in its counters."""
-    for each in (style, "library") if style == "counter" else (style,):
-        path = _FOLDER / f"{demand.kind.lower()}_{each}.c"
-        if path.is_file():
-            found = path.read_text(encoding="utf-8")
-            usual = BOUNDS.get(demand.kind, 0)
-            if demand.bound == usual:
-                return found
-            if each == "library":
-                return None
-            shifted = lambda m: f"(int32_t)({int(m[1]) + demand.bound - usual})"
-            return re.sub(rf"\(int32_t\)\(({usual - 1}|{usual}|{usual + 1})\)", shifted, found)
-    return None
+    usual = BOUNDS.get(demand.kind, 0)
+    counter, library = (
+        _FOLDER / f"{demand.kind.lower()}_{each}.c" for each in ("counter", "library")
+    )
+    if style == "library" or not counter.is_file():
+        return library.read_text(encoding="utf-8") if demand.bound == usual else None
+
+    def shifted(number: re.Match[str]) -> str:
+        return f"(int32_t)({int(number[1]) + demand.bound - usual})"
+
+    numbers = rf"\(int32_t\)\(({usual - 1}|{usual}|{usual + 1})\)"
+    return re.sub(numbers, shifted, counter.read_text(encoding="utf-8"))
 
 
 def _renamed(place: int, demand: Demand, found: str) -> str:

@@ -73,7 +73,9 @@ def single(kind: str, bound: int | None = None) -> Task:
     names = {name: name for name in workload.signals}
     demand = Demand("R1", kind, names, BOUNDS.get(kind, 0) if bound is None else bound)
     name = kind if bound is None else f"{kind}, a bound of {bound:,}"
-    return Task(name, [demand], np.stack([columns[each] for each in _propositions([demand])], axis=1))
+    return Task(
+        name, [demand], np.stack([columns[each] for each in _propositions([demand])], axis=1)
+    )
 
 
 def many(count: int) -> Task:

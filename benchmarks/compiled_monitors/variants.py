@@ -1,4 +1,4 @@
-"""A monitor as a program: its own files, and the loop that calls it. Nothing is inlined across files."""
+"""A monitor as a program: its files, and the loop that calls it. C is not inlined across files."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from benchmarks.compiled_monitors import copilot_files
@@ -41,15 +42,17 @@ class Variant:
 
 def variants() -> list[Variant]:
     """Those whose compilers are installed."""
+    styles: Mapping[str, Callable[[Task], Mapping[str, str] | None]] = {
+        "fretc C": _emitted,
+        "by hand": _by_hand,
+        "Copilot, library": partial(_copilot, style="library"),
+        "Copilot, counters": partial(_copilot, style="counter"),
+    }
     found = [
-        Variant(f"{name}, {cc}", cc, lambda task, folder, files=files, cc=cc: _c(task, folder, files, cc))
-        for name, files in (
-            ("fretc C", _emitted), ("by hand", _by_hand),
-            ("Copilot, library", lambda task: _copilot(task, "library")),
-            ("Copilot, counters", lambda task: _copilot(task, "counter")),
-        )
+        Variant(f"{name}, {cc}", cc, partial(_c, files=files, cc=cc))
+        for name, files in styles.items()
         for cc in ("gcc", "clang")
-    ]  # fmt: skip
+    ]
     found.append(Variant("fretc Rust", "rustc", _rust))
     return [each for each in found if shutil.which(each.compiler) and shutil.which("gcc")]
 
@@ -80,7 +83,7 @@ def _linked(folder: Path, monitor: str, objects: Sequence[str]) -> Program:
 
 
 def _loop(start: str, reset: str, tick: str, finite: Sequence[str], size: str, width: int) -> str:
-    """C that calls a monitor: reads the truth of the first demand at each tick, of all at the end."""
+    """C that calls a monitor, and reads the first demand at each tick, all at the end."""
     return f"""#include <stddef.h>
 #include <stdint.h>
 {start}

@@ -23,7 +23,7 @@ static inline void r1_advance(r1_rail *rail, const r1_literals *now, r1_outcomes
 {
     fretc_reading *reading;
     /* !stopped S (too_close & !stopped) */
-    rail->since_1 = (now->is_too_close && now->not_stopped) || (now->not_stopped && rail->since_1);
+    rail->since_1 = (now->is_too_close & now->not_stopped) | (now->not_stopped & rail->since_1);
     /* R1 */
     reading = possible ? &outcomes->r1.possible : &outcomes->r1.certain;
     reading->left = -1;
