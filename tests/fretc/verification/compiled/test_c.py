@@ -190,7 +190,7 @@ def test_faults_are_refuted_or_refused_or_of_no_effect(sentence: str, tmp_path: 
         found[kind] += 1
         if kind == SAME:
             folder = tmp_path / str(found[SAME])
-            folder.mkdir()
+            folder.mkdir(exist_ok=True)
             texts = {**source.texts, source.source: wrong}
             program = compiled(folder, "gcc", replace(source, texts=texts), flags=["-std=c99"])
             machine = load("r1", text(one))

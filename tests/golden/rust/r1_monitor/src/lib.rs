@@ -112,6 +112,7 @@ impl Rail {
         }
     }
 
+    #[inline(always)]
     fn advance(&mut self, now: &Literals) -> [Reading; 1] {
         // !stopped S (too_close & !stopped)
         self.since_1 = (now.is_too_close & now.not_stopped) | (now.not_stopped & self.since_1);
