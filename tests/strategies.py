@@ -13,6 +13,7 @@ from compiler.logic import formula as f
 from fretish import expressions as e
 from fretish import syntax as s
 from tests import meaning
+from tests.effort import FULL
 
 # Templates -----------------------------------------------------------------------------------
 
@@ -75,7 +76,10 @@ class Template:
         return meaning.satisfied(self.scope, self.condition, self.timing, self.n, m, p, q, s)
 
 
-def templates(counts: tuple[int, ...] = (0, 1, 2, 3)) -> Iterator[Template]:
+COUNTS = (0, 1, 2, 3) if FULL else (0, 2)
+
+
+def templates(counts: tuple[int, ...] = COUNTS) -> Iterator[Template]:
     """Every template, those that count with each of the counts."""
     for scope in meaning.SCOPES:
         for condition in meaning.CONDITIONS:

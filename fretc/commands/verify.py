@@ -273,12 +273,13 @@ def _proofs(project: Project, request: Request) -> Sequence[Proof]:
         proofs = prove(project, request)
     except NotAMonitorError as error:
         assert request.monitor is not None
+        language = language_of(request.monitor.name)
         stop(
             Diagnostic(
                 Code.BAD_MONITOR,
                 f"`{request.monitor.name}` is no generated monitor: {error}",
                 request.monitor.span(0, 0),
-                help="name a file that `--emit monitor` wrote",
+                help=f"name a file that `--emit {language.emit if language else 'monitor'}` wrote",
             )
         )
     if isinstance(proofs, Diagnostic):

@@ -7,13 +7,15 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.parser import parse
+from tests.effort import FULL
 from tests.fuzzing import check, sentences
 
 
 @pytest.mark.slow
-def test_ten_thousand_near_sentences_get_a_formula_or_a_diagnostic() -> None:
-    accepted = sum(check(text) for text in sentences(10_000, seed=20))
-    assert 2_000 < accepted < 8_000
+def test_near_sentences_get_a_formula_or_a_diagnostic() -> None:
+    many = 10_000 if FULL else 3_000
+    accepted = sum(check(text) for text in sentences(many, seed=20))
+    assert many / 5 < accepted < many / 5 * 4
 
 
 def read(response: str) -> object:

@@ -62,6 +62,10 @@ class Grammar:
         return len(tokens) == 3 and tokens[2] in self.members.get((tokens[0], tokens[1]), ())
 
 
+_CALLS = ("(", "!")
+"""What makes a name a call, or a macro of Rust."""
+
+
 class Flow:
     """The step as far as it is read."""
 
@@ -82,11 +86,11 @@ class Flow:
         """
         names, place, grammar = set[str](), 0, self._grammar
         while place < len(value):
-            name, after = value[place], value[place + 1 : place + 2]
+            name, after = (*value[place : place + 2], "")[:2]
             if grammar.is_member(value[place : place + 3]):
                 names.add(value[place + 2])
                 place += 3
-            elif name in self._local and after not in (["("], ("(",)):
+            elif name in self._local and after not in _CALLS:
                 names.add(name)
                 place += 1
             elif name in _JOINS and not _is_value(value[place - 1 : place]):
@@ -125,6 +129,7 @@ class Flow:
 
     def tell(
         self,
+        outcomes: Sequence[str],
         given: Sequence[Fields],
         own: Sequence[Fields],
         expression: Callable[[str, Tokens], Tokens] = lambda _, value: value,
@@ -132,6 +137,7 @@ class Flow:
         """What is read of each requirement, at the end.
 
         Args:
+            outcomes: their names.
             given: the fields of each outcome.
             own: those that fretc writes: their names must be the same.
             expression: what a field's value is made of.
@@ -141,9 +147,9 @@ class Flow:
         """
         if self.conditions or [*map(_names, given)] != [*map(_names, own)]:
             raise strange([token for fields in given for _, value in fields for token in value])
-        for place, fields in enumerate(given):
+        for outcome, fields in zip(outcomes, given, strict=True):
             for name, value in fields:
-                self.change([f"&{place}"], self.names(expression(name, value), value))
+                self.change([f"&{outcome}"], self.names(expression(name, value), value))
 
 
 def _is_value(before: Sequence[str]) -> bool:

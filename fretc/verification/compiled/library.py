@@ -8,6 +8,7 @@ they leave out is seen.
 from __future__ import annotations
 
 import ctypes
+import hashlib
 import struct
 from collections.abc import Hashable, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,7 +19,7 @@ from typing import Any
 from compiler.formalization.letters import Valuation
 from fretc.verification.compiled.plan import Plan
 from fretc.verification.compiled.readings import VERDICTS, Reading, judged
-from fretc.verification.compiled.tools import ToolError
+from fretc.verification.compiled.tools import Binary, ToolError
 from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.rails import Letter
 from monitors.kernel.verdicts import Truth
@@ -55,6 +56,15 @@ class LibraryFile:
             yield Library(self, plan)
         except OSError as error:
             raise ToolError(f"the library cannot be used: {error}") from None
+
+
+def saved(
+    binary: Binary, folder: Path, base: str, cells: tuple[str, ...]
+) -> tuple[LibraryFile, str]:
+    """The library in a folder of its own, and its SHA-256."""
+    path = folder / "monitor.so"
+    path.write_bytes(binary.data)
+    return LibraryFile(path, base, cells), hashlib.sha256(binary.data).hexdigest()
 
 
 class Library:

@@ -14,6 +14,7 @@ from fretc.verification.compiled.flow import Form
 from fretc.verification.compiled.text import StrangeTextError
 from fretc.verification.monitor.equivalence import Machine
 from fretc.verification.monitor.rails import Letter, Stepping
+from fretc.verification.monitor.verifying import NotAMonitorError
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +59,8 @@ class Checked:
     form: Form
     cells: tuple[str, ...]
     """All of a rail."""
-    base: str = ""
-    """What the names of functions begin with, where they have names of their own."""
+    inputs: tuple[str, ...]
+    """The names of the propositions in the text, in their order."""
 
     def plan(self, rule: Formalized) -> Plan:
         """Where a requirement is.
@@ -71,7 +72,8 @@ class Checked:
         if rule.id not in ids:
             raise StrangeTextError("the monitor is of other requirements")
         place, own = ids.index(rule.id), atoms(rule)
-        part, names = self.form.part(self.outcomes[place]), inputs(self.rules)
+        part = self.form.part(self.outcomes[place])
+        names = tuple(dict.fromkeys(name for each in self.rules for name in each.watched))
         if not {names[i] for i in part.inputs} <= {*own}:
             raise StrangeTextError(f"{rule.id} depends on what its sentence does not speak of")
         places = tuple(names.index(name) if name in names else -1 for name in own)
@@ -106,9 +108,8 @@ class Executable(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A text that was checked, with what it takes to run it; nothing of it has run."""
+    """A text that was checked, as it is to run."""
 
-    checked: Checked
     executable: Executable
     engine: str
     """What compiled it or is to run it, with version and flags."""
@@ -122,19 +123,28 @@ class Language(Protocol):
     def tool(self) -> str | None:
         """The path of the program that compiles or runs; None: none is installed."""
 
-    def prepared(
-        self, program: str, given: Given, rules: Sequence[Formalized], folder: Path
-    ) -> Prepared:
-        """The text, checked and then compiled.
+    def checked(self, given: Given, rules: Sequence[Formalized]) -> Checked:
+        """The text in the form that fretc writes.
+
+        Args:
+            given: it.
+            rules: those that it may implement.
+
+        Raises:
+            NotAMonitorError: it names no requirement.
+            StrangeTextError: it has another form.
+        """
+
+    def prepared(self, program: str, given: Given, checked: Checked, folder: Path) -> Prepared:
+        """The text, compiled; nothing of it has run.
 
         Args:
             program: that of `tool`.
             given: the text.
-            rules: those that it may implement.
+            checked: what `checked` has said of it.
             folder: where files are put that the executable needs.
 
         Raises:
-            StrangeTextError: it is not in the form that fretc writes.
             ToolError: the program does not take it.
         """
 
@@ -144,20 +154,19 @@ def atoms(rule: Formalized) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*atoms_of(rule.sentence), *rule.watched)))
 
 
-def inputs(rules: Sequence[Formalized]) -> tuple[str, ...]:
-    """The propositions of a monitor of all of these rules, in their order."""
-    return tuple(dict.fromkeys(name for each in rules for name in each.watched))
-
-
 def implemented(ids: Sequence[str], rules: Sequence[Formalized]) -> tuple[Formalized, ...]:
     """The rules with the ids that a text tells.
 
     Raises:
-        StrangeTextError: one of them is not there, or there is no id.
+        NotAMonitorError: there is none.
+        StrangeTextError: one of them is not there.
     """
     by_id = {each.id: each for each in rules}
-    missing = [id for id in ids if id not in by_id]
-    if missing or not ids:
-        which = f"it has {missing[0]}, which" if missing else "it names no requirement that"
-        raise StrangeTextError(f"{which} is not among the requirements that are read")
+    if not ids:
+        raise NotAMonitorError("it names no requirement")
+    for id in ids:
+        if id not in by_id:
+            raise StrangeTextError(
+                f"it has {id}, which is not among the requirements that are read"
+            )
     return tuple(by_id[id] for id in dict.fromkeys(ids))

@@ -9,6 +9,21 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+
+class Token(str):
+    """A token that knows its place."""
+
+    __slots__ = ("line",)
+    line: int
+
+    @classmethod
+    def at(cls, text: str, line: int) -> Token:
+        """A token of this line."""
+        token = cls(text)
+        token.line = line
+        return token
+
+
 Tokens = tuple[str, ...]
 
 NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
@@ -42,17 +57,17 @@ class Lexis:
             raise StrangeTextError(
                 f"line {_line(text, moving.start())} ends elsewhere than it seems"
             )
-        found, place = list[str](), 0
+        found, place, line = list[str](), 0, 1
         while place < len(text):
             match = self.token.match(text, place)
             if match is None:
-                line = _line(text, place)
                 raise StrangeTextError(f"line {line} has `{text[place : place + 1]!a}`")
             if match["gap"] is None:
-                found.append(match[0])
+                found.append(Token.at(match[0], line))
             elif "\n" in match[0] and found and found[-1] in self.line_bound:
-                found.append("\n")
+                found.append(Token.at("\n", line))
             place = match.end()
+            line += match[0].count("\n")
         return tuple(found)
 
 
@@ -63,7 +78,8 @@ def _line(text: str, place: int) -> int:
 def strange(statement: Sequence[str]) -> StrangeTextError:
     """Of a statement that fretc would not write."""
     words = " ".join(statement).replace("\n", "\\n")
-    return StrangeTextError(f"it is not laid out as fretc writes it: `{words[:80]}`")
+    line = next((f"line {token.line}" for token in statement if isinstance(token, Token)), "it")
+    return StrangeTextError(f"{line} is not laid out as fretc writes it: `{words[:80]}`")
 
 
 def same(given: Tokens, written: Tokens) -> None:

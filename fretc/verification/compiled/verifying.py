@@ -21,12 +21,12 @@ from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
 from compiler.logic.orders import only_possible
 from compiler.targets.python import monitor as python
 from fretc.verification.compiled.plan import (
+    Checked,
     Executable,
     Given,
     Language,
     Machines,
     Plan,
-    Prepared,
     atoms,
 )
 from fretc.verification.compiled.readings import NAMES, PythonRail
@@ -71,23 +71,26 @@ def verified(
     artefacts = {name: sha256(text) for name, text in given.texts.items()}
     with TemporaryDirectory(prefix="fretc-") as folder, Session(limits) as session:
         try:
-            found = language.prepared(program, given, (*rules, *others), Path(folder))
+            checked = language.checked(given, (*rules, *others))
+            found = language.prepared(program, given, checked, Path(folder))
         except (StrangeTextError, ToolError) as error:
             for rule in rules:
                 yield Examined(rule, not_checked(str(error)), "", artefacts)
             return
         artefacts.update(found.artefacts)
         for rule in rules:
-            outcome = _confined(rule, found, session)
+            outcome = _confined(rule, checked, found.executable, session)
             yield Examined(rule, outcome, found.engine, artefacts)
 
 
-def _confined(rule: Formalized, found: Prepared, session: Session) -> Outcome:
+def _confined(
+    rule: Formalized, checked: Checked, executable: Executable, session: Session
+) -> Outcome:
     try:
-        plan = found.checked.plan(rule)
+        plan = checked.plan(rule)
     except StrangeTextError as error:
         return not_checked(str(error))
-    outcome = session.call(explored, rule, found.executable, plan, MOST_STATES)
+    outcome = session.call(explored, rule, executable, plan, MOST_STATES)
     if isinstance(outcome, Stopped):
         return not_checked(f"{outcome.reason}; so may end what the text must not do")
     return outcome

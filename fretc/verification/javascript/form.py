@@ -43,7 +43,13 @@ _FREE: tuple[Tokens, ...] = (("function", "rail"), ("function", "advance"))
 _READ = re.compile(r"const (\w+) = truths \[ (\d+) \] === null")
 
 
-def formed(text: str, written: str, cells: Sequence[str], windows: Collection[str]) -> Form:
+def formed(
+    text: str,
+    written: str,
+    cells: Sequence[str],
+    windows: Collection[str],
+    outcomes: Sequence[str],
+) -> Form:
     """The form of a text of a module.
 
     Args:
@@ -51,6 +57,7 @@ def formed(text: str, written: str, cells: Sequence[str], windows: Collection[st
         written: what fretc writes for the same requirements.
         cells: of a rail, all.
         windows: those among them that are windows.
+        outcomes: names for them.
 
     Raises:
         StrangeTextError: it has another form.
@@ -69,7 +76,7 @@ def formed(text: str, written: str, cells: Sequence[str], windows: Collection[st
         step.read(statement)
     step.conditions = []
     told, own_told = statements[place][4:], own_statements[own_place][4:]
-    step.tell(records(told, ("{",)), records(own_told, ("{",)))
+    step.tell(outcomes, records(told, ("{",)), records(own_told, ("{",)))
     same(_joined(statements[place + 1 :]), _joined(own_statements[own_place + 1 :]))
     return Form(step.sources, literals)
 

@@ -9,6 +9,7 @@ part of the text that is as fretc writes it, and looks at differences alone.
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -16,7 +17,7 @@ from dataclasses import dataclass, field
 from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NamedTuple
 
 from compiler.formalization.letters import Valuation
 from fretc.verification.compiled.plan import Plan
@@ -27,6 +28,8 @@ from fretc.verification.monitor.rails import Letter
 from monitors.kernel.verdicts import Truth
 
 FLAGS = ("--disallow-code-generation-from-strings",)
+_ENDING = 10.0
+"""Seconds in which a process is gone that has closed its output."""
 _TRUTHS: tuple[Truth, ...] = (False, True, None)
 _EXPLORER = """
 import { createInterface } from "node:readline";
@@ -89,7 +92,12 @@ function search({ outcome, cells, windows, ages, rails, letters }) {
   const outcomeOf = (tick, { certain, possible, verdict, finite }) => {
     const of = { certain, possible };
     const parts = RAILS.map((name) => reading(of[name], machine[name].marks[outcome], tick));
-    const key = JSON.stringify([...parts, String(verdict), code(finite)]);
+    const facts = RAILS.map((name) => {
+      const { broken, doomed } = machine[name].marks[outcome];
+      return [broken >= 0, doomed >= 0, of[name].fails];
+    });
+    const isReal = facts[0].every((fact, i) => !fact || facts[1][i]);
+    const key = JSON.stringify([...parts, String(verdict), code(finite), isReal]);
     if (!readings.has(key)) {
       readings.set(key, readings.size);
       told.push(key);
@@ -230,12 +238,24 @@ class Node:
             self._process.stdin.flush()
         line = self._process.stdout.readline()
         if not line.endswith(b"\n"):
-            self._process.kill()
-            self._process.wait()
+            with suppress(subprocess.TimeoutExpired):
+                if self._process.wait(_ENDING) == -signal.SIGXCPU:
+                    raise ToolError("out of time: Node took as many seconds of a processor")
             text = self._errors.read_text(encoding="utf-8", errors="replace")
             lines = (each for each in text.splitlines() if "Error" in each or "FATAL" in each)
             raise ToolError(f"Node does not run it: {next(lines, 'it gives no reason')}")
         return json.loads(line)
+
+
+class Told(NamedTuple):
+    """What is told after a step."""
+
+    rails: tuple[Reading, Reading]
+    """What holds for certain, and what may hold."""
+    verdicts: tuple[object, Truth | str]
+    is_real: bool
+    """Whether what is certain is possible, too: a rail that goes on from wherever it is may be in
+    no state that it can have at this tick."""
 
 
 @dataclass(slots=True)
@@ -246,16 +266,15 @@ class Table:
     letters: Mapping[Letter, int]
     rows: list[list[tuple[int, int]]] = field(default_factory=list)
     """Of each state and letter the next state, and the number of what is told."""
-    outcomes: list[tuple[Reading, Reading, tuple[object, Truth | str]]] = field(
-        default_factory=list
-    )
+    outcomes: list[Told] = field(default_factory=list)
 
     def take(self, answer: Any) -> None:
         """The steps of further states."""
         self.rows += answer["rows"]
-        for certain, possible, verdict, finite in answer["told"]:
+        for certain, possible, verdict, finite, is_real in answer["told"]:
             truth: Truth | str = _TRUTHS[finite] if finite >= 0 else "no truth value"
-            self.outcomes.append((Reading(*certain), Reading(*possible), (verdict, truth)))
+            rails = Reading(*certain), Reading(*possible)
+            self.outcomes.append(Told(rails, (verdict, truth), is_real))
 
     def step(self, state: int, letter: Letter) -> tuple[int, int]:
         """The next state, and the number of what is told."""
@@ -282,7 +301,7 @@ class Judging:
     def step(self, letter: Valuation) -> Judgement:
         """The verdict that it tells, and FRET's finite one."""
         self._state, told = self._table.step(self._state, letter)
-        _, _, (verdict, finite) = self._table.outcomes[told]
+        verdict, finite = self._table.outcomes[told].verdicts
         return str(verdict), finite is True
 
 
@@ -300,14 +319,6 @@ class TableRail:
     def step(self, state: int, letter: Letter) -> tuple[object, ...]:
         """What it tells one tick after a state, and whether the verdict follows from both rails."""
         self._state, number = self._table.step(state, letter)
-        certain, possible, told = self._table.outcomes[number]
-        reading = possible if self._rail else certain
-        return (*reading, not _is_real(certain, possible) or told == judged(certain, possible))
-
-
-def _is_real(certain: Reading, possible: Reading) -> bool:
-    """Whether both may be of one tick: what holds for certain may hold.
-
-    The other rail may be in a state that it cannot have at this tick.
-    """
-    return certain.violated <= possible.violated and certain.failed <= possible.failed
+        told = self._table.outcomes[number]
+        follows = not told.is_real or told.verdicts == judged(*told.rails)
+        return (*told.rails[self._rail], follows)

@@ -18,6 +18,8 @@ class Row:
     name: str
     suffixes: tuple[str, ...]
     """Of its files."""
+    emit: str
+    """The kind of `--emit` that writes it."""
     room: str
     """The package below `fretc.verification`."""
     missing: str
@@ -38,6 +40,7 @@ TABLE = (
         "C",
         (".c",),
         "c",
+        "c",
         "compiled for its proof, and there is none of `gcc`, `clang`, `cc`",
         "install a C compiler, as with `apt install gcc`",
         "the binary is what was proved",
@@ -46,6 +49,7 @@ TABLE = (
         "Rust",
         (".rs",),
         "rust",
+        "rust",
         "compiled for its proof, and there is no `rustc`",
         "install Rust: see rustup.rs, or `apt install rustc`",
         "the binary is what was proved",
@@ -53,10 +57,11 @@ TABLE = (
     Row(
         "JavaScript",
         (".mjs", ".js"),
+        "js",
         "javascript",
         "run for its proof, and there is no `node`",
         "install Node.js: see nodejs.org, or `apt install nodejs`",
-        "JavaScript means the same everywhere: it was run by",
+        "other engines run the text as this one did",
     ),
 )
 

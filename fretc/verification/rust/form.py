@@ -44,7 +44,13 @@ _DEADLINE = (("u32 :: try_from (", "("), (") . ok ( )", ")"), ("None", "0"))
 """What only the ticks to a deadline have, and expressions that depend on the same."""
 
 
-def formed(text: str, written: str, cells: Sequence[str], inputs: Sequence[str]) -> Form:
+def formed(
+    text: str,
+    written: str,
+    cells: Sequence[str],
+    inputs: Sequence[str],
+    outcomes: Sequence[str],
+) -> Form:
     """The form of a text of a library.
 
     Args:
@@ -52,6 +58,7 @@ def formed(text: str, written: str, cells: Sequence[str], inputs: Sequence[str])
         written: what fretc writes for the same requirements.
         cells: the fields of a rail.
         inputs: those of the inputs.
+        outcomes: those of the outcomes.
 
     Raises:
         StrangeTextError: it has another form.
@@ -69,7 +76,7 @@ def formed(text: str, written: str, cells: Sequence[str], inputs: Sequence[str])
     for statement in statements:
         step.read(statement)
     head = ("Reading", "{")
-    step.tell(records(last, head), records(readings, head), _of_deadline)
+    step.tell(outcomes, records(last, head), records(readings, head), _of_deadline)
     return Form(step.sources, literals)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,41 +9,41 @@ from pathlib import Path
 from compiler.formalization.formalized import Formalized
 from compiler.targets.rust.monitor import TARGET
 from compiler.targets.target import Options
-from fretc.verification.compiled.library import LibraryFile
+from fretc.verification.compiled.library import saved
 from fretc.verification.compiled.plan import Checked, Given, Prepared, implemented
 from fretc.verification.rust.build import BASE, built, compiler
 from fretc.verification.rust.form import formed
 
-_OUTCOMES = re.compile(r"^    /// (.*)\n    pub (\w+): Outcome,$", re.MULTILINE)
+_OUTCOMES = re.compile(r"^[ \t]+/// (.*)\n[ \t]+pub (\w+): Outcome,$", re.MULTILINE)
 """The fields of that struct, and the ids above them."""
 
 tool = compiler
 
 
-def prepared(program: str, given: Given, rules: Sequence[Formalized], folder: Path) -> Prepared:
-    """The library; nothing of it has run.
+def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
+    """The text in the form that fretc writes.
 
     Raises:
-        StrangeTextError: the text is not in the form that fretc writes.
-        ToolError: the compiler does not take it.
+        StrangeTextError: it has another form.
     """
     own_rules = implemented([id for id, _ in _OUTCOMES.findall(given.text)], rules)
     files = TARGET.emit(own_rules, Options(one_file=True))
     own = next(file.text for file in files if file.path.name == "lib.rs")
     cells, inputs = _fields(own, "struct Rail"), _fields(own, "pub struct Inputs")
-    fields = tuple(name for _, name in _OUTCOMES.findall(own))
-    form = formed(given.text, own, cells, inputs)
-    binary = built(program, given.text, cells, inputs, fields)
-    path = folder / "monitor.so"
-    path.write_bytes(binary.data)
-    places = tuple(map(str, range(len(fields))))
-    digest = hashlib.sha256(binary.data).hexdigest()
-    return Prepared(
-        Checked(own_rules, places, form, cells),
-        LibraryFile(path, BASE, cells),
-        binary.engine,
-        {f"{Path(given.name).stem}.so": digest},
-    )
+    outcomes = tuple(name for _, name in _OUTCOMES.findall(own))
+    form = formed(given.text, own, cells, inputs, outcomes)
+    return Checked(own_rules, outcomes, form, cells, inputs)
+
+
+def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prepared:
+    """The library; nothing of it has run.
+
+    Raises:
+        ToolError: the compiler does not take the text.
+    """
+    binary = built(program, given.text, checked.cells, checked.inputs, checked.outcomes)
+    library, digest = saved(binary, folder, BASE, checked.cells)
+    return Prepared(library, binary.engine, {f"{Path(given.name).stem}.so": digest})
 
 
 def _fields(text: str, struct: str) -> tuple[str, ...]:

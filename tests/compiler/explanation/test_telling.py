@@ -6,7 +6,7 @@ import pytest
 
 from tests.demands import demands_of
 from tests.meaning import SCOPES
-from tests.monitoring import monitor, over
+from tests.monitoring import monitor, over, steps
 from tests.strategies import templates
 
 LENGTH, TRACES = 9, 15
@@ -30,6 +30,8 @@ def test_triggers_answers_violations_and_open_demands_are_those_of_the_definitio
             assert found.violations == expected.violations, (template, columns)
             if expected.open is not None:
                 assert found.open == expected.open, (template, columns)
+                steps(machine, columns)
+                assert machine.standings()[0].owed is bool(expected.open), (template, columns)
 
 
 def test_a_response_after_the_interval_is_no_answer() -> None:

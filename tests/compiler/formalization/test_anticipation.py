@@ -9,6 +9,7 @@ import pytest
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Result
 from fretc.verification.monitor.verifying import verified
+from tests.effort import FULL
 from tests.meaning import SCOPES
 from tests.monitoring import emitted, monitor, rule, steps
 from tests.spot_monitors import Ltl3
@@ -94,7 +95,7 @@ def counted() -> Iterator[tuple[str, int]]:
 @pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_parts_that_share_atoms_are_decided_at_the_earliest_tick(scope: str) -> None:
-    for condition, (timing, n), draw in product(WHEN, counted(), range(2)):
+    for condition, (timing, n), draw in product(WHEN, counted(), range(2 if FULL else 1)):
         sentence = sharing(scope, condition, timing, n, f"{scope} {condition} {timing} {n} {draw}")
         check(sentence, rule(sentence), ("a", "b"), 6)
 

@@ -26,6 +26,7 @@ from monitors.kernel import Monitor
 from monitors.kernel.stepping import Standing
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
+from tests.effort import FULL, some
 from tests.monitoring import over, rule, with_step
 
 SENTENCES = (
@@ -294,7 +295,7 @@ def test_a_mistake_in_a_text_is_found_or_changes_nothing(sentence: str) -> None:
     made = rule(sentence)
     judge = Judge(made)
     found: Counter[str] = Counter()
-    for kind, text in of_text(target.text(made)):
+    for kind, text in some(of_text(target.text(made)), 3):
         result = judge.kind(text)
         found[result] += 1
         if result == SAME:
@@ -302,8 +303,8 @@ def test_a_mistake_in_a_text_is_found_or_changes_nothing(sentence: str) -> None:
     assert judge.kind(target.text(made)) == SAME
     assert found[TOLD] == 0, "what is proved tells the same as the right one"
     assert found[SAME] <= 0.17 * found.total(), found
-    assert found[REFUTED] >= 5, found
-    assert found[DIFFERS] >= 10, found
+    assert found[REFUTED] >= (5 if FULL else 1), found
+    assert found[DIFFERS] >= (10 if FULL else 3), found
 
 
 @pytest.mark.slow
@@ -313,14 +314,14 @@ def test_a_mistake_in_a_formula_is_found_or_proved_to_change_nothing(sentence: s
     made = rule(sentence)
     judge = Judge(made)
     found: Counter[str] = Counter()
-    for kind, watch in of_watch(made.watch):
+    for kind, watch in some(of_watch(made.watch), 2):
         result = judge.kind(target.text(replace(made, watch=watch)))
         assert result in (REFUTED, DIFFERS, REFUSED, SAME), (kind, watch)
         found[result] += 1
         if result in (REFUSED, SAME):
             assert kind.partition(": ")[2] == "weak, strong" or kind.startswith("doom"), kind
     assert found[REFUSED] + found[SAME] <= 0.2 * found.total(), found
-    assert found[REFUTED] >= 5, found
+    assert found[REFUTED] >= (5 if FULL else 2), found
 
 
 def test_the_sentences_have_every_kind_of_line_and_of_demand() -> None:

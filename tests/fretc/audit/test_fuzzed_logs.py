@@ -29,7 +29,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.loading import load
 from tests.fretc.logs.logs import LZ4, MS, NONE, ZSTD, S, Sent, number, payload, scan, write
 
-MANY = settings(max_examples=max(25, settings().max_examples // 10))
+MANY = settings(max_examples=max(12, settings().max_examples // 10))
 BINDINGS = """
 [clock]
 time = "log_time"

@@ -672,6 +672,9 @@ class Standing(NamedTuple):
     new one replaces it (`for`, `next`)."""
     deadline: int | None
     """The last tick at which that can be decided; None where there is no deadline."""
+    owed: Truth
+    """Whether a demand is open: a driver stops unless this is False. None before the first tick,
+    and where an unknown value decides it. What only forbids (`always`, `until`) owes nothing."""
 
 
 _PIECE, _FEW, _SOON = 4096, 64, 64
@@ -741,7 +744,7 @@ class Monitor:
     def standings(self) -> tuple[Standing, ...]:
         """The standing of each requirement."""
         if self.tick < 0:
-            nothing = (Verdict.NO_DATA, None, None, None, None)
+            nothing = (Verdict.NO_DATA, None, None, None, None, None)
             return tuple(Standing(r.id, *nothing) for r in self.REQUIREMENTS)
         readings = zip(
             self.must.marks(),
@@ -918,13 +921,15 @@ def _standing(
     deadline = None
     if opened is not None and requirement.horizon is not None:
         deadline = opened + requirement.horizon
+    owed = truth(certain.owed, possible.owed)
     return Standing(
         requirement.id,
-        at_end(violated, truth(certain.owed, possible.owed), truth(must.last >= 0, may.last >= 0)),
+        at_end(violated, owed, truth(must.last >= 0, may.last >= 0)),
         finite_verdict(broken, truth(certain.fails, possible.fails)),
         must.violated if must.violated >= 0 else None,
         opened,
         deadline,
+        owed,
     )
 
 

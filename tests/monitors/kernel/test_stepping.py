@@ -1,5 +1,6 @@
 """Stepping generated monitors: pieces, unknowns, checkpoints, and what a mistake leaves behind."""
 
+import itertools
 import json
 import random
 from collections.abc import Callable, Iterator, Mapping
@@ -298,6 +299,29 @@ def test_rails_stay_two_where_a_violation_is_possible() -> None:
     machine.advance([(True, None), *[(False, True)] * 9_000])
     assert machine.may is not machine.must
     assert machine.standings()[0].finite is None
+
+
+def test_nothing_is_known_to_be_owed_before_the_first_tick() -> None:
+    assert monitor("whenever p sw shall eventually satisfy q").standings()[0].owed is None
+
+
+@pytest.mark.parametrize("sentence", SENTENCES[:4])
+def test_what_is_owed_holds_whatever_the_unknown_values_are(sentence: str) -> None:
+    """A definite answer is that of each completion; unknown values leave some of them open."""
+    machine, known = monitor(sentence), monitor(sentence)
+    seen = set()
+    for seed in range(60):
+        table = rows(machine, 5, seed, 0.2)
+        machine.reset()
+        machine.advance(table)
+        owed = machine.standings()[0].owed
+        choices = [(True, False) if value is None else (value,) for row in table for value in row]
+        for values in itertools.islice(itertools.product(*choices), 128):
+            known.reset()
+            known.advance(zip(*[iter(values)] * len(table[0]), strict=True))
+            assert owed in (None, known.standings()[0].owed)
+        seen.add(owed)
+    assert seen == {True, False, None}
 
 
 @pytest.mark.parametrize("after", [100, 500])

@@ -4,7 +4,6 @@ import random
 from collections.abc import Sequence
 
 import pytest
-from hypothesis import settings
 
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.formula import atoms
@@ -15,6 +14,7 @@ from fretc.analysis.games.game import Game, Letter
 from fretc.analysis.games.plays import Counterstrategy, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches
 from fretc.analysis.stage import Stage
+from tests.effort import FULL
 from tests.requirement_sets import (
     assumed,
     drawn,
@@ -25,7 +25,7 @@ from tests.requirement_sets import (
     synthesized,
 )
 
-SETS = 5_000 if settings.default and settings.default.max_examples > 1_000 else 250
+SETS = 5_000 if FULL else 250
 """With `--hypothesis-profile=full` it takes two minutes."""
 ENDLESS = Budget(float("inf"))
 

@@ -29,6 +29,7 @@ from fretc.report.traceability.lock import read as read_lock
 from fretc.report.traceability.lock import text as lock_text
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
+from tests.effort import FULL
 
 MS, START = 10**6, 10**9
 IDS = ("R1", "R2", "R3")
@@ -425,6 +426,15 @@ CHANGES = {
     for change in changes
 }
 
+NOTHING = [name for name, one in CHANGES.items() if not (one.touches or one.respelt)]
+GROUPS = len(NOTHING) if FULL else 8
+TOGETHER = [tuple(NOTHING[i::GROUPS]) for i in range(GROUPS)]
+"""Made one after the other in quick tests: what changes nothing changes nothing beside others."""
+REACHING = {name: one for name, one in CHANGES.items() if name not in NOTHING}
+KINDS = {(one.touches, one.of_audit, one.respelt): name for name, one in REACHING.items()}
+AUDITED = REACHING if FULL else {*KINDS.values()}
+"""After which there is a new audit: quick tests make one of each kind."""
+
 
 # What is said -----------------------------------------------------------------------------------
 
@@ -497,19 +507,32 @@ def asked(fretc: Fretc) -> Said:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", CHANGES)
+@pytest.mark.parametrize("name", REACHING)
 def test_a_change_reaches_what_is_made_of_it_and_nothing_else(reviewed: Fretc, name: str) -> None:
-    change = CHANGES[name]
+    change = REACHING[name]
     change.make()
+    held(reviewed, change, audited=False)
+    if name in AUDITED:
+        reviewed("audit", "logs", *ONE_PROCESS)
+        held(reviewed, change, audited=True)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("names", TOGETHER, ids="; ".join)
+def test_what_changes_nothing_reaches_nothing(reviewed: Fretc, names: tuple[str, ...]) -> None:
+    for name in names:
+        CHANGES[name].make()
     for audited in (False, True):
         if audited:
             reviewed("audit", "logs", *ONE_PROCESS)
-        answers = asked(reviewed)
-        assert answers.stale == dict.fromkeys(("check", "report"), change.stale(audited))
-        assert answers.suspect == dict.fromkeys(
-            ("diff", "check", "report"), change.suspect(audited)
-        )
-        assert answers.differs == change.differs(audited)
+        held(reviewed, changed("; ".join(names), lambda: None), audited)
+
+
+def held(fretc: Fretc, change: Change, audited: bool) -> None:
+    answers = asked(fretc)
+    assert answers.stale == dict.fromkeys(("check", "report"), change.stale(audited))
+    assert answers.suspect == dict.fromkeys(("diff", "check", "report"), change.suspect(audited))
+    assert answers.differs == change.differs(audited)
 
 
 def test_there_are_more_changes_than_were_once_tried_by_hand() -> None:

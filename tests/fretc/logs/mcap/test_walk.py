@@ -8,6 +8,7 @@ from mcap.writer import IndexType
 
 from fretc.logs.reader import look, read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.effort import some
 from tests.fretc.logs.logs import (
     LZ4,
     MS,
@@ -164,7 +165,8 @@ def test_no_flipped_byte_changes_the_samples_unseen(
     assert sound.intact
     generator = random.Random(1)
     found = 0
-    for at in range(len(data)):
+    tried = some(range(len(data)), 3)
+    for at in tried:
         path.write_bytes(
             data[:at] + bytes([data[at] ^ generator.randrange(1, 256)]) + data[at + 1 :]
         )
@@ -175,7 +177,7 @@ def test_no_flipped_byte_changes_the_samples_unseen(
             continue
         assert times(result, "x") == times(sound, "x"), at
         assert values(result, "x") == values(sound, "x"), at
-    assert found > len(data) / 2
+    assert found > len(tried) / 2
 
 
 def message_starts(path: Path) -> list[int]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -84,18 +86,15 @@ PAGES: dict[str, Callable[[Path], str]] = {
 }
 
 
-@pytest.fixture(scope="module")
-def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    paths = {}
-    for name, page_for in PAGES.items():
-        folder = tmp_path_factory.mktemp("page")
-        paths[name] = folder / "report.html"
-        paths[name].write_text(page_for(folder), encoding="utf-8")
-    return paths
+@cache
+def html(name: str) -> str:
+    """Of a page; it is made once in each worker, by the first who visits it."""
+    with TemporaryDirectory() as folder:
+        return PAGES[name](Path(folder))
 
 
 @pytest.fixture
-def visit(browser: Browser, pages: dict[str, Path]) -> Iterator[Visit]:
+def visit(browser: Browser, tmp_path: Path) -> Iterator[Visit]:
     """Opens a page by its name; nothing complains, and nothing is asked of the network."""
     messages: list[str] = []
     contexts = []
@@ -106,7 +105,9 @@ def visit(browser: Browser, pages: dict[str, Path]) -> Iterator[Visit]:
         page = contexts[-1].new_page()
         page.on("console", lambda message: messages.append(message.text))
         page.on("pageerror", lambda error: messages.append(str(error)))
-        page.goto(pages[name].as_uri())
+        path = tmp_path / f"{name}.html"
+        path.write_text(html(name), encoding="utf-8")
+        page.goto(path.as_uri())
         return page
 
     yield open_it

@@ -11,6 +11,7 @@ from fretc.testing.conformance.findings import Failure
 from fretc.testing.suite import Repeat
 from fretc.testing.words import Word, defined, letters
 from tests.each import each
+from tests.effort import some
 from tests.fretc.testing.controllers import ASSUMED, FAULTS, RULES, program, seen_of
 
 
@@ -49,7 +50,7 @@ def test_a_planted_fault_is_found(fault: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@each("fault", FAULTS)
+@each("fault", some(FAULTS, 2))
 def test_each_planted_fault_is_found(fault: str, tmp_path: Path) -> None:
     found = seen_of(tmp_path, program(fault))
     assert found.failures, fault

@@ -22,6 +22,7 @@ from tests.compiler.targets.test_dafny import (
     emitted,
     rule,
 )
+from tests.effort import FULL
 from tests.proofs import outcome
 
 needs_dafny = pytest.mark.skipif(shutil.which("dafny") is None, reason="Dafny is not installed")
@@ -239,6 +240,7 @@ def test_dafny_rejects_mutants_of_the_monitor_and_of_the_plain_interceptor() -> 
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(not FULL, reason="other mutants are rejected; HYPOTHESIS_PROFILE=full")
 @needs_dafny
 def test_dafny_rejects_an_interceptor_without_hold_and_a_loop_with_too_long_a_delay() -> None:
     good = emitted("whenever p robot shall within 20 ticks satisfy q")
