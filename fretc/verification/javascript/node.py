@@ -9,6 +9,7 @@ part of the text that is as fretc writes it, and looks at differences alone.
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
@@ -165,12 +166,13 @@ class Module:
 
 @contextmanager
 def _started(module: Module, folder: Path, errors: Any) -> Iterator[subprocess.Popen[bytes]]:
-    """Node, without the user's environment: it may have options for it."""
+    """Node, without options of the user's: `NODE_OPTIONS` can load modules."""
+    plain = {name: value for name, value in os.environ.items() if not name.startswith("NODE_")}
     try:
         process = subprocess.Popen(
             [module.program, *FLAGS, "explorer.mjs"],
             cwd=folder,
-            env={},
+            env=plain,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=errors,

@@ -12,7 +12,7 @@ from fretc.verification.compiled.plan import Given
 from fretc.verification.engines.sandbox import Session, Stopped
 from fretc.verification.layers.languages import Row, language_of
 from fretc.verification.layers.request import Request, named_text, setup_of
-from fretc.verification.monitor.verifying import MOST_STATES, verified
+from fretc.verification.monitor.verifying import verified_beside, written
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 CLAIM = "the monitor means what the sentence says"
@@ -45,12 +45,14 @@ def prove(
 
 
 def _of_python(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+    given = request.monitor
     with Session(request.limits) as session:
+        whole = session.call(written, given.text, tuple(project.rules)) if given else None
         for rule in rules:
             file = setup_of(rule, project, request).monitor
             request.progress(f"{rule.id}: monitor")
-            others = tuple(project.rules) if request.monitor else ()
-            outcome = session.call(verified, rule, file.text, MOST_STATES, others)
+            beside = file.text if given is None else whole if isinstance(whole, str) else None
+            outcome = session.call(verified_beside, rule, file.text, beside)
             if isinstance(outcome, Stopped):
                 outcome = not_checked(outcome.reason)
             artefacts = {file.name: sha256(file.text)}

@@ -15,7 +15,6 @@ shows where they differ.
 from __future__ import annotations
 
 import ast
-import pickle
 import random
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
@@ -78,12 +77,40 @@ def verified(
     Raises:
         NotAMonitorError: the text is no generated monitor.
     """
+    return verified_beside(rule, text, written(text, (rule, *others)), limit)
+
+
+def verified_beside(
+    rule: Formalized, text: str, whole: str | None, limit: int = MOST_STATES
+) -> Outcome:
+    """As `verified`.
+
+    Args:
+        rule: one that the target accepts, on its own clock.
+        text: that of its monitor, maybe with monitors of other rules.
+        whole: what fretc writes for all of them, from `written`: once for all rules of a text.
+        limit: the most states of the exploration.
+
+    Raises:
+        NotAMonitorError: the text is no generated monitor.
+    """
     monitor = _opened(text)
-    return (
-        not_checked(monitor)
-        if isinstance(monitor, str)
-        else _compared(rule, text, monitor, limit, others)
-    )
+    if isinstance(monitor, str):
+        return not_checked(monitor)
+    return _compared(rule, text, monitor, limit, whole)
+
+
+def written(text: str, rules: Sequence[Formalized]) -> str | None:
+    """What fretc writes for the requirements of a text; None where not all of them are known.
+
+    Raises:
+        NotAMonitorError: the text is no generated monitor.
+    """
+    monitor = _opened(text)
+    by_id = {rule.id: rule for rule in rules}
+    if isinstance(monitor, str) or not all(each.id in by_id for each in monitor.REQUIREMENTS):
+        return None
+    return target.text(*(by_id[each.id] for each in monitor.REQUIREMENTS))
 
 
 @lru_cache(maxsize=1)
@@ -104,7 +131,7 @@ def _opened(text: str) -> Monitor | str:
 
 
 def _compared(
-    rule: Formalized, text: str, monitor: Monitor, limit: int, others: Sequence[Formalized]
+    rule: Formalized, text: str, monitor: Monitor, limit: int, whole: str | None
 ) -> Outcome:
     """The outcome for a text that is safe to execute."""
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == rule.id]
@@ -124,13 +151,13 @@ def _compared(
         (expected,) = load("generated", generated).REQUIREMENTS
         if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
             return not_checked("it decides the same, but states another sentence or deadline")
-        fault = _front_compared(rule, generated, text, monitor, atoms, others)
+        fault = _front_compared(rule, (generated, whole), text, monitor, atoms)
         if fault is not None:
             return fault
     ticks, word = _columns_compared(rule, monitor, place, needed)
     if word is not None:
         return _disagreement(atoms, word)
-    if text == generated or _is_generated(text, monitor, (rule, *others)):
+    if text == generated or (whole is not None and _is_like(whole, text)):
         return _proved(result, ticks)
     states = _compared_with_generated(
         rule, generated, text, monitor, place, (atoms, len(needed)), limit
@@ -225,49 +252,29 @@ def _whole(atoms: Sequence[str], word: Word) -> Trace:
     return Trace(tuple(atoms), tuple((*row, *(False,) * (len(atoms) - len(row))) for row in word))
 
 
-def _is_generated(text: str, monitor: Monitor, rules: Sequence[Formalized]) -> bool:
-    """Whether fretc writes this text for some of these rules, but for comments."""
-    generated = _generated(monitor, rules)
-    return generated is not None and _is_like(generated, text)
-
-
-def _generated(monitor: Monitor, rules: Sequence[Formalized]) -> str | None:
-    """The text that fretc writes for the requirements of a monitor, where all are known."""
-    by_id = {rule.id: rule for rule in rules}
-    ids = [requirement.id for requirement in monitor.REQUIREMENTS]
-    if not all(id in by_id for id in ids):
-        return None
-    return _text(pickle.dumps([by_id[id] for id in ids]))
-
-
 @lru_cache(maxsize=1)
-def _text(rules: bytes) -> str:
-    """What fretc writes for pickled rules: they have no hash, and a file of many needs it once."""
-    return target.text(*pickle.loads(rules))
-
-
-@lru_cache(maxsize=1)
-def _is_like(generated: str, text: str) -> bool:
+def _is_like(whole: str, text: str) -> bool:
     """Whether both are one text, but for comments."""
-    return ast.dump(own(generated)) == ast.dump(own(text))
+    return ast.dump(own(whole)) == ast.dump(own(text))
 
 
 def _front_compared(
     rule: Formalized,
-    generated: str,
+    texts: tuple[str, str | None],
     text: str,
     monitor: Monitor,
     atoms: Sequence[str],
-    others: Sequence[Formalized],
 ) -> Outcome | None:
     """Why what it compares is not what the sentence does; None: it is.
 
     Another requirement in the file may read as a truth value what this one takes for a number:
     then what fretc writes for all of them counts.
     """
+    generated, whole = texts
     fault = _differing(rule, text, generated, monitor, atoms)
-    written = None if fault is None else _generated(monitor, (rule, *others))
-    return fault if written is None else _differing(rule, text, written, monitor, atoms)
+    if fault is None or whole is None:
+        return fault
+    return _differing(rule, text, whole, monitor, atoms)
 
 
 def _differing(

@@ -45,11 +45,12 @@ def built(
         "text.rs": f"{text}\n{_layout(cells)}",
         "library.rs": _library(len(cells), inputs, outcomes),
     }
+    linked = ("--extern", f"{_CRATE}=lib{_CRATE}.rlib")
     steps = (
         ("--crate-type", "rlib", "--crate-name", _CRATE, "text.rs"),
-        ("--crate-type", "cdylib", "--extern", f"{_CRATE}=lib{_CRATE}.rlib", "library.rs"),
+        ("--crate-type", "cdylib", *linked, "library.rs", "-o", "library.so"),
     )
-    return compiled(program, FLAGS, texts, steps, "liblibrary.so")
+    return compiled(program, FLAGS, texts, steps, "library.so")
 
 
 def _layout(cells: Sequence[str]) -> str:
@@ -79,7 +80,8 @@ def _library(cells: int, inputs: Sequence[str], outcomes: Sequence[str]) -> str:
     told = "".join(f"    told.add({i}).write(of(found.{n}));\n" for i, n in enumerate(outcomes))
     _, *truths = Reading._fields
     bits = ", ".join(f"reading.{name}.into()" for name in truths)
-    return f"""use {_CRATE}::{{fretc_layout::PLACES, Inputs, Monitor, Outcome, Reading}};
+    return f"""use std::mem::size_of;
+use {_CRATE}::{{fretc_layout::PLACES, Inputs, Monitor, Outcome, Reading}};
 
 const TRUTHS: [Option<bool>; 3] = [Some(false), Some(true), None];
 

@@ -123,6 +123,8 @@ def test_a_ring_is_as_fretc_writes_it() -> None:
         ("[word] = 0u", "[word] = 1u"),
         ("word < 2u", "word < 3u"),
         ("reading->settled = false;", "reading->settled = rail->ring_since_1 > 0;"),
+        ("reading->settled = false;", "reading->settled = rail->ring_since_1_at > 0;"),
+        ("    if (past_since_1) {", "    rail->ring_since_1_at = 99u;\n    if (past_since_1) {"),
     ):
         with pytest.raises(StrangeTextError):
             c.checked(edited(monitor, old, new), [one])
