@@ -71,7 +71,9 @@ def _print(
         state = ends[name].split()[1]
         each = times[name] / len(task.demands)
         ratio = f"{times[name] / peer:.2f}"
-        rows.append((name, f"{times[name]:.2f}", f"{each:.2f}", ratio, state, program.code or "inlined"))
+        rows.append(
+            (name, f"{times[name]:.2f}", f"{each:.2f}", ratio, state, program.code or "inlined")
+        )
     head = ("", "ns a tick", "a requirement", "x by hand", "state", "code")
     table(task.name, head, rows)
 
