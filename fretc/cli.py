@@ -55,6 +55,7 @@ _COMMANDS = Registry(
         "verify": "fretc.commands.verify:verify",
         "verify-evidence": "fretc.commands.verify_evidence:verify_evidence",
         "sign": "fretc.commands.sign:sign",
+        "watch": "fretc.commands.watch:watch",
         "simulate": "fretc.commands.simulate:simulate",
         "sbom": "fretc.commands.sbom:sbom",
         "completion": "fretc.commands.completion:completion",

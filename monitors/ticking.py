@@ -212,8 +212,28 @@ class Ledger:
         """Ticks that have become unknown after they were judged."""
         self.beyond = 0
         """Ticks that should have become so and were not kept: what is said of them stands."""
+        self._dropped = 0
+        """Ticks that are not kept any more."""
         self._before: int | None = None
-        """The last tick that is not kept."""
+        """The last of them."""
+
+    def __len__(self) -> int:
+        """How many ticks there were."""
+        return self._dropped + len(self._times)
+
+    @property
+    def last(self) -> Mapping[str, bool | None] | None:
+        """The row of the last tick."""
+        return self._rows[-1] if self._rows else None
+
+    def row(self, tick: int) -> Mapping[str, bool | None]:
+        """What was seen at a tick that is kept."""
+        return self._rows[tick - self._dropped]
+
+    def time(self, tick: int) -> int | None:
+        """When a tick was; None where it is not kept."""
+        place = tick - self._dropped
+        return self._times[place] if 0 <= place < len(self._times) else None
 
     def _state(self) -> tuple[Mapping[str, Any], ...]:
         return tuple(monitor.state() for monitor in self._monitors)
@@ -280,7 +300,7 @@ class Ledger:
         drop = max((place for place, _ in self._states if place <= spare), default=0)
         if not drop:
             return
-        self._before = self._times[drop - 1]
+        self._before, self._dropped = self._times[drop - 1], self._dropped + drop
         del self._times[:drop], self._rows[:drop]
         self._states = [(place - drop, state) for place, state in self._states if place >= drop]
 

@@ -14,12 +14,14 @@ from fretc.audit.store import manifest
 from fretc.coverage import mutation_record, record
 from fretc.testing import suite
 from fretc.testing.conformance import findings as conformance
+from fretc.watch import json_lines
 
 SCHEMAS = {"evidence": schema.schema(), "verification": claims.schema()}
 SCHEMAS |= {"store": manifest.schema(), "analysis": findings.schema()}
 SCHEMAS |= {"analyzed-set": evidence.schema(), "tests": suite.schema()}
 SCHEMAS |= {"coverage": record.schema(), "mutation": mutation_record.schema()}
 
+SCHEMAS |= {"watch": json_lines.schema()}
 SCHEMAS |= {"conformance": conformance.schema()}
 
 

@@ -4,23 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from operator import index
 
 from compiler.project.folder import Project
 from compiler.targets.python import monitor as python
 from fretc.api.refusal import Refusal, accepted, bounded
-from fretc.audit.measurements.judgement import judged
 from fretc.audit.plan import Plan, planned
 from fretc.logs.stream import Stream as Truths
 from fretc.logs.stream import Tick as Row
+from fretc.watch.judging import Judges
 from fretish.bindings.declarations import Signal
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
-from monitors import kernel
-from monitors.kernel import Column, Monitor, Outcome
 from monitors.kernel.stepping import Standing
-from monitors.kernel.verdicts import Truth, Verdict
-from monitors.loading import load
+from monitors.kernel.verdicts import Truth
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,11 +58,8 @@ class Stream:
         """
         plan = _plan(project)
         self._plan, self._declared = plan, project.declarations
-        self._monitors = [load(f"{each.id}_monitor", each.monitor) for each in plan.claims]
-        names = dict.fromkeys(name for each in self._monitors for name in each.PROPOSITIONS)
-        self._truths = Truths(plan.declarations, tuple(names))
-        self._last: Mapping[str, Truth] = {}
-        self._count = 0
+        self._judges = Judges(plan, kept=1)
+        self._truths = Truths(plan.declarations, self._judges.propositions)
 
     def add(self, signal: str, time_ns: int, value: object) -> None:
         """One sample of a signal.
@@ -129,9 +122,7 @@ class Stream:
         """
         last = accepted(self._truths.end())
         ticks = tuple(map(self._step, last.ticks))
-        return End(
-            ticks, {m.REQUIREMENTS[0].id: self._verdict(m, last.cut) for m in self._monitors}
-        )
+        return End(ticks, self._judges.verdicts(last.cut, intact=True))
 
     def _signal(self, name: str) -> Signal | None:
         """The signal, if a requirement reads it."""
@@ -141,27 +132,8 @@ class Stream:
         return self._plan.declarations.signals.get(name)
 
     def _step(self, row: Row) -> Tick:
-        for monitor in self._monitors:
-            monitor.advance([row.truth])
-        self._last = row.truth
-        tick = Tick(
-            self._count,
-            row.time,
-            row.truth,
-            tuple(standing for monitor in self._monitors for standing in monitor.standings()),
-        )
-        self._count += 1
-        return tick
-
-    def _verdict(self, monitor: Monitor, cut: Mapping[str, Truth] | None) -> str:
-        """As an audit judges, but that the monitor remembers all ticks before the last one."""
-        ticks = min(1, self._count)
-        columns = {name: _column(self._last.get(name), ticks) for name in monitor.PROPOSITIONS}
-        end = Verdict(self._plan.declarations.clock.end)
-        engine = partial(_outcome, before=ticks)
-        return str(
-            judged(monitor, columns, cut, ticks, intact=True, end=end, engine=engine).verdict
-        )
+        self._judges.step(row)
+        return Tick(self._judges.count - 1, row.time, row.truth, self._judges.standings())
 
 
 def _plan(project: Project) -> Plan:
@@ -176,42 +148,6 @@ def _plan(project: Project) -> Plan:
     if errors:
         raise Refusal(errors)
     return plan
-
-
-def _column(truth: Truth, ticks: int) -> Column:
-    """The column of the last tick alone."""
-    return Column(int(truth is True), int(truth is None)) if ticks else Column(0, 0)
-
-
-def _outcome(
-    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict, before: int
-) -> tuple[Outcome, ...]:
-    """What a monitor shows that has made its steps, and perhaps one more, which it forgets."""
-    if ticks > before:
-        monitor = _copy(monitor)
-        monitor.advance([{name: columns[name].at(before) for name in monitor.PROPOSITIONS}])
-    (standing,) = monitor.standings()
-    verdict = standing.verdict
-    if end == kernel.VIOLATED and verdict == kernel.INCONCLUSIVE:
-        verdict = kernel.VIOLATED
-    nothing: tuple[()] = ()
-    first = standing.first_violation
-    return (
-        Outcome(
-            standing.requirement,
-            monitor.tick + 1,
-            verdict,
-            standing.finite,
-            first,
-            *(nothing,) * 5,
-        ),
-    )
-
-
-def _copy(monitor: Monitor) -> Monitor:
-    other = type(monitor)()
-    other.restore(monitor.state())
-    return other
 
 
 def _no_signal(name: str, names: tuple[str, ...]) -> Diagnostic:

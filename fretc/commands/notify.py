@@ -17,7 +17,7 @@ _PATIENCE = 60
 """Seconds that the command may take."""
 
 
-def words(command: str) -> list[str]:
+def words(command: str, option: str = "--notify") -> list[str]:
     """The words of a command, which no shell sees; stops where there are none."""
     try:
         found = shlex.split(command)
@@ -29,7 +29,7 @@ def words(command: str) -> list[str]:
         stop(
             Diagnostic(
                 Code.BAD_USAGE,
-                f"`--notify` names no command: {why}",
+                f"`{option}` names no command: {why}",
                 help="write the command with its options in one pair of quotes",
             )
         )

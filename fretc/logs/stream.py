@@ -10,10 +10,10 @@ window begins before the earliest of these. Times are nanoseconds of the declare
 
 from __future__ import annotations
 
-from array import array
 from bisect import bisect_left, bisect_right
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from math import isnan
 from typing import Any
 
@@ -21,25 +21,18 @@ import numpy as np
 
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.damage import LATEST
+from fretc.logs.messages.python_messages import Message, Value, sampled
 from fretc.logs.signals.propositions import truth_values
-from fretc.logs.signals.samples import EXACT, Recording, Samples
-from fretc.logs.signals.signals import (
-    FieldError,
-    Sparse,
-    UnstatedError,
-    fields,
-    is_chosen,
-    optional_field,
-    sample,
-)
+from fretc.logs.signals.samples import EXACT, Gap, Late, Recording, Samples
+from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.traces import proposition_states
-from fretc.logs.signals.words import UNKNOWN, Foreign, shown, word
+from fretc.logs.signals.words import Foreign, shown
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.expressions import ticks_back
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.kernel.verdicts import Truth
-from monitors.ticking import Ticking
+from monitors.ticking import Ticking, late
 
 MOST_TICKS = 1_000_000
 """Ticks that may pass at once: more are a mistake in the unit of time."""
@@ -59,6 +52,34 @@ class End:
 
     ticks: tuple[Tick, ...]
     cut: Mapping[str, Truth] | None
+    until: int = 0
+    """Where the log ends, by the declared clock."""
+
+
+@dataclass(frozen=True, slots=True)
+class Withdrawn:
+    """Ticks that were judged, and at which propositions are unknown since a message was late."""
+
+    first: int
+    last: int
+    propositions: tuple[str, ...]
+    tick: int | None = None
+    """A tick that is to be inserted: the message was one of the clock's topic."""
+
+
+@dataclass(slots=True)
+class _Span:
+    """The ticks for which a message is late, by their times."""
+
+    first: int
+    last: int
+    counted: bool
+    """Whether the message was late for a tick that was judged."""
+
+    def holds(self, ticks: Sequence[int]) -> bool:
+        """Whether one of the ticks, which are in order, is among them."""
+        place = bisect_left(ticks, self.first)
+        return place < len(ticks) and ticks[place] <= self.last
 
 
 class Stream:
@@ -90,6 +111,11 @@ class Stream:
         """The last message of all bound topics."""
         self._recent: list[int] = []
         """The last ticks, from that of `_back` on; all of one time, if one of that time is one."""
+        self._late: dict[str, list[_Span]] = {}
+        """Of each topic the ticks that are still to be judged and for which a message is late."""
+        self.late: Counter[str] = Counter()
+        """Of each topic how many messages were late for a tick that was judged."""
+        self._gaps: list[Gap] = []
         self._ended = False
 
     # Samples
@@ -121,21 +147,94 @@ class Stream:
         if wrong is not None:
             return wrong
         read = Message(message)
-        values: list[tuple[_Queue, float, np.dtype[Any] | None, str]] = []
+        values: list[tuple[_Queue, Value]] = []
         for signal in signals:
-            found = _value(signal, read)
-            if isinstance(found, Diagnostic):
-                return found
+            try:
+                found = sampled(signal, read)
+            except FieldError as error:
+                return log_diagnostics.no_field(signal, error)
             queue = self._queues[signal.name]
             wrong = queue.refusal(found[1], self._ticking.passed)
             if wrong is not None:
                 return wrong
-            values.append((queue, *found))
-        for queue, value, kind, foreign in values:
-            queue.put(time, value, kind, foreign)
+            values.append((queue, found))
+        self._put(topic, time, values)
         self._ticking.arrive(topic, time)
-        self._end = max(self._end, time)
         return None
+
+    def _put(self, topic: str, time: int, values: Iterable[tuple[_Queue, Value]]) -> None:
+        for queue, (value, kind, foreign) in values:
+            queue.put(time, value, kind, foreign)
+        self._end = max(self._end, time)
+
+    # Arrivals
+
+    def arrive(
+        self, topic: str, time: int, arrival: int, values: Mapping[str, Value]
+    ) -> Withdrawn | None:
+        """One message with its time and its arrival, as `monitors/ticking.py` has them.
+
+        Args:
+            topic: of a signal, or of the clock.
+            time: on the declared clock.
+            arrival: when it was received; it does not decrease from one message to the next.
+            values: a sample of each signal that reads the topic.
+
+        Returns:
+            The judged ticks for which it was late.
+        """
+        self._put(topic, time, ((self._queues[name], value) for name, value in values.items()))
+        judged = self._ticking.last
+        among = judged is not None and time <= judged
+        if not among:
+            self._ticking.arrive(topic, time)
+        span = late(time, arrival, self._declarations.clock.patience or 0)
+        if span is not None:
+            self._late.setdefault(topic, []).append(_Span(*span, counted=among))
+        if not among or judged is None:
+            return None
+        self.late[topic] += 1
+        is_tick = topic == self._declarations.clock.topic
+        if is_tick:
+            place = bisect_right(self._recent, time)
+            self._recent = self._within_reach([*self._recent[:place], time, *self._recent[place:]])
+        return Withdrawn(time, judged, self._readers(topic), time if is_tick else None)
+
+    def _readers(self, topic: str) -> tuple[str, ...]:
+        """The propositions that depend on a topic."""
+        if topic == self._declarations.clock.topic:
+            return self._propositions
+        return tuple(
+            name
+            for name in self._propositions
+            if any(
+                self._declarations.signals[signal].path.topic == topic
+                for signal in self._declarations.propositions[name].signals
+            )
+        )
+
+    def miss(self, first: int, last: int) -> Withdrawn | None:
+        """All messages with times from `first` to `last` may be lost.
+
+        Returns:
+            The judged ticks at which nothing is known any more.
+        """
+        self._gaps.append((first, last))
+        self._end = max(self._end, last)
+        judged = self._ticking.last
+        if judged is None or first > judged:
+            return None
+        return Withdrawn(first, judged, self._propositions)
+
+    def glance(self, time: int) -> tuple[Tick, ...]:
+        """What would be seen if there were a tick now, after those that still wait for messages.
+
+        Nothing is judged by that. There is nothing to be seen before the first tick is placed.
+        """
+        if self._ended or (self._ticking.last is None and not self._ticking.due(time)):
+            return ()
+        time = max(time, (self._ticking.last or 0) + 1)
+        return self._ticks([*self._ticking.due(time), time], time)
 
     def _untimely(self, topic: str, time: int) -> Diagnostic | None:
         if time == 0:
@@ -172,6 +271,11 @@ class Stream:
     # Ticks
 
     @property
+    def origin(self) -> int | None:
+        """Where the grid of ticks begins, once a tick was judged; None where there is no grid."""
+        return self._ticking.origin
+
+    @property
     def waiting(self) -> tuple[str, ...]:
         """The topics that are yet to begin, and before which no tick can be placed.
 
@@ -199,7 +303,7 @@ class Stream:
             return many
         times = self._ticking.until(time)
         found = self._ticks(times, self._ticking.passed)
-        self._forget()
+        self._remember(times)
         return found
 
     def end(self) -> End | Diagnostic:
@@ -212,9 +316,12 @@ class Stream:
         self._ended = True
         times = self._ticking.end(end)
         if self._ticking.last is None or self._ticking.last == end:
-            return End(self._ticks(times, end), None)
+            whole = self._ticks(times, end)
+            self._remember(times)
+            return End(whole, None, end)
         *ticks, cut = self._ticks([*times, end], end)
-        return End(tuple(ticks), cut.truth)
+        self._remember(times)
+        return End(tuple(ticks), cut.truth, end)
 
     def _over(self) -> Diagnostic | None:
         if not self._ended:
@@ -241,7 +348,6 @@ class Stream:
             )
             for name in self._propositions
         }
-        self._recent = self._within_reach([*before, *times])
         return tuple(
             Tick(time, {name: values[i] for name, values in truth.items()})
             for i, time in enumerate(times, len(before))
@@ -255,10 +361,19 @@ class Stream:
         """The ticks that those to come look back to."""
         return ticks[bisect_left(ticks, ticks[-self._back :][0]) :]
 
-    def _forget(self) -> None:
-        """Drop what no later tick sees."""
-        if not self._recent:
+    def _remember(self, times: Sequence[int]) -> None:
+        """These ticks are judged: drop what no later one sees."""
+        if not times:
             return
+        self._recent = self._within_reach([*self._recent, *times])
+        for topic, spans in self._late.items():
+            new = [span for span in spans if not span.counted and span.holds(times)]
+            self.late[topic] += len(new)
+            for span in new:
+                span.counted = True
+            spans[:] = [span for span in spans if span.last > times[-1]]
+        over = [i for i, gap in enumerate(self._gaps) if gap[1] < self._window()]
+        del self._gaps[: over[-1] if over else 0]
         for queue in self._queues.values():
             queue.forget(self._window())
 
@@ -271,11 +386,16 @@ class Stream:
             end_ns=end,
             samples=samples,
             ticks=np.zeros(0, np.int64),
-            gaps=(),
+            gaps=tuple(self._gaps),
             topics={},
             nearest={},
             findings=(),
-            intact=True,
+            intact=not self._gaps,
+            late={
+                topic: Late(*np.array([(one.first, one.last) for one in spans], np.int64).T)
+                for topic, spans in self._late.items()
+                if spans
+            },
         )
 
 
@@ -356,89 +476,6 @@ _WORDS = {4: "32-bit floats", 8: "64-bit floats", EXACT.itemsize: "whole numbers
 
 def _words(kind: np.dtype[Any]) -> str:
     return _WORDS[kind.itemsize]
-
-
-class Message(Sparse):
-    """A message as Python has it: a mapping, or an object with attributes.
-
-    What is None is unknown; what is not there is a mistake.
-    """
-
-    def __init__(self, message: object) -> None:
-        self._message = message
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of its fields; those of a message of rclpy are not its slots."""
-        if isinstance(self._message, Mapping):
-            return tuple(map(str, self._message))
-        declared = getattr(self._message, "get_fields_and_field_types", None)
-        return tuple(declared()) if callable(declared) else fields(self._message)
-
-    def constant(self, name: str) -> int | None:
-        """A whole constant of the message's type, as those of ROS have them."""
-        found = getattr(type(self._message), name, None)
-        return found if isinstance(found, int) else None
-
-    def field(self, name: str) -> object:
-        """The value of a field; arrays of Python's `array` are those of NumPy."""
-        if name not in self.names:
-            raise KeyError(name)
-        mapping = isinstance(self._message, Mapping)
-        value = self._message[name] if mapping else getattr(self._message, name)  # type: ignore[index]
-        if value is None:
-            raise UnstatedError
-        if isinstance(value, array):
-            return np.asarray(value)
-        inner = isinstance(value, Mapping) or fields(value)
-        return Message(value) if inner else value
-
-
-def _value(
-    signal: Signal, message: Message
-) -> tuple[float, np.dtype[Any] | None, str] | Diagnostic:
-    """The sample, and of which kind of number it is; None: it is unknown.
-
-    Last, what it is where that is none of the values of its signal; else nothing.
-    """
-    single = _is_single(signal, message)
-    signal = _named(signal, message)
-    try:
-        value = word(signal, message) if signal.values else sample(signal, message, single=single)
-    except FieldError as error:
-        return log_diagnostics.no_field(signal, error)
-    if isinstance(value, str):
-        return UNKNOWN, None, value
-    if isinstance(value, int):
-        return value, EXACT, ""
-    if isnan(value):
-        return value, None, ""
-    return value, np.dtype(np.float32 if single and is_chosen(signal) else np.float64), ""
-
-
-def _named(signal: Signal, message: Message) -> Signal:
-    """The signal with the numbers of its words, where the field's message has such constants."""
-    if not signal.values or signal.numbers:
-        return signal
-    holder: object = message
-    for name in signal.path.fields[:-1]:
-        holder = optional_field(holder, name)
-    if not isinstance(holder, Message) or isinstance(
-        optional_field(holder, signal.path.fields[-1]), str
-    ):
-        return signal
-    numbers = tuple(
-        number for each in signal.values if (number := holder.constant(each)) is not None
-    )
-    return replace(signal, numbers=numbers) if len(set(numbers)) == len(signal.values) else signal
-
-
-def _is_single(signal: Signal, message: Message) -> bool:
-    """Whether its field holds 32-bit floats."""
-    value: object = message
-    for name in signal.path.fields:
-        value = optional_field(value, name)
-    return getattr(value, "dtype", None) == np.float32
 
 
 def _topics(declarations: Declarations) -> frozenset[str]:

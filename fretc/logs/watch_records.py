@@ -121,30 +121,24 @@ def _grid(stated: Mapping[str, tuple[str, ...]], columns: Columns) -> tuple[int 
 def _fits(origin: int, columns: Columns) -> bool:
     """Whether a watch can have placed its grid there.
 
-    It has done so by the messages that had come when the first tick was judged, or up to a period
-    later, where it waited for a topic: from the first of their times on, and less than a period
-    after it.
+    It has done so by the messages that had come by some moment, and less than a period after the
+    first of their times. All had come that came until the first tick was judged, and none that
+    came when a period had passed after the time of the message that came first.
     """
     clock = columns.clock
-    if clock.period is None:
+    read = [column for column in columns.topics.values() if column.bound and len(column.logs)]
+    if clock.period is None or not read:
         return False
-    judged = origin + clock.phase + (clock.patience or 0)
-    latest = _start(columns, judged)
-    earliest = _start(columns, judged + clock.period)
-    if earliest is None or latest is None:
-        return False
-    return earliest <= origin < latest + clock.period
-
-
-def _start(columns: Columns, arrival: int) -> int | None:
-    """The first time of all bound messages that had arrived by then."""
-    starts = [
-        int(times.min())
-        for column in columns.topics.values()
-        if column.bound
-        and len(times := column.stamps()[np.array(column.logs, np.int64) <= arrival])
-    ]
-    return min(starts, default=None)
+    patience = clock.patience or 0
+    arrivals = np.concatenate([np.array(column.logs, np.int64) for column in read])
+    times = np.concatenate([column.stamps() for column in read])
+    came_first = arrivals == arrivals.min()
+    had_come = arrivals <= origin + clock.phase + patience
+    least = times[had_come if had_come.any() else came_first]
+    could_have_come = arrivals <= int(times[came_first].max()) + clock.period + patience
+    most = times[had_come | came_first | could_have_come]
+    latest = int(least.min() if had_come.any() else least.max())
+    return int(most.min()) <= origin < latest + clock.period
 
 
 def _taken_over(origin: int | None, until: int, columns: Columns, place: Span) -> Diagnostic:

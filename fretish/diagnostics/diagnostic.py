@@ -233,6 +233,11 @@ class Code(Enum):
     PROGRAM_LINE = ("F941", "the program under test printed a wrong line")
     PROGRAM_SILENT = ("F942", "the program under test printed no line in time")
     PROGRAM_ENDED = ("F943", "the program under test ended before its test")
+    NO_LATENESS = ("F950", "a watch by stamps is not told how late messages may be")
+    NOTHING_COMES = ("F951", "a topic that is watched has sent nothing")
+    NOT_RECORDED = ("F952", "a watch cannot record any more")
+    CLOCK_SET_BACK = ("F953", "a clock was set back while a robot was watched")
+    REACTION_FAILED = ("F954", "the command of `--on-violation` has failed")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

@@ -39,7 +39,7 @@ class Arrival:
     channel: Channel
     payload: bytes
     log_time: int
-    """When it was received. It never decreases from one arrival of a source to the next."""
+    """When it was received. From one arrival of a middleware to the next it never decreases."""
     publish_time: int
     """When it was sent, where the middleware tells; else `log_time`, as MCAP has it."""
 

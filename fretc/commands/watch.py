@@ -1,0 +1,177 @@
+"""The command that watches a robot that runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from fretc.terminal.group import Grouped
+from fretc.terminal.options import PATH, bindings_option, path_option, requirements_option
+from fretc.terminal.output import (
+    BAD,
+    NOT_SHOWN,
+    SHOWN,
+    VIOLATION,
+    deliver,
+    not_written,
+    protect,
+    say_also,
+    say_briefly,
+    stop,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from compiler.project.folder import Project
+    from fretc.audit.plan import Plan
+    from fretc.watch.news import RunEnded
+
+_WATCH = {
+    "Judged by": ("requirements", "bindings"),
+    "What is watched": ("follow",),
+    "Printed and written": ("form", "record", "evidence"),
+    "Done meanwhile": ("command",),
+}
+
+
+@click.command(
+    cls=Grouped, headings=_WATCH, short_help="Watch a running robot by all requirements."
+)
+@click.argument("words", nargs=-1, required=True, type=PATH, metavar="SOURCE...")
+@requirements_option
+@bindings_option
+@click.option("--follow", is_flag=True, help="Wait for what is still to be written to a log.")
+@click.option(
+    "--format",
+    "form",
+    type=click.Choice(("text", "jsonl")),
+    default="text",
+    show_default=True,
+    help="A screen, or lines where there is no terminal; or an object of JSON on each line.",
+)
+@path_option("--record", metavar="FILE", help="Record what arrives, as an MCAP file.")
+@path_option(
+    "--evidence",
+    metavar="FILE",
+    help="At the end write what `fretc audit` says of the recording. Needs --record.",
+)
+@click.option(
+    "--on-violation",
+    "command",
+    metavar="CMD",
+    help="Start CMD at each violation, with the facts on standard input, as JSON.",
+)
+def watch(
+    words: tuple[str, ...],
+    requirements: str,
+    bindings: str | None,
+    follow: bool,
+    form: str,
+    record: str | None,
+    evidence: str | None,
+    command: str | None,
+) -> None:
+    """Watch a running robot by all requirements, until Ctrl-C.
+
+    SOURCE is an MCAP file; with --follow, one that is being recorded.
+
+    Verdicts are those that an audit gives of the recording. Exit status: 0 all satisfied, 1 a
+    violation, 2 bad use or bad input, 3 something is not shown.
+    """
+    from fretc.commands import notify
+    from fretc.commands.watch_output import outputs_of, until_stopped, watched
+    from fretc.watch.reaction import Reaction
+    from fretc.watch.sources.choice import chosen
+    from fretc.watch.watch import Watch
+
+    if evidence is not None and record is None:
+        stop(_needs_recording())
+    reaction = None if command is None else Reaction(notify.words(command, "--on-violation"))
+    source = chosen(words, follow=follow)
+    if isinstance(source, Diagnostic):
+        stop(source)
+    project, plan, inputs = _planned(requirements, bindings)
+    outputs = [Path(name) for name in (record, evidence) if name is not None and name != "-"]
+    protect(outputs, [*inputs, *words])
+    if record == evidence and record is not None:
+        stop(not_written(record, "two outputs would go there"))
+    try:
+        run = Watch(plan, Path(record) if record is not None else None)
+    except OSError as error:
+        stop(not_written(str(record), error.strerror or str(error)))
+    titles = {rule.id: rule.requirement.title for rule in project.rules}
+    shown = outputs_of(form, titles)
+    with until_stopped() as stopped:
+        watched(run, source, shown, reaction, stopped)
+    status = BAD if run.failed else _status(run.runs)
+    if evidence is not None:
+        status = max(status, _audited(plan, run.recordings, evidence, inputs, project))
+    raise SystemExit(BAD if plan.refused or has_errors(project.diagnostics) else status)
+
+
+def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Sequence[str]]:
+    """The plan, which is that of an audit, and the files that it is made of."""
+    from compiler.project.folder import load
+    from compiler.project.paths import beside, companions, requirement_files
+    from fretc.audit.plan import Plan, planned
+
+    files = requirement_files(requirements)
+    if isinstance(files, Diagnostic):
+        stop(files)
+    project = load(files, bindings or beside(requirements, "bindings.toml"))
+    say_briefly(project.diagnostics, requirements)
+    if has_errors(project.general):
+        raise SystemExit(BAD)
+    plan = planned(project)
+    if not isinstance(plan, Plan):
+        stop(*(reason for reason in plan if reason not in project.diagnostics))
+    if plan.declarations.clock.patience is None:
+        stop(_needs_lateness(plan))
+    say_also([each for each in plan.refusals if each not in project.diagnostics], ())
+    return project, plan, (*files, *companions(files), *([bindings] if bindings else []))
+
+
+def _status(runs: Sequence[RunEnded]) -> int:
+    verdicts = {verdict for run in runs for verdict in run.verdicts.values()}
+    if "violated" in verdicts:
+        return VIOLATION
+    return SHOWN if verdicts == {"satisfied"} else NOT_SHOWN
+
+
+def _audited(
+    plan: Plan, logs: Sequence[str], evidence: str, inputs: Sequence[str], project: Project
+) -> int:
+    """Write what an audit says of the recordings, through its own door."""
+    from fretc.audit.many_logs import locally
+    from fretc.commands.audit_progress import audit_in_memory
+
+    if not logs:
+        stop(Diagnostic(Code.NOTHING_TO_DO, "nothing was recorded: there is no evidence"))
+    result = audit_in_memory(plan, logs, locally(1))
+    say_also(project.answered(result.diagnostics), ())
+    deliver({Path(evidence): result.evidence}, [*inputs, *logs])
+    return SHOWN if result.read == len(logs) else BAD
+
+
+def _needs_lateness(plan: Plan) -> Diagnostic:
+    source = plan.declarations.source
+    start = source.text.find("[clock]")
+    return Diagnostic(
+        Code.NO_LATENESS,
+        f"the clock goes by `{plan.declarations.clock.time}`, and nothing says how late messages "
+        "may arrive",
+        source.span(start, start + len("[clock]")) if start >= 0 else None,
+        'add `lateness = "50 ms"` under `[clock]`: what messages of the robot take at most',
+    )
+
+
+def _needs_recording() -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        "`--evidence` is what an audit says of the recording, and nothing is recorded",
+        help="add `--record run.mcap`",
+    )

@@ -1,0 +1,198 @@
+"""A watch, shown: on a screen that is drawn anew, as lines, or as lines of JSON."""
+
+from __future__ import annotations
+
+import json
+import signal
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
+from threading import Event as Flag
+from types import FrameType
+from typing import Protocol
+
+import click
+
+from fretc.terminal.output import coloured, painted, say
+from fretc.terminal.screen import screen
+from fretc.watch.json_lines import line as json_line
+from fretc.watch.news import Changed, Found, News
+from fretc.watch.reaction import Reaction
+from fretc.watch.session import Session
+from fretc.watch.sources.source import Source
+from fretc.watch.text_output import line, rows
+from fretc.watch.watch import Watch
+from fretish.diagnostics.rendering import visible
+
+_PERIOD = 0.2
+"""Seconds from one drawing of the screen to the next."""
+
+
+class Output(Protocol):
+    """Where a watch is shown."""
+
+    def tell(self, news: News, session: Session) -> None:
+        """Something has happened."""
+
+    def refresh(self, session: Session) -> None:
+        """Time has passed."""
+
+    def end(self, session: Session) -> None:
+        """Nothing more comes."""
+
+
+class JsonLines:
+    """An object for each piece of news."""
+
+    def tell(self, news: News, session: Session) -> None:
+        """A line, at once."""
+        click.echo(json.dumps(json_line(news), sort_keys=True))
+        sys.stdout.flush()
+
+    def refresh(self, session: Session) -> None:
+        """Nothing: only news is told."""
+
+    def end(self, session: Session) -> None:
+        """Nothing more."""
+
+
+class Lines:
+    """A line for each piece of news, where there is no terminal."""
+
+    def __init__(self) -> None:
+        self._start: int | None = None
+
+    def tell(self, news: News, session: Session) -> None:
+        """What there is to say of it."""
+        self._start = self._start if self._start is not None else session.first_tick
+        if isinstance(news, Found):
+            say([news.diagnostic])
+            return
+        text = line(news, self._start)
+        if text is not None:
+            click.echo(coloured([(visible(text), None)]), nl=False)
+            sys.stdout.flush()
+
+    def refresh(self, session: Session) -> None:
+        """Nothing: only news is told."""
+
+    def end(self, session: Session) -> None:
+        """Nothing more."""
+
+
+class Board:
+    """A screen that is drawn anew, below the news."""
+
+    def __init__(self, titles: Mapping[str, str]) -> None:
+        """Nothing is drawn yet; `titles` are those of the requirements."""
+        self._titles, self._lines = titles, Lines()
+        self._height, self._drawn = 0, 0.0
+
+    def tell(self, news: News, session: Session) -> None:
+        """News scrolls by above the rows; what the rows show is no news."""
+        if isinstance(news, Changed) and news.before is None:
+            return
+        self._clear()
+        self._lines.tell(news, session)
+
+    def refresh(self, session: Session) -> None:
+        """Draw the rows, if it is time."""
+        if time.monotonic() - self._drawn >= _PERIOD:
+            self._draw(session)
+
+    def end(self, session: Session) -> None:
+        """The rows stay as they are at the end."""
+        self._draw(session)
+        self._height = 0
+
+    def _draw(self, session: Session) -> None:
+        drawn = list(rows(session, self._titles, screen()))
+        self._clear()
+        click.echo(painted(drawn), nl=False)
+        sys.stdout.flush()
+        self._height, self._drawn = len(drawn), time.monotonic()
+
+    def _clear(self) -> None:
+        if self._height:
+            click.echo(f"\x1b[{self._height}F\x1b[J", nl=False)
+            self._height = 0
+
+
+def outputs_of(form: str, titles: Mapping[str, str]) -> Output:
+    """Where a watch is shown."""
+    if form == "jsonl":
+        return JsonLines()
+    return Board(titles) if sys.stdout.isatty() else Lines()
+
+
+@contextmanager
+def until_stopped() -> Iterator[Flag]:
+    """A flag that Ctrl-C and SIGTERM set: what is being done is ended in order.
+
+    A second Ctrl-C interrupts at once.
+    """
+    flag = Flag()
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        if flag.is_set() and number == signal.SIGINT:
+            raise KeyboardInterrupt
+        flag.set()
+
+    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield flag
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def watched(
+    watch: Watch, source: Source, output: Output, reaction: Reaction | None, stopped: Flag
+) -> None:
+    """Watch until the source ends or the user stops it; the recording is whole afterwards.
+
+    Raises:
+        OSError: nobody reads any more what is shown.
+    """
+    broken: OSError | None = None
+    try:
+        for item in source.arrivals(watch.topics):
+            for news in watch.take(item):
+                _tell(news, watch, output, reaction)
+            if reaction is not None:
+                for problem in reaction.problems():
+                    output.tell(Found(problem), watch.session)
+            output.refresh(watch.session)
+            if watch.ended or stopped.is_set():
+                break
+    except OSError as error:
+        broken = error
+    finally:
+        source.close()
+        for news in watch.finish():
+            with suppress(OSError) if broken is not None else _through():
+                _tell(news, watch, output, reaction)
+    if broken is not None:
+        raise broken
+    output.end(watch.session)
+    if reaction is not None:
+        reaction.wait()
+        for problem in reaction.problems():
+            output.tell(Found(problem), watch.session)
+
+
+@contextmanager
+def _through() -> Iterator[None]:
+    yield
+
+
+def _tell(news: News, watch: Watch, output: Output, reaction: Reaction | None) -> None:
+    if reaction is not None and isinstance(news, Changed) and _is_violation(news):
+        reaction.start(json_line(news))
+    output.tell(news, watch.session)
+
+
+def _is_violation(news: Changed) -> bool:
+    before = None if news.before is None else news.before.verdict
+    return news.state.verdict == "violated" and before != "violated"

@@ -1,0 +1,106 @@
+"""Messages as Python has them, mappings or objects → samples of signals."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Mapping
+from dataclasses import replace
+from math import isnan
+from typing import Any
+
+import numpy as np
+
+from fretc.logs.signals.samples import EXACT
+from fretc.logs.signals.signals import (
+    Sparse,
+    UnstatedError,
+    fields,
+    is_chosen,
+    optional_field,
+    sample,
+)
+from fretc.logs.signals.words import UNKNOWN, word
+from fretish.bindings.declarations import Signal
+
+Value = tuple[float, np.dtype[Any] | None, str]
+"""A sample, and of which kind of number it is; None: it is unknown. Last, what it is where that is
+none of the values of its signal; else nothing."""
+
+
+class Message(Sparse):
+    """A message as Python has it: a mapping, or an object with attributes.
+
+    What is None is unknown; what is not there is a mistake.
+    """
+
+    def __init__(self, message: object) -> None:
+        self._message = message
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of its fields; those of a message of rclpy are not its slots."""
+        if isinstance(self._message, Mapping):
+            return tuple(map(str, self._message))
+        declared = getattr(self._message, "get_fields_and_field_types", None)
+        return tuple(declared()) if callable(declared) else fields(self._message)
+
+    def constant(self, name: str) -> int | None:
+        """A whole constant of the message's type, as those of ROS have them."""
+        found = getattr(type(self._message), name, None)
+        return found if isinstance(found, int) else None
+
+    def field(self, name: str) -> object:
+        """The value of a field; arrays of Python's `array` are those of NumPy."""
+        if name not in self.names:
+            raise KeyError(name)
+        mapping = isinstance(self._message, Mapping)
+        value = self._message[name] if mapping else getattr(self._message, name)  # type: ignore[index]
+        if value is None:
+            raise UnstatedError
+        if isinstance(value, array):
+            return np.asarray(value)
+        inner = isinstance(value, Mapping) or fields(value)
+        return Message(value) if inner else value
+
+
+def sampled(signal: Signal, message: Message) -> Value:
+    """The sample of a message.
+
+    Raises:
+        FieldError: it has no such field.
+    """
+    single = _is_single(signal, message)
+    signal = _named(signal, message)
+    value = word(signal, message) if signal.values else sample(signal, message, single=single)
+    if isinstance(value, str):
+        return UNKNOWN, None, value
+    if isinstance(value, int):
+        return value, EXACT, ""
+    if isnan(value):
+        return value, None, ""
+    return value, np.dtype(np.float32 if single and is_chosen(signal) else np.float64), ""
+
+
+def _named(signal: Signal, message: Message) -> Signal:
+    """The signal with the numbers of its words, where the field's message has such constants."""
+    if not signal.values or signal.numbers:
+        return signal
+    holder: object = message
+    for name in signal.path.fields[:-1]:
+        holder = optional_field(holder, name)
+    if not isinstance(holder, Message) or isinstance(
+        optional_field(holder, signal.path.fields[-1]), str
+    ):
+        return signal
+    numbers = tuple(
+        number for each in signal.values if (number := holder.constant(each)) is not None
+    )
+    return replace(signal, numbers=numbers) if len(set(numbers)) == len(signal.values) else signal
+
+
+def _is_single(signal: Signal, message: Message) -> bool:
+    """Whether its field holds 32-bit floats."""
+    value: object = message
+    for name in signal.path.fields:
+        value = optional_field(value, name)
+    return getattr(value, "dtype", None) == np.float32

@@ -1,0 +1,180 @@
+"""Arrivals → times and samples, as an audit reads them from the recording.
+
+What a message holds is read by the audit's own decoders, one message at a time. A message that
+cannot be decoded, or whose time was never set, is unknown and stands where the one before it of its
+topic does; before the first one with a time, it waits for that. Times are nanoseconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from math import isnan
+
+from mcap.records import Channel as McapChannel
+from mcap.records import Schema
+
+from fretc.logs import log_diagnostics
+from fretc.logs.extraction import Extract, Extraction
+from fretc.logs.mcap.container import Stream
+from fretc.logs.mcap.damage import LATEST
+from fretc.logs.mcap.payloads import Payloads
+from fretc.logs.messages.python_messages import Value
+from fretc.logs.signals.words import UNKNOWN
+from fretc.watch.sources.source import Arrival, Channel
+from fretish.bindings.declarations import Declarations, Signal, short_type
+from fretish.clock import TimeSource
+from fretish.diagnostics.diagnostic import Diagnostic
+
+MOST_HELD = 1000
+"""Messages of a topic without any time that wait for one; then the oldest are forgotten."""
+_NOTHING: Value = (UNKNOWN, None, "")
+
+
+@dataclass(frozen=True, slots=True)
+class Timed:
+    """One message on the declared clock."""
+
+    topic: str
+    time: int
+    arrival: int
+    values: Mapping[str, Value]
+    """A sample of each signal that reads the topic."""
+
+
+@dataclass(slots=True)
+class _Topic:
+    names: tuple[str, ...]
+    """All signals that read it."""
+    signals: list[Signal]
+    """Those that its messages have."""
+    latest: int | None = None
+    """The time of the last message that has one."""
+    held: list[int] = field(default_factory=list)
+    """The arrivals of messages before the first one with a time."""
+    types: dict[str, None] = field(default_factory=dict)
+
+
+class Decoder:
+    """Reads the messages of all bound topics."""
+
+    def __init__(self, declarations: Declarations) -> None:
+        self._time = declarations.clock.time
+        signals = declarations.signals.values()
+        names = {signal.path.topic for signal in signals}
+        names |= {declarations.clock.topic} if declarations.clock.topic else set()
+        self._topics = {
+            name: _Topic(
+                tuple(each.name for each in signals if each.path.topic == name),
+                [each for each in signals if each.path.topic == name],
+            )
+            for name in names
+        }
+        self._extractions: dict[Channel, Extraction] = {}
+        self.undecoded: dict[str, int] = {}
+        """Of each topic the messages that could not be decoded."""
+
+    @property
+    def topics(self) -> frozenset[str]:
+        """Those that are read."""
+        return frozenset(self._topics)
+
+    def read(self, arrival: Arrival) -> tuple[list[Timed], list[Diagnostic]]:
+        """The message, with those that waited for its time, and what is wrong with its channel."""
+        topic = self._topics.get(arrival.channel.topic)
+        if topic is None:
+            return [], []
+        problems: list[Diagnostic] = []
+        if arrival.channel not in self._extractions:
+            problems = self._open(arrival.channel, topic)
+        extract = self._extractions[arrival.channel].extract(Payloads.of([arrival.payload]))
+        problems += self._refusals(arrival.channel, topic)
+        time = self._placed(arrival, extract)
+        nothing = dict.fromkeys(topic.names, _NOTHING)
+        known = topic.signals if time != 0 else ()
+        values = {**nothing, **{each.name: _value(extract, each.name) for each in known}}
+        name = arrival.channel.topic
+        if not bool(extract.decoded[0]) and self._extractions[arrival.channel].reads:
+            self.undecoded[name] = self.undecoded.get(name, 0) + 1
+        if time is not None and time >= LATEST:
+            return [], problems
+        if not time and topic.latest is None:
+            topic.held = [*topic.held, arrival.log_time][-MOST_HELD:]
+            return [], problems
+        topic.latest = time or topic.latest
+        assert topic.latest is not None, "what has no time waits for one"
+        held, topic.held = topic.held, []
+        return [
+            *(Timed(name, topic.latest, each, nothing) for each in held),
+            Timed(name, topic.latest, arrival.log_time, values),
+        ], problems
+
+    def _open(self, channel: Channel, topic: _Topic) -> list[Diagnostic]:
+        """The first message of a channel: its type may be another than the bindings say."""
+        problems = []
+        type_ = short_type(channel.schema_name)
+        topic.types[type_] = None
+        for signal in tuple(topic.signals):
+            declared = signal.type and short_type(signal.type)
+            if channel.schema_name and declared and declared != type_:
+                topic.signals.remove(signal)
+                problems.append(log_diagnostics.wrong_type(signal, channel.schema_name))
+        if len(topic.types) > 1 and topic.signals and topic.signals[0].type is None:
+            problems.append(log_diagnostics.several_types(topic.signals[0], list(topic.types)))
+        self._extractions[channel] = Extraction(stream_of(channel), topic.signals)
+        return problems
+
+    def _refusals(self, channel: Channel, topic: _Topic) -> list[Diagnostic]:
+        """Of signals that the channel does not have."""
+        refused = self._extractions[channel].diagnostics
+        found = [signal for signal in topic.signals if signal.name in refused]
+        for signal in found:
+            topic.signals.remove(signal)
+        return [refused[signal.name] for signal in found]
+
+    def _placed(self, arrival: Arrival, extract: Extract) -> int | None:
+        """Its time on the declared clock; 0: it was never set; None: nothing tells it."""
+        match self._time:
+            case TimeSource.LOG_TIME:
+                return arrival.log_time
+            case TimeSource.PUBLISH_TIME:
+                return min(arrival.publish_time, LATEST)
+            case TimeSource.HEADER_STAMP:
+                if not extract.decoded[0]:
+                    return None
+                return int(extract.stamps[0]) if extract.stamped[0] else arrival.log_time
+
+
+def _value(extract: Extract, name: str) -> Value:
+    if extract.is_foreign(name, 0):
+        return UNKNOWN, None, extract.texts[name][1]
+    values = extract.values[name]
+    known = values[0]
+    return (known, values.dtype, "") if not isnan(known) else _NOTHING
+
+
+def stream_of(channel: Channel, id: int = 1) -> Stream:
+    """A channel as the decoders of logs know it."""
+    schema = None
+    if channel.schema_name or channel.schema_encoding:
+        schema = Schema(
+            id=id,
+            name=channel.schema_name,
+            encoding=channel.schema_encoding,
+            data=channel.schema,
+        )
+    return Stream(
+        McapChannel(
+            id=id,
+            topic=channel.topic,
+            message_encoding=channel.message_encoding,
+            metadata={},
+            schema_id=id if schema else 0,
+        ),
+        schema,
+    )
+
+
+def bound_topics(declarations: Declarations) -> Sequence[str]:
+    """Every topic that a watch reads, in order."""
+    return sorted(Decoder(declarations).topics)

@@ -1,0 +1,156 @@
+"""What `--format jsonl` prints: a line for each piece of news, an object each."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, assert_never
+
+from compiler.files.records import (
+    Count,
+    Name,
+    Ordinal,
+    Record,
+    Whole,
+    about,
+    json_schema,
+    plain,
+)
+from fretc.watch.news import Changed, Found, Late, News, RunEnded
+from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
+
+_Time = Annotated[Whole | None, about("nanoseconds of the declared clock; null: there is none")]
+
+
+class RequirementLine(Record, frozen=True, tag="requirement", tag_field="type"):
+    """A requirement of which something is otherwise than before."""
+
+    requirement: Name
+    verdict: Annotated[str, about("if the run ended now, as an audit calls it")]
+    owed: Annotated[
+        bool | None,
+        about("whether a demand is open that the robot must meet now: it stops unless it is false"),
+    ]
+    triggered_ns: Annotated[_Time, about("the last tick that has triggered it")]
+    open_ns: Annotated[_Time, about("the trigger of the demand that is open")]
+    deadline_ns: Annotated[_Time, about("the last tick at which it can be met")]
+    violated_ns: Annotated[_Time, about("the first tick at which it was violated")]
+    time_ns: Annotated[Whole, about("the latest time of all messages, on the declared clock")]
+
+
+class LateLine(Record, frozen=True, tag="late", tag_field="type"):
+    """Ticks that were judged have become unknown."""
+
+    ticks: Annotated[Count, about("all of the run so far")]
+    messages: Annotated[dict[Name, Count], about("of each topic, all of the run so far")]
+
+
+class MessageLine(Record, frozen=True, tag="message", tag_field="type"):
+    """What a user should know."""
+
+    code: Name
+    severity: Annotated[str, about("error, warning or note")]
+    message: str
+    help: str | None
+
+
+class OpenedLine(Record, frozen=True, tag="opened", tag_field="type"):
+    """The source is there."""
+
+    source: str
+
+
+class InterruptedLine(Record, frozen=True, tag="interrupted", tag_field="type"):
+    """The source is gone, and is sought again."""
+
+    since_ns: Annotated[Whole, about("receive time")]
+    code: Name
+    message: str
+
+
+class MissedLine(Record, frozen=True, tag="missed", tag_field="type"):
+    """Messages received between these times are lost."""
+
+    since_ns: Annotated[Whole, about("receive time")]
+    until_ns: Annotated[Whole, about("receive time")]
+    reconnected: Annotated[bool, about("whether the source is there again")]
+    count: Annotated[Count | None, about("how many; null: nobody knows")]
+
+
+class RunLine(Record, frozen=True, tag="run", tag_field="type"):
+    """A run has ended."""
+
+    number: Ordinal
+    ticks: Count
+    verdicts: dict[Name, str]
+    recording: str | None
+
+
+Line = (
+    RequirementLine | LateLine | MessageLine | OpenedLine | InterruptedLine | MissedLine | RunLine
+)
+
+
+SCHEMA = "fretc-watch-1"
+
+
+class _Lines(Record, frozen=True):
+    """All of them."""
+
+    lines: list[Line]
+
+
+def schema() -> dict[str, Any]:
+    """The JSON Schema of a line."""
+    found = json_schema(
+        _Lines,
+        SCHEMA,
+        "A line of `fretc watch --format jsonl`",
+        "Times are nanoseconds. `type` tells the kinds of lines from each other.",
+    )
+    line_ = found["properties"]["lines"]["items"]
+    head = {key: value for key, value in found.items() if key.startswith("$") or key in _HEAD}
+    return {**head, **line_}
+
+
+_HEAD = ("title", "description")
+
+
+def line(news: News) -> dict[str, Any]:
+    """The object of one piece of news."""
+    found: dict[str, Any] = plain(_line(news))
+    return found
+
+
+def _line(news: News) -> Line:
+    match news:
+        case Changed(state, _, time):
+            return RequirementLine(
+                state.requirement,
+                state.verdict,
+                state.owed,
+                state.triggered_ns,
+                state.open_ns,
+                state.deadline_ns,
+                state.violated_ns,
+                time,
+            )
+        case Late(ticks, messages):
+            return LateLine(ticks, dict(messages))
+        case Found(diagnostic):
+            return MessageLine(
+                diagnostic.code.number,
+                str(diagnostic.severity),
+                diagnostic.message,
+                diagnostic.help,
+            )
+        case Opened(name):
+            return OpenedLine(name)
+        case Interrupted(since, problem):
+            return InterruptedLine(since, problem.code.number, problem.message)
+        case Reconnected(since, until):
+            return MissedLine(since, until, reconnected=True, count=None)
+        case Missed(since, until, count):
+            return MissedLine(since, until, reconnected=False, count=count)
+        case RunEnded(number, verdicts, recording, ticks):
+            return RunLine(number, ticks, dict(verdicts), recording)
+        case _:
+            assert_never(news)

@@ -1,0 +1,120 @@
+"""The monitors of requirements, stepped tick by tick, with rows that may become unknown later."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
+
+from fretc.audit.measurements.judgement import judged
+from fretc.audit.plan import Plan
+from fretc.logs.stream import Tick, Withdrawn
+from monitors import kernel
+from monitors.kernel import Column, Monitor, Outcome
+from monitors.kernel.stepping import Standing
+from monitors.kernel.verdicts import Truth, Verdict
+from monitors.loading import load
+from monitors.ticking import Ledger
+
+
+class Judges:
+    """One monitor for each requirement of a plan."""
+
+    def __init__(self, plan: Plan, kept: int = 0) -> None:
+        """No tick yet; so many of the last ones can become unknown later, or all (0)."""
+        self._end = Verdict(plan.declarations.clock.end)
+        self.monitors = tuple(load(f"{each.id}_monitor", each.monitor) for each in plan.claims)
+        self.propositions = tuple(
+            dict.fromkeys(name for each in self.monitors for name in each.PROPOSITIONS)
+        )
+        self.ledger = Ledger(self.monitors, kept)
+
+    @property
+    def count(self) -> int:
+        """How many ticks were judged."""
+        return len(self.ledger)
+
+    def step(self, tick: Tick) -> None:
+        """One more tick."""
+        self.ledger.advance(tick.time, tick.truth)
+
+    def withdraw(self, late: Withdrawn) -> int:
+        """Ticks become unknown, and perhaps there is one more; how many have changed."""
+        if late.tick is not None:
+            self.ledger.insert(late.tick, self.propositions)
+        changed = self.ledger.withdraw(late.first, late.last, late.propositions)
+        return changed + (late.tick is not None)
+
+    def standings(self) -> tuple[Standing, ...]:
+        """What would be said of each requirement if the trace ended here."""
+        return tuple(standing for monitor in self.monitors for standing in monitor.standings())
+
+    def owed(self, rows: Iterable[Mapping[str, Truth]] = ()) -> tuple[Truth, ...]:
+        """Of each requirement whether a demand is open that the robot must meet.
+
+        Args:
+            rows: further ticks, which the monitors forget.
+        """
+        ahead = tuple(rows)
+        monitors = (_ahead(each, ahead) if ahead else each for each in self.monitors)
+        return tuple(standing.owed for monitor in monitors for standing in monitor.standings())
+
+    def last_triggers(self) -> tuple[int | None, ...]:
+        """Of each requirement the time of the last tick that has triggered it for certain."""
+        marks = (monitor.must.marks()[0] for monitor in self.monitors)
+        return tuple(self.ledger.time(each.last) if each.last >= 0 else None for each in marks)
+
+    def verdicts(self, cut: Mapping[str, Truth] | None, *, intact: bool) -> dict[str, str]:
+        """As an audit judges a log that ends here."""
+        return {
+            each.REQUIREMENTS[0].id: self._verdict(each, cut, intact=intact)
+            for each in self.monitors
+        }
+
+    def _verdict(self, monitor: Monitor, cut: Mapping[str, Truth] | None, *, intact: bool) -> str:
+        """As an audit judges, but that the monitor remembers all ticks before the last one."""
+        ticks, last = min(1, self.count), self.ledger.last or {}
+        columns = {name: _column(last.get(name), ticks) for name in monitor.PROPOSITIONS}
+        engine = partial(_outcome, before=ticks)
+        return str(
+            judged(
+                monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine
+            ).verdict
+        )
+
+
+def _ahead(monitor: Monitor, rows: Sequence[Mapping[str, Truth]]) -> Monitor:
+    """Another monitor that has taken further rows."""
+    other = type(monitor)()
+    other.restore(monitor.state())
+    other.advance(rows)
+    return other
+
+
+def _column(truth: Truth, ticks: int) -> Column:
+    """The column of the last tick alone."""
+    return Column(int(truth is True), int(truth is None)) if ticks else Column(0, 0)
+
+
+def _outcome(
+    monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict, before: int
+) -> tuple[Outcome, ...]:
+    """What a monitor shows that has made its steps, and perhaps one more, which it forgets."""
+    if ticks > before:
+        row = {name: columns[name].at(before) for name in monitor.PROPOSITIONS}
+        monitor = _ahead(monitor, [row])
+    (standing,) = monitor.standings()
+    verdict = standing.verdict
+    if end == kernel.VIOLATED and verdict == kernel.INCONCLUSIVE:
+        verdict = kernel.VIOLATED
+    nothing: tuple[()] = ()
+    first = standing.first_violation
+    return (
+        Outcome(
+            standing.requirement,
+            monitor.tick + 1,
+            verdict,
+            standing.finite,
+            first,
+            *(nothing,) * 5,
+        ),
+    )

@@ -1,0 +1,200 @@
+"""An MCAP log as a source: what has been written so far and, where it is followed, what is added.
+
+A record whose end is not there yet is waited for. A recorder writes when it likes, so no clock says
+that nothing older comes: a tick is judged when a later message has been recorded.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Collection, Generator, Iterator
+from threading import Event as Flag
+from typing import BinaryIO
+
+from mcap.opcode import Opcode
+from mcap.records import Channel as McapChannel
+from mcap.records import Chunk, Message, Schema
+
+from fretc.logs import log_diagnostics
+from fretc.logs.mcap.container import HEAD, LARGEST, MAGIC, BrokenError, frames, parse, unpacked
+from fretc.logs.storage import storage_diagnostics
+from fretc.watch.sources.source import Arrival, Channel, Event, Idle, Missed, Opened, Problem
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source as Text
+from fretish.diagnostics.source import Span
+
+_WAIT = 0.05
+"""Seconds between two looks at a file that has not grown."""
+_MOST = 2**16
+"""Channels of a log; what declares more is damaged."""
+
+
+class Log:
+    """One file, read from its beginning."""
+
+    def __init__(self, path: str, *, follow: bool) -> None:
+        """Nothing is opened yet; `follow` waits for what is still to be written."""
+        self.name = path
+        self._follow = follow
+        self._closed = Flag()
+        self._schemas: dict[int, Schema] = {}
+        self._channels: dict[int, Channel] = {}
+        self._wanted: frozenset[str] = frozenset()
+        self._latest = 0
+
+    def close(self) -> None:
+        """Look no further."""
+        self._closed.set()
+
+    def arrivals(self, topics: Collection[str]) -> Iterator[Arrival | Event | Idle]:
+        """The messages in the order of the file; those of a chunk by their log times."""
+        self._wanted = frozenset(topics)
+        place = Text(self.name, "").span()
+        try:
+            with open(self.name, "rb") as stream:
+                yield Opened(self.name)
+                yield from self._read(stream, place)
+        except FileNotFoundError:
+            yield Problem(_no_such_file(place))
+        except OSError as error:
+            yield Problem(storage_diagnostics.unreadable(error, place))
+
+    def _read(self, stream: BinaryIO, place: Span) -> Iterator[Arrival | Event | Idle]:
+        start = yield from self._whole(stream, 0, len(MAGIC), place)
+        if start is None:
+            return
+        if start != MAGIC:
+            yield Problem(log_diagnostics.not_a_log(start, place))
+            return
+        at = len(MAGIC)
+        while not self._closed.is_set():
+            head = yield from self._whole(stream, at, HEAD.size, place)
+            if head is None:
+                return
+            opcode, length = HEAD.unpack(head)
+            if opcode in (Opcode.DATA_END, Opcode.FOOTER):
+                return
+            if length > LARGEST or opcode == 0:
+                yield Problem(_broken(at, "a record has an impossible length", place))
+                return
+            content = yield from self._whole(stream, at + HEAD.size, length, place)
+            if content is None:
+                return
+            yield from self._record(opcode, content, at, place)
+            at += HEAD.size + length
+
+    def _whole(
+        self, stream: BinaryIO, at: int, length: int, place: Span
+    ) -> Generator[Event | Idle, None, bytes | None]:
+        """So many bytes, once they are there."""
+        while True:
+            stream.seek(at)
+            data = stream.read(length)
+            if len(data) == length:
+                return data
+            changed = self._changed(stream, at)
+            if changed is not None:
+                yield Problem(_broken(at, changed, place))
+                return None
+            if self._closed.is_set():
+                return None
+            if not self._follow:
+                yield Problem(_broken(at, "it breaks off", place))
+                yield Missed(self._latest, self._latest, 1)
+                return None
+            yield Idle(None)
+            self._closed.wait(_WAIT)
+
+    def _changed(self, stream: BinaryIO, at: int) -> str | None:
+        """Whether it is not the file any more that was being read."""
+        own = os.fstat(stream.fileno())
+        if own.st_size < at:
+            return "it has become shorter than what was read of it"
+        try:
+            now = os.stat(self.name)
+        except OSError:
+            return "it is gone"
+        if (now.st_dev, now.st_ino) != (own.st_dev, own.st_ino):
+            return "another file has taken its place"
+        return None
+
+    def _record(
+        self, opcode: int, content: bytes, at: int, place: Span
+    ) -> Iterator[Arrival | Event]:
+        try:
+            match opcode:
+                case Opcode.CHUNK:
+                    yield from self._chunk(parse(Chunk.read, content), at, place)
+                case _:
+                    arrival = self._single(opcode, content)
+                    if arrival is not None:
+                        yield arrival
+        except BrokenError as error:
+            yield Problem(_broken(at, str(error), place))
+            yield Missed(self._latest, self._latest, 1)
+
+    def _chunk(self, chunk: Chunk, at: int, place: Span) -> Iterator[Arrival | Event]:
+        found: list[Arrival] = []
+        try:
+            data = unpacked(chunk)
+            for opcode, start, end in frames(data):
+                arrival = self._single(opcode, data[start:end])
+                if arrival is not None:
+                    found.append(arrival)
+        except BrokenError as error:
+            yield Problem(_broken(at, str(error), place))
+            yield Missed(chunk.message_start_time, chunk.message_end_time, 1)
+        yield from sorted(found, key=_log_time)
+
+    def _single(self, opcode: int, content: bytes) -> Arrival | None:
+        match opcode:
+            case Opcode.SCHEMA:
+                schema = parse(Schema.read, content)
+                if len(self._schemas) < _MOST:
+                    self._schemas[schema.id] = schema
+            case Opcode.CHANNEL:
+                self._declare(parse(McapChannel.read, content))
+            case Opcode.MESSAGE:
+                return self._message(content)
+        return None
+
+    def _declare(self, channel: McapChannel) -> None:
+        if channel.topic not in self._wanted or channel.id in self._channels:
+            return
+        schema = self._schemas.get(channel.schema_id)
+        self._channels[channel.id] = Channel(
+            channel.topic,
+            channel.message_encoding,
+            schema.name if schema else "",
+            schema.encoding if schema else "",
+            schema.data if schema else b"",
+        )
+
+    def _message(self, content: bytes) -> Arrival | None:
+        channel = self._channels.get(int.from_bytes(content[:2], "little"))
+        if channel is None:
+            return None
+        message = parse(_message_of(len(content)), content)
+        self._latest = max(self._latest, message.log_time)
+        return Arrival(channel, bytes(message.data), message.log_time, message.publish_time)
+
+
+def _message_of(length: int) -> Callable[..., Message]:
+    return lambda stream: Message.read(stream, length)
+
+
+def _log_time(arrival: Arrival) -> int:
+    return arrival.log_time
+
+
+def _no_such_file(place: Span) -> Diagnostic:
+    return Diagnostic(Code.NO_SUCH_FILE, "there is no such log", place)
+
+
+def _broken(at: int, why: str, place: Span) -> Diagnostic:
+    return Diagnostic(
+        Code.UNREADABLE_LOG,
+        f"the log cannot be read on from byte {at}: {why}",
+        place,
+        "audit what there is of it with `fretc audit`",
+    )

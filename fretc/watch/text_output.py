@@ -1,0 +1,112 @@
+"""What a watch shows a person: a row for each requirement, or a line for each piece of news."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import assert_never
+
+from fretc.audit.evidence.verdicts import VERDICTS
+from fretc.terminal.output import Piece
+from fretc.terminal.screen import Screen, fitted, padded, titled, width
+from fretc.watch.news import Changed, Found, Late, News, RunEnded
+from fretc.watch.session import Session, State
+from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
+from fretish.bindings.amounts import duration, seconds
+from monitors.kernel.verdicts import Truth
+
+_S = 10**9
+_OWED: Mapping[Truth, str] = {True: "owed", None: "perhaps owed", False: ""}
+_NAME = 40
+"""Columns of a requirement's name, at most."""
+
+
+def rows(session: Session, titles: Mapping[str, str], screen: Screen) -> Iterator[list[Piece]]:
+    """The screen: requirements, then topics."""
+    states = session.states()
+    ids = [state.requirement for state in states]
+    names = {id: titled(id, titles.get(id, ""), _NAME) for id in ids}
+    room = max(map(width, names.values()), default=0)
+    for state in states:
+        sign = VERDICTS[state.verdict].sign
+        text = f"{sign.glyph} {padded(names[state.requirement], room)}  {state.verdict:<12}"
+        text = f"{text}  {_demand(state, session.now)}".rstrip()
+        yield [(fitted(text, screen.width), sign.colour)]
+    yield [("", None)]
+    for name, topic in session.topics.items():
+        rate = "nothing yet" if not topic.count else _rate(topic.rate)
+        late = session.late.get(name, 0)
+        text = f"  {name}  {rate}{f', {late} late' if late else ''}"
+        yield [(fitted(text, screen.width), None if topic.count else "yellow")]
+    yield [(fitted(_ticks(session), screen.width), None)]
+
+
+def _ticks(session: Session) -> str:
+    if session.waiting:
+        return f"  waits for {', '.join(session.waiting)} to place the first tick"
+    late = f", {session.late_ticks} became unknown" if session.late_ticks else ""
+    return f"  {session.ticks} ticks{late}"
+
+
+def _rate(rate: float | None) -> str:
+    return "once" if rate is None else f"{rate:.3g} Hz"
+
+
+def _demand(state: State, now: int) -> str:
+    parts = []
+    if state.violated_ns is not None:
+        parts.append(f"first {_ago(state.violated_ns, now)}")
+    owed = _OWED[state.owed]
+    if owed and state.open_ns is not None:
+        owed = f"{owed} since {duration(max(0, now - state.open_ns) / _S)}"
+    if owed and state.deadline_ns is not None:
+        left = state.deadline_ns - now
+        owed += f", {duration(left / _S)} left" if left >= 0 else ", too late"
+    parts += [owed] if owed else []
+    if state.triggered_ns is not None:
+        parts.append(f"triggered {_ago(state.triggered_ns, now)}")
+    return "; ".join(parts)
+
+
+def _ago(time: int, now: int) -> str:
+    return f"{duration(max(0, now - time) / _S)} ago"
+
+
+def line(news: News, start: int | None) -> str | None:
+    """A line of news; None where it says nothing that a diagnostic does not say.
+
+    Args:
+        news: what has happened.
+        start: the first tick, from which seconds count; None: there is none yet.
+    """
+    match news:
+        case Changed(state, before, time):
+            return _changed(state, before, time, start)
+        case Late(ticks, messages):
+            of = ", ".join(f"{count} of {topic}" for topic, count in messages.items() if count)
+            return f"late messages ({of}): {ticks} ticks that were judged are unknown"
+        case Opened(name):
+            return f"watches {name}"
+        case Interrupted(_, problem):
+            return f"interrupted: {problem.message}"
+        case Reconnected(since, until):
+            return f"connected again: what came within {duration((until - since) / _S)} is lost"
+        case Missed(since, until, count):
+            return f"missed {count} messages within {duration((until - since) / _S)}: unknown"
+        case RunEnded(number, verdicts, recording, ticks):
+            where = f", recorded in {recording}" if recording else ""
+            of = ", ".join(f"{id} {verdict}" for id, verdict in verdicts.items())
+            return f"run {number} ended after {ticks} ticks{where}: {of}"
+        case Found():
+            return None
+        case _:
+            assert_never(news)
+
+
+def _changed(state: State, before: State | None, time: int, start: int | None) -> str | None:
+    """Only what a reader of a log of lines would act on: a verdict, a demand that opens or ends."""
+    told = None if before is None else (before.verdict, before.owed)
+    if told == (state.verdict, state.owed):
+        return None
+    at = seconds((time - start) / _S) if start is not None else "-"
+    owed = f", {_OWED[state.owed]}" if _OWED[state.owed] else ""
+    return f"{at}  {VERDICTS[state.verdict].sign.glyph} {state.requirement} {state.verdict}{owed}"

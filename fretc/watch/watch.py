@@ -1,0 +1,236 @@
+"""What a source gives → sessions, recordings and news; each run has a session and a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from fretc.audit.plan import Plan
+from fretc.watch.news import Changed, Found, Late, News, RunEnded
+from fretc.watch.recording import Recorder
+from fretc.watch.session import Ended, Jump, Session, State
+from fretc.watch.sources.source import (
+    Arrival,
+    Event,
+    Idle,
+    Interrupted,
+    Missed,
+    Opened,
+    Problem,
+    Reconnected,
+)
+from fretish.bindings.amounts import duration
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+
+MOST_RUNS = 100
+"""After so many a clock that is set back again and again is two clocks."""
+SILENCE = 5 * 10**9
+"""Nanoseconds after which a topic that has not begun is told of."""
+
+
+class Watch:
+    """One watch, of one run or, where a clock is set back, of several."""
+
+    def __init__(self, plan: Plan, record: Path | None = None) -> None:
+        """Nothing has come yet.
+
+        Args:
+            plan: its clock has a lateness, where it needs one.
+            record: the file that is written; of a second run with `-2` before its ending.
+
+        Raises:
+            OSError: the file is there, or cannot be written.
+        """
+        self._plan, self._record = plan, record
+        self.session = Session(plan)
+        self.runs: list[RunEnded] = []
+        self.failed = False
+        """Whether something has gone wrong that leaves a run, or its recording, unfinished."""
+        self.ended = False
+        """Whether nothing more can be watched."""
+        self._states: dict[str, State] = {}
+        self._late = 0
+        self._began: int | None = None
+        self._silent: set[str] = set()
+        self._lost_since: int | None = None
+        self._recorder = self._new_recorder()
+
+    @property
+    def topics(self) -> list[str]:
+        """All that are read."""
+        return sorted(self.session.topics)
+
+    @property
+    def recordings(self) -> list[str]:
+        """The files of the runs that have ended."""
+        return [run.recording for run in self.runs if run.recording is not None]
+
+    def _new_recorder(self) -> Recorder | None:
+        if self._record is None:
+            return None
+        path = self._record
+        if self.runs:
+            path = path.with_name(f"{path.stem}-{len(self.runs) + 1}{path.suffix}")
+        return Recorder(path, self._plan.declarations.clock)
+
+    # What comes
+
+    def take(self, item: Arrival | Event | Idle) -> Iterator[News]:
+        """One thing that a source gives, and what there is to tell of it."""
+        match item:
+            case Arrival():
+                yield from self._arrive(item)
+            case Idle(now):
+                if now is not None:
+                    yield from self._passed(self.session.idle(now))
+                    yield from self._silences(now)
+            case Missed(since, until):
+                self.session.miss(since, until)
+                yield item
+            case Reconnected(since, until):
+                self.session.miss(min(since, self._lost_since or since), until)
+                self._lost_since = None
+                yield item
+            case Interrupted(since):
+                self._lost_since = since
+                yield item
+            case Opened():
+                yield item
+            case Problem(diagnostic):
+                self.failed |= diagnostic.is_error
+                yield Found(diagnostic)
+
+    def _arrive(self, arrival: Arrival) -> Iterator[News]:
+        self._began = self._began or arrival.log_time
+        found = self.session.arrive(arrival)
+        if isinstance(found, Jump):
+            yield from self._begin_anew(found)
+            if self.ended:
+                return
+            found = self.session.arrive(arrival)
+            assert not isinstance(found, Jump), "the first message of a run has none before it"
+        yield from self._recorded(arrival)
+        yield from self._passed(found)
+        for problem in self.session.problems:
+            yield Found(problem)
+        self.session.problems.clear()
+        if arrival.log_time - self._began > SILENCE:
+            yield from self._silences(arrival.log_time)
+
+    def _passed(self, wrong: Diagnostic | None) -> Iterator[News]:
+        if wrong is not None:
+            self.failed = self.ended = True
+            yield Found(wrong)
+        yield from self._changes()
+
+    def _changes(self, *, ahead: bool = True) -> Iterator[News]:
+        if self.session.late_ticks > self._late:
+            self._late = self.session.late_ticks
+            yield Late(self._late, dict(self.session.late))
+        for state in self.session.states(ahead=ahead):
+            before = self._states.get(state.requirement)
+            if state != before:
+                self._states[state.requirement] = state
+                yield Changed(state, before, self.session.now)
+
+    def _silences(self, now: int) -> Iterator[News]:
+        self._began = self._began or now
+        if now - self._began < SILENCE:
+            return
+        for name, topic in self.session.topics.items():
+            if not topic.count and name not in self._silent:
+                self._silent.add(name)
+                yield Found(_silent(name))
+
+    def _begin_anew(self, jump: Jump) -> Iterator[News]:
+        """A clock was set back: this run ends, and another one begins."""
+        yield Found(_set_back(jump))
+        yield from self.finish()
+        if len(self.runs) >= MOST_RUNS:
+            self.failed = self.ended = True
+            yield Found(_two_clocks(jump))
+            return
+        self.session = Session(self._plan)
+        self._states, self._late, self._began = {}, 0, None
+        self._silent = set()
+        try:
+            self._recorder = self._new_recorder()
+        except OSError as error:
+            yield from self._not_recorded(error)
+
+    # The recording
+
+    def _recorded(self, arrival: Arrival) -> Iterator[News]:
+        if self._recorder is None or arrival.channel.topic not in self.session.topics:
+            return
+        try:
+            self._recorder.grid(self.session.origin)
+            self._recorder.message(arrival)
+        except OSError as error:
+            yield from self._not_recorded(error)
+
+    def _not_recorded(self, error: OSError) -> Iterator[News]:
+        self.failed = True
+        path = self._record
+        if self._recorder is not None:
+            path = self._recorder.path
+            self._recorder.abandon()
+        self._recorder = None
+        yield Found(_not_recorded(str(path), error.strerror or str(error)))
+
+    def finish(self) -> Iterator[News]:
+        """The present run ends: its verdicts are those of an audit of its recording."""
+        if self._lost_since is not None:
+            self.session.miss(self._lost_since, self._lost_since)
+        found = self.session.end()
+        if not isinstance(found, Ended):
+            self.failed = True
+            yield Found(found)
+            found = Ended(dict.fromkeys(self._states, "no data"), self.session.now)
+        yield from self._changes(ahead=False)
+        path = None
+        if self._recorder is not None:
+            path = str(self._recorder.path)
+            try:
+                self._recorder.grid(self.session.origin)
+                self._recorder.close(found.until, self.session.missed)
+            except OSError as error:
+                yield from self._not_recorded(error)
+            self._recorder = None
+        run = RunEnded(len(self.runs) + 1, found.verdicts, path, self.session.ticks)
+        self.runs.append(run)
+        yield run
+
+
+def _silent(topic: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NOTHING_COMES,
+        f"nothing has come of `{topic}` for {duration(SILENCE / 1e9)}: what reads it is unknown",
+        help="compare its name with those that the robot sends",
+        severity=Severity.WARNING,
+    )
+
+
+def _set_back(jump: Jump) -> Diagnostic:
+    return Diagnostic(
+        Code.CLOCK_SET_BACK,
+        f"the clock of `{jump.topic}` was set back by {duration(jump.by / 1e9)}: what follows is "
+        "another run",
+        severity=Severity.WARNING,
+    )
+
+
+def _two_clocks(jump: Jump) -> Diagnostic:
+    return Diagnostic(
+        Code.CLOCK_SET_BACK,
+        f"the clock of `{jump.topic}` was set back {MOST_RUNS} times: it is given up",
+        help="are there two publishers of the topic, with different clocks?",
+    )
+
+
+def _not_recorded(path: str, why: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NOT_RECORDED,
+        f"`{path}` cannot be written on: {why}; the watch goes on without it",
+        help="make room, and watch again with another file",
+    )
