@@ -21,7 +21,9 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
     from compiler.formalization.formalized import Formalized
+    from compiler.project.folder import Project
     from fretc.play.starts import Start
+    from fretc.play.versions import Side
 
 
 T = TypeVar("T")
@@ -68,7 +70,7 @@ def play(
     from fretc.commands.analyze import in_force, project_of
     from fretc.play.page import html
     from fretc.play.starts import of_examples
-    from fretc.play.versions import side_by_side, versions
+    from fretc.play.versions import Versions, side_by_side, versions
 
     project, _ = project_of(files, requirements, bindings)
     rules = in_force(project, None)
@@ -77,8 +79,7 @@ def play(
     if not known:
         stop(*refused.values())
     earlier = project_of((against,), requirements, bindings)[0] if against is not None else None
-    old = [rule for rule in in_force(earlier, None) if not refuse(rule)] if earlier else []
-    changes = versions(known, old, _SECONDS)
+    changes = versions(_side(project), _side(earlier), _SECONDS) if earlier else Versions()
     shown = [*side_by_side(changes, known)]
     clashing = [*clashes(shown)]
     if clashing:
@@ -89,7 +90,7 @@ def play(
         *of_examples(known),
         *_of_files(project.rules, known, tests, analysis),
     ]
-    notes = [*[pair.note for pair in changes.pairs], *changes.notes] if earlier else []
+    notes = [*(pair.note for pair in changes.pairs), *changes.notes]
     before = {pair.new.id: pair.old.id for pair in changes.pairs}
     left_out = [(id, said.message) for id, said in refused.items()]
     page = html(shown, left_out, starts, before, notes)
@@ -98,6 +99,18 @@ def play(
     inputs = filter(None, [bindings, tests, analysis])
     deliver({Path(output): page}, [*sources, *companions(sources), *inputs])
     raise SystemExit(BAD if refused else SHOWN)
+
+
+def _side(project: Project) -> Side:
+    """One of two versions."""
+    from compiler.targets.javascript.monitor import refuse
+    from fretc.commands.analyze import in_force
+    from fretc.play.versions import Side
+
+    rules = in_force(project, None)
+    refused = {rule.id: said.message for rule in rules if (said := refuse(rule)) is not None}
+    known = [rule for rule in rules if rule.id not in refused]
+    return Side(known, refused, project.declarations)
 
 
 def _of_files(
