@@ -117,6 +117,8 @@ _SHARED = (
     (r"(?<= )[1-9]\d*(?=\)|;|\)| })", "9"), (r"\+ 1", "+ 2"), (r"(?<= )0;", "1;"),
     (r"-1;", "0;"), (r"since_1", "since_2"), (r"since_2", "since_1"),
 )  # fmt: skip
+_BITWISE = ((r"(?<!word) & (?!bit|~)", " | "), (r" \| (?!bit)", " & "))
+"""Not of rings, which are as fretc writes them."""
 
 
 def given_c(*rules: Formalized) -> Given:
@@ -182,13 +184,13 @@ def _reading(tick: int, told: dict[str, Any]) -> Reading:
 
 C = Tongue(
     "c", c, given_c, (r"/\*.*?\*/", "/* mine\n */"), "_clear(", "_judge(&",
-    (*_SHARED, (r"!= FRETC", "== FRETC"), (r"\.certain;", ".possible;"),
+    (*_SHARED, *_BITWISE, (r"!= FRETC", "== FRETC"), (r"\.certain;", ".possible;"),
      (r"(?m)^    +(rail|reading)->\w+ = .*;$", ";")),
     _told_by_c,
 )  # fmt: skip
 RUST = Tongue(
     "rust", rust, given_rust, (r"(?<!/)// .*", "// mine\n//"), "impl Rail {", "impl Default",
-    (*_SHARED, (r"!= Some", "== Some"), (r"\(certain\[", "(possible["),
+    (*_SHARED, *_BITWISE, (r"!= Some", "== Some"), (r"\(certain\[", "(possible["),
      (r": (\d+|-1),", ": 7,"), (r"(?m)^ +self\.\w+ = .*;$", "")),
     _told_by_rust,
 )  # fmt: skip

@@ -33,7 +33,7 @@ LEXIS = Lexis(
     re.compile(r"\\\s*\n|\?\?/|\r(?!\n)"),
 )
 """A directive ends with its line, so it is one token."""
-_SIGNS = frozenset("! && || < <= > >= == != + - ? : ( ) true false".split())
+_SIGNS = frozenset("! & | && || < <= > >= == != + - ? : ( ) true false".split())
 _KEPT = frozenset(
     """
     rail now outcomes possible reading

@@ -11,6 +11,9 @@ from dataclasses import dataclass
 
 from fretc.verification.compiled.text import NAME, NUMBER, Fields, Tokens, strange
 
+_JOINS = ("&", "|")
+"""With no value before them they take an address or begin a function."""
+
 
 @dataclass(frozen=True, slots=True)
 class Part:
@@ -90,6 +93,8 @@ class Flow:
             elif name in self._local and after not in _CALLS:
                 names.add(name)
                 place += 1
+            elif name in _JOINS and not _is_value(value[place - 1 : place]):
+                raise strange(statement)
             elif name in grammar.signs or NUMBER.fullmatch(name):
                 place += 1
             else:
@@ -145,6 +150,16 @@ class Flow:
         for outcome, fields in zip(outcomes, given, strict=True):
             for name, value in fields:
                 self.change([f"&{outcome}"], self.names(expression(name, value), value))
+
+
+def _is_value(before: Sequence[str]) -> bool:
+    """Whether an expression can end with this token, of which there is one or none."""
+    return any(
+        each == ")"
+        or NUMBER.fullmatch(each)
+        or (NAME.fullmatch(each) and each not in ("if", "else"))
+        for each in before
+    )
 
 
 def _names(fields: Fields) -> list[str]:

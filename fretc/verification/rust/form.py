@@ -36,7 +36,7 @@ LEXIS = Lexis(
     re.compile(r"\r(?!\n)"),
 )
 """`/*` is no gap: such comments may hold others."""
-_SIGNS = frozenset("! && || < <= > >= == != + - ( ) { } if else true false".split())
+_SIGNS = frozenset("! & | && || < <= > >= == != + - ( ) { } if else true false".split())
 _KEPT = frozenset("self Self now true false if else let mut ref Reading None".split())
 _FREE: tuple[Tokens, ...] = (("const", "fn", "new"), ("fn", "advance"))
 _READ = re.compile(r"(\w+) : inputs \. (\w+) == Some")

@@ -45,14 +45,16 @@ def checker(tmp_path: Path) -> Checker:
 FAULTS = (
     (WITHIN, "rail->oldest_1 >= 3", "rail->oldest_1 >= 2", REFUTED),
     (WITHIN, "rail->oldest_1 >= 3", "rail->oldest_1 > 2", SAME),
-    (WITHIN, "reading->trigger = now->is_m && now->is_p;", "reading->trigger = now->is_p;", REFUTED),
+    (WITHIN, "reading->trigger = now->is_m & now->is_p;", "reading->trigger = now->is_p;", REFUTED),
     (WITHIN, "reading->open = since_2;", "reading->open = since_1;", REFUTED),
     (WITHIN, "reading->open = since_2;", "", REFUTED),
-    (WITHIN, "    rail->r1_age = -1;\n    rail->r1_broken", "    rail->r1_age = 0;\n    rail->r1_broken", REFUTED),
-    (WITHIN, "reading->answer = now->is_m && now->is_q;", "reading->answer = now->is_q;", REFUTED),
-    (WITHIN, "(3 - rail->r1_age)", "(4 - rail->r1_age)", REFUTED),
-    (WITHIN, "reading->left = (since_2 && rail->r1_age >= 0)", "reading->left = (since_1 && rail->r1_age >= 0)", REFUTED),
+    (WITHIN, "    rail->oldest_1 = -1;\n    rail->r1_broken", "    rail->oldest_1 = 0;\n    rail->r1_broken", REFUTED),
+    (WITHIN, "reading->answer = now->is_m & now->is_q;", "reading->answer = now->is_q;", REFUTED),
+    (WITHIN, "(3 - rail->oldest_1)", "(4 - rail->oldest_1)", REFUTED),
+    (WITHIN, "reading->left = (since_2 & (rail", "reading->left = (since_1 & (rail", REFUTED),
     (FOR, "reading->settled = false;", "reading->settled = since_1;", REFUTED),
+    (WITHIN, "reading->open = since_2;", "reading->open = &since_2 > &since_1;", REFUSED),
+    (WITHIN, "reading->open = since_2;", "reading->open = since_1 | & rail->oldest_1;", REFUSED),
     (WITHIN, "now.is_q = inputs->q != FRETC_FALSE;", "now.is_q = inputs->q == FRETC_TRUE;", REFUSED),
     (WITHIN, "outcome->verdict = FRETC_PENDING;", "outcome->verdict = FRETC_SATISFIED;", REFUSED),
 )  # fmt: skip
@@ -103,7 +105,7 @@ SINCE = "const bool since_1 = rail->oldest_1 >= 3;"
         ("r1_clear(&state->possible);", ""),
         ("r1_judge(&outcomes->r1);", ""),
         ("bool is_m;", "int is_m;"),
-        ("rail->oldest_1 = -1;\n    rail->r1_age", "rail->oldest_1 = rail->r1_age;\n    rail->r1_age"),
+        ("rail->oldest_1 = -1;\n    rail->r1_broken", "rail->oldest_1 = rail->r1_broken;\n    rail->r1_broken"),
     ],
 )  # fmt: skip
 def test_what_may_reach_further_is_refused(edit: tuple[str, str]) -> None:

@@ -182,4 +182,4 @@ def test_faults_are_refuted_or_refused_or_of_no_effect(
             assert tongue.told(folder, faulty, one, rows) == [*of_python(machine, rows)], wrong
     print(tongue.name, sentence, found)
     assert found[REFUTED] >= 8, found
-    assert found[SAME] <= 10, found
+    assert found[SAME] <= 15, found

@@ -13,7 +13,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 // Names are those of the requirements, and conditions those of their formulas: simpler ones might say less.
-#![allow(non_snake_case, clippy::nonminimal_bool, clippy::overly_complex_bool_expr, clippy::if_same_then_else)]
+#![allow(non_snake_case, clippy::assign_op_pattern, clippy::nonminimal_bool, clippy::overly_complex_bool_expr, clippy::if_same_then_else)]
 
 /// What is known of a truth value; `None`: it is unknown.
 pub type Truth = Option<bool>;
@@ -112,9 +112,10 @@ impl Rail {
         }
     }
 
+    #[inline(always)]
     fn advance(&mut self, now: &Literals) -> [Reading; 1] {
         // !stopped S (too_close & !stopped)
-        self.since_1 = (now.is_too_close && now.not_stopped) || (now.not_stopped && self.since_1);
+        self.since_1 = (now.is_too_close & now.not_stopped) | (now.not_stopped & self.since_1);
         [
             // R1
             Reading {
