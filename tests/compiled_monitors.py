@@ -170,6 +170,7 @@ def _outcome(tick: int, told: dict[str, Any]) -> c_monitors.Outcome:
         possible._replace(failed=failed[1]),
         told["verdict"],
         told["finite"],
+        told["owed"],
     )
 
 

@@ -79,9 +79,9 @@ def outcomes(
         for place, rows in traces
     )
     done = subprocess.run([folder / "main"], input=data, capture_output=True, check=True)
-    readings = struct.iter_unpack("=i7?i7?BB", done.stdout)
+    readings = struct.iter_unpack("=i7?i7?BBB", done.stdout)
     found = (
-        Outcome(Reading(*r[:8]), Reading(*r[8:16]), VERDICTS[r[16]], _TRUTHS[r[17]])
+        Outcome(Reading(*r[:8]), Reading(*r[8:16]), VERDICTS[r[16]], _TRUTHS[r[17]], _TRUTHS[r[18]])
         for r in readings
     )
     sizes = [len(fields(text, "Outcomes")) for text in libraries]
@@ -104,6 +104,7 @@ macro_rules! put {{
         }}
         $out.push(o.verdict as u8);
         $out.push(o.finite.map_or(2, u8::from));
+        $out.push(o.owed.map_or(2, u8::from));
     }}}};
 }}
 

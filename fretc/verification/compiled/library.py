@@ -24,7 +24,7 @@ from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.rails import Letter
 from monitors.kernel.verdicts import Truth
 
-_OUTCOME = struct.Struct("@i7Bxi7BxIB3x")
+_OUTCOME = struct.Struct("@i7Bxi7BxIBB2x")
 _TRUTHS: tuple[Truth, ...] = (False, True, None)
 _CODES = {False: 0, True: 1, None: 2}
 _GARBAGE = 0xA5
@@ -131,7 +131,7 @@ class Library:
             ctypes.memmove(start + at, saved[done : done + size], size)
             done += size
 
-    def step(self, letter: Sequence[Truth]) -> tuple[Reading, Reading, tuple[object, Truth | str]]:
+    def step(self, letter: Sequence[Truth]) -> tuple[Reading, Reading, tuple[object, ...]]:
         """Both readings after a tick, and what is judged from them.
 
         An input that no value of the letter is for is false.
@@ -141,10 +141,10 @@ class Library:
         ctypes.memset(self._outcomes, _GARBAGE, len(self._outcomes))
         self._step(*self._arguments)
         values = _OUTCOME.unpack_from(self._outcomes, self._at)
-        verdict, finite = values[16:]
+        verdict, *truths = values[16:]
         told = (
             VERDICTS[verdict] if verdict < len(VERDICTS) else f"verdict {verdict}",
-            _TRUTHS[finite] if finite < len(_TRUTHS) else f"truth value {finite}",
+            *(_TRUTHS[each] if each < len(_TRUTHS) else f"truth value {each}" for each in truths),
         )
         return Reading(*values[:8]), Reading(*values[8:16]), told
 
@@ -178,7 +178,7 @@ class Judging:
 
     def step(self, letter: Valuation) -> Judgement:
         """The verdict that it tells, and FRET's finite one."""
-        _, _, (verdict, finite) = self._library.step(letter)
+        _, _, (verdict, finite, _) = self._library.step(letter)
         return str(verdict), finite is True
 
 

@@ -90,15 +90,15 @@ function search({ outcome, cells, windows, ages, rails, letters }) {
     marks.broken >= 0 ? 1 : code(said.fails),
     ...TRUTHS.map((name) => code(said[name])),
   ];
-  const outcomeOf = (tick, { certain, possible, verdict, finite }) => {
+  const outcomeOf = (tick, { certain, possible, verdict, finite, owed }) => {
     const of = { certain, possible };
     const parts = RAILS.map((name) => reading(of[name], machine[name].marks[outcome], tick));
     const facts = RAILS.map((name) => {
       const { broken, doomed } = machine[name].marks[outcome];
-      return [broken >= 0, doomed >= 0, of[name].fails];
+      return [broken >= 0, doomed >= 0, of[name].fails, of[name].trigger || of[name].owed];
     });
     const isReal = facts[0].every((fact, i) => !fact || facts[1][i]);
-    const key = JSON.stringify([...parts, String(verdict), code(finite), isReal]);
+    const key = JSON.stringify([...parts, String(verdict), code(finite), code(owed), isReal]);
     if (!readings.has(key)) {
       readings.set(key, readings.size);
       told.push(key);
@@ -254,7 +254,8 @@ class Told(NamedTuple):
 
     rails: tuple[Reading, Reading]
     """What holds for certain, and what may hold."""
-    verdicts: tuple[object, Truth | str]
+    verdicts: tuple[object, ...]
+    """The verdict, FRET's finite one, and what is owed."""
     is_real: bool
     """Whether what is certain is possible, too: a rail that goes on from wherever it is may be in
     no state that it can have at this tick."""
@@ -273,10 +274,10 @@ class Table:
     def take(self, answer: Any) -> None:
         """The steps of further states."""
         self.rows += answer["rows"]
-        for certain, possible, verdict, finite, is_real in answer["told"]:
-            truth: Truth | str = _TRUTHS[finite] if finite >= 0 else "no truth value"
+        for certain, possible, verdict, *truths, is_real in answer["told"]:
             rails = Reading(*certain), Reading(*possible)
-            self.outcomes.append(Told(rails, (verdict, truth), is_real))
+            both = (_TRUTHS[each] if each >= 0 else "no truth value" for each in truths)
+            self.outcomes.append(Told(rails, (verdict, *both), is_real))
 
     def step(self, state: int, letter: Letter) -> tuple[int, int]:
         """The next state, and the number of what is told."""
@@ -303,7 +304,7 @@ class Judging:
     def step(self, letter: Valuation) -> Judgement:
         """The verdict that it tells, and FRET's finite one."""
         self._state, told = self._table.step(self._state, letter)
-        verdict, finite = self._table.outcomes[told].verdicts
+        verdict, finite, _ = self._table.outcomes[told].verdicts
         return str(verdict), finite is True
 
 

@@ -97,6 +97,7 @@ pub struct Told {{
     possible: Rail,
     verdict: u32,
     finite: u8,
+    owed: u8,
 }}
 
 fn rail(reading: Reading) -> Rail {{
@@ -110,6 +111,7 @@ fn of(outcome: Outcome) -> Told {{
         possible: rail(outcome.possible),
         verdict: outcome.verdict as u32,
         finite: outcome.finite.map_or(2, u8::from),
+        owed: outcome.owed.map_or(2, u8::from),
     }}
 }}
 

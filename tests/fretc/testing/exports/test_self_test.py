@@ -116,11 +116,11 @@ FAULTS = (
     ("rail->oldest_1 >= 3", "rail->oldest_1 >= 2"),
     ("rail->oldest_1 >= 3", "rail->oldest_1 >= 4"),
     ("rail->oldest_1 = 0;", "rail->oldest_1 = 1;"),
-    ("rail->r1_broken || since_1", "rail->r1_broken && since_1"),
+    ("rail->r1_broken | since_1", "rail->r1_broken & since_1"),
     ("outcome->verdict = FRETC_PENDING;", "outcome->verdict = FRETC_SATISFIED;"),
-    ("outcome->finite = FRETC_UNKNOWN;", "outcome->finite = FRETC_TRUE;"),
+    ("(outcome->certain.failed ? 0u : 1u)", "(outcome->certain.failed ? 1u : 0u)"),
     ("now.not_q = inputs->q != FRETC_TRUE;", "now.not_q = inputs->q == FRETC_FALSE;"),
-    ("&& now->is_p", "|| now->is_p"),
+    ("& now->is_p", "| now->is_p"),
 )
 
 

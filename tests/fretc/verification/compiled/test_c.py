@@ -47,7 +47,7 @@ FAULTS = (
     (WITHIN, "rail->oldest_1 >= 3", "rail->oldest_1 > 2", SAME),
     (WITHIN, "reading->trigger = now->is_m & now->is_p;", "reading->trigger = now->is_p;", REFUTED),
     (WITHIN, "reading->open = since_2;", "reading->open = since_1;", REFUTED),
-    (WITHIN, "reading->open = since_2;", "", REFUTED),
+    (WITHIN, "reading->answer = now->is_m & now->is_q;", "", REFUTED),
     (WITHIN, "    rail->oldest_1 = -1;\n    rail->r1_broken", "    rail->oldest_1 = 0;\n    rail->r1_broken", REFUTED),
     (WITHIN, "reading->answer = now->is_m & now->is_q;", "reading->answer = now->is_q;", REFUTED),
     (WITHIN, "(3 - rail->oldest_1)", "(4 - rail->oldest_1)", REFUTED),

@@ -53,6 +53,8 @@ pub struct Outcome {
     pub verdict: Verdict,
     /// FRET's verdict on the finite run up to here.
     pub finite: Truth,
+    /// A demand begins at this tick or is open after it: stop, unless it is `Some(false)`.
+    pub owed: Truth,
     pub certain: Reading,
     pub possible: Reading,
 }
@@ -73,7 +75,14 @@ impl Outcome {
         } else {
             Some(true)
         };
-        Outcome { verdict, finite, certain, possible }
+        let owed = if certain.trigger || certain.open {
+            Some(true)
+        } else if possible.trigger || possible.open {
+            None
+        } else {
+            Some(false)
+        };
+        Outcome { verdict, finite, owed, certain, possible }
     }
 }
 
