@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 
 from fretc.verification.compiled.flow import Flow, Form, Grammar
 from fretc.verification.compiled.text import (
     NAME,
     Lexis,
+    StrangeTextError,
     Tokens,
     is_constant,
     same,
@@ -25,14 +26,16 @@ from fretc.verification.compiled.text import (
 
 LEXIS = Lexis(
     re.compile(
-        r"(?!<:|:>|<%|%>|%:)"  # other spellings of brackets, braces and `#`
+        r"(?!<:|:>|<%|%>|%:|\?\?)"  # other spellings of brackets, braces, operators and `#`
         r"(?:(?P<gap>[ \t\r\n]+|/\*.*?\*/)"
-        r"|#[^\n]*|[A-Za-z_]\w*|\d\w*|\"C\"|->|\+\+|&&|\|\||<<|[<>=!]=|[-+*/%<>=!&|~?:;,.(){}\[\]])",
+        r"|#[^\n]*|[A-Za-z_]\w*|\d\w*|\"C\"|->|\+\+|--|&&|\|\||<<=?|>>=?|"
+        r"[-+*/%&|^<>=!]=|[-+*/%<>=!&|~?:;,.(){}\[\]])",
         re.DOTALL | re.ASCII,
     ),
     re.compile(r"\\\s*\n|\?\?/|\r(?!\n)"),
 )
-"""A directive ends with its line, so it is one token."""
+"""A directive ends with its line, so it is one token. What changes a value within an expression
+(`--`, `>>=`) is one, too: as two signs it would look like harmless ones."""
 _SIGNS = frozenset("! & | && || < <= > >= == != + - ? : ( ) true false".split())
 _KEPT = frozenset(
     """
@@ -64,9 +67,7 @@ def formed(text: str, written: str, base: str, cells: Sequence[str], inputs: Seq
     own_outside, own_bodies = split(own, free)
     same(outside, own_outside)
     known = frozenset(each for body in own_bodies for each in _statements(body))
-    for statement in _statements(cleared):
-        if statement not in known and not _is_first_value(statement):
-            raise strange(statement)
+    _same_cells(cleared, own_bodies[0])
     read = re.findall(r"now \. (\w+) = inputs -> (\w+) ==", " ".join(own))
     literals = {literal: inputs.index(name) for literal, name in read}
     step = _Step(known, cells, literals)
@@ -91,6 +92,20 @@ def _statements(body: Tokens) -> Iterator[Tokens]:
             start = place + 1
     if start < len(body):
         raise strange(body[start:])
+
+
+def _same_cells(cleared: Tokens, own: Tokens) -> None:
+    """Raises StrangeTextError where not each cell gets a first value, in the order of fretc.
+
+    What has none depends on what the memory held before: no exploration tries all of that.
+    """
+    given, written = [*_statements(cleared)], [*_statements(own)]
+    for actual, expected in zip_longest(given, written, fillvalue=()):
+        both = _is_first_value(actual) and _is_first_value(expected)
+        if not actual:
+            raise StrangeTextError(f"there is no `{' '.join(expected)}`")
+        if actual != expected and not (both and actual[:3] == expected[:3]):
+            raise strange(actual)
 
 
 def _is_first_value(statement: Tokens) -> bool:

@@ -115,8 +115,11 @@ class Flow:
         return True
 
     def declare(self, name: str, value: Sequence[str], statement: Sequence[str]) -> bool:
-        """A local truth value begins; False: this is no name for one."""
-        if not NAME.fullmatch(name) or name in self._grammar.kept:
+        """A local truth value begins; False: this is no name for one.
+
+        In C a second one of the same name may read itself, before it has a value.
+        """
+        if not NAME.fullmatch(name) or name in self._grammar.kept or name in self._local:
             return False
         self.change([name], self.names(value, statement))
         self._local.add(name)

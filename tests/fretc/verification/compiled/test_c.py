@@ -97,11 +97,19 @@ SINCE = "const bool since_1 = rail->oldest_1 >= 3;"
         (SINCE, "const bool since_1 = since_2;"),
         (SINCE, "const bool since_1 = (rail->oldest_1 = 3);"),
         (SINCE, "const bool since_1 = (rail->oldest_1++ >= 3);"),
+        (SINCE, "const bool since_1 = --rail->oldest_1 >= 2;"),
+        (SINCE, "const bool since_1 = rail->oldest_1-- >= 3;"),
+        (SINCE, "const bool since_1 = (rail->oldest_1 >>= 1) >= 3;"),
+        (SINCE, "const bool since_1 = (rail->oldest_1 -= 1) >= 2;"),
+        (SINCE, "const bool since_1 = rail->oldest_1 >= 3 ??! false;"),
+        (SINCE, f"{SINCE} if (since_1) {{ const bool since_1 = since_1; rail->r1_broken = since_1; }}"),
         (SINCE, "const bool since_1 = (abort(), true);"),
         (SINCE, "const bool since_1 = sizeof(rail) > 4;"),
         (SINCE, "const bool since_1 = rail > now;"),
         (SINCE, "bool since_1 = rail->oldest_1 >= 3;"),
         (SINCE, "const bool since_1 = rail->oldest_1 >= 3"),
+        ("    rail->oldest_1 = -1;\n    rail->r1_broken", "    rail->r1_broken"),
+        ("    rail->r1_broken = false;\n", ""),
         ("r1_clear(&state->possible);", ""),
         ("r1_judge(&outcomes->r1);", ""),
         ("bool is_m;", "int is_m;"),
@@ -156,9 +164,14 @@ def test_what_does_not_compile_is_refused(checker: Checker) -> None:
 
 @pytest.mark.slow
 def test_undefined_behaviour_ends_the_process_and_proves_nothing() -> None:
-    """A `bool` that is never set is read."""
+    """A counter that begins at the largest number overflows at the first tick."""
     one = rule(WITHIN)
-    wrong = edited(given_c(one), "    rail->r1_broken = false;\n", "")
+    largest = edited(
+        given_c(one),
+        "rail->oldest_1 = -1;\n    rail->r1",
+        "rail->oldest_1 = 2147483647;\n    rail->r1",
+    )
+    wrong = edited(largest, "(rail->oldest_1 < 4) ? (rail->oldest_1 + 1) : 4", "rail->oldest_1 + 1")
     ((_, outcome, _, _),) = verified([one], wrong, c, CC, LIMITS)
     assert outcome.result is Result.NOT_CHECKED
     assert "crashed" in outcome.detail
