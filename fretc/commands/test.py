@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     "--component", metavar="NAME", help="Only the requirements of this component of the sentences."
 )
 @click.option("--show", metavar="ID", help="Print the tests of this requirement, tick by tick.")
+@path_option("--suite", "saved", help="Take the tests of this file, and make none.")
 @click.option(
     "--time",
     "seconds",
@@ -96,6 +97,7 @@ def test(
     files: tuple[str, ...],
     component: str | None,
     show: str | None,
+    saved: str | None,
     seconds: float,
     emitted: str | None,
     emit_to: str,
@@ -147,7 +149,9 @@ def test(
     on_stage = emitted if emitted in test_staging.FORMS else None
     if on_stage is not None:
         test_staging.check(on_stage, emit_to)
-    suite, stopped = _made(rules, assumed, seconds)
+    if saved is not None:
+        protected.append(saved)
+    suite, stopped = (_of(saved, rules), False) if saved else _made(rules, assumed, seconds)
     text = f"{to_json(plain(suite))}\n"
     if emitted is not None and emit_to == "-":
         pass  # what is printed is the tests
@@ -155,7 +159,7 @@ def test(
         click.echo(text, nl=False)
     else:
         click.echo(coloured([*_lines(suite, rules, show)]), nl=False)
-    outputs: dict[Path, str] = {} if output == "-" else {Path(output): text}
+    outputs: dict[Path, str] = {} if saved or output == "-" else {Path(output): text}
     if emitted is not None and on_stage is None:
         outputs |= _files(suite, rules, emitted, emit_to)
     deliver(outputs, protected)
@@ -173,6 +177,29 @@ def _check_shown(id: str, known: Sequence[str]) -> None:
         near = suggestion(id, known)
         hint = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
         stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
+
+
+def _of(path: str, rules: Sequence[Formalized]) -> Suite:
+    """The suite of a file, as far as it is about requirements as they are."""
+    from fretc.testing.exports.saved import WrongError
+    from fretc.testing.exports.saved import saved as checked
+    from fretc.testing.reader import read
+
+    suite = read(path)
+    if isinstance(suite, Diagnostic):
+        stop(suite)
+    again = "make it again: `fretc test`"
+    try:
+        found = checked(suite, rules)
+    except WrongError as error:
+        stop(Diagnostic(Code.BAD_EVIDENCE, f"`{path}`: {error}", help=again))
+    if found.others:
+        others = ", ".join(found.others)
+        say_line(visible(f"left out, because they are other requirements now: {others}"))
+    if not found.suite.tests:
+        why = f"`{path}` has no test of a requirement as it is"
+        stop(Diagnostic(Code.NOTHING_TO_DO, why, help=again))
+    return found.suite
 
 
 def _made(

@@ -20,6 +20,7 @@ from compiler.targets.target import stem
 from fretc.play.starts import MOST, Start
 from fretc.report.model.phrases import visible
 from fretc.report.page.html import hash_source
+from fretc.testing.suite import SCHEMA
 from fretish.diagnostics import signs
 from fretish.printer import expression
 from fretish.printer import sentence as printed
@@ -45,7 +46,11 @@ _WORDS: Mapping[str, str] = {
 
 
 def html(
-    rules: Sequence[Formalized], left_out: Sequence[tuple[str, str]], starts: Sequence[Start]
+    rules: Sequence[Formalized],
+    left_out: Sequence[tuple[str, str]],
+    starts: Sequence[Start],
+    before: Mapping[str, str] | None = None,
+    notes: Sequence[str] = (),
 ) -> str:
     """The whole file.
 
@@ -53,8 +58,11 @@ def html(
         rules: at least one, of which JavaScript can be made, and all on one clock.
         left_out: the ids of the others, and why they are.
         starts: traces to begin with; those of more than `MOST` ticks are passed over.
+        before: the id of a requirement → that of the rule that it was before.
+        notes: sentences about versions.
     """
-    made = body(*rules)
+    made, before = body(*rules), before or {}
+    now = [rule for rule in rules if rule.id not in before.values()]
     known = [each for each in starts if 0 < each.ticks <= MOST]
     names = ", ".join(("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "truths", "judge"))
     code = "\n".join(line for line in made.text.splitlines() if not line.lstrip().startswith("//"))
@@ -66,14 +74,15 @@ def html(
     style = render("play/style.css.j2")
     return render(
         "play/page.html.j2",
-        title=visible(", ".join(rule.id for rule in rules[:_TITLED]) + _more(len(rules))),
+        title=visible(", ".join(rule.id for rule in now[:_TITLED]) + _more(len(now))),
+        notes=[visible(note) for note in notes],
         tick=str(rules[0].clock) if rules[0].clock else "",
         left_out=[(visible(id), visible(why)) for id, why in left_out],
         labels=[visible(rule.id) for rule in rules],
         starts=[*_grouped(known)],
         glyphs=[(_WORDS[word], glyph) for word, glyph in _GLYPHS.items() if word in _WORDS],
         version=__version__,
-        data=_data(rules, made, known),
+        data=_data(rules, made, known, before),
         monitor=monitor,
         script=script,
         style=style,
@@ -98,7 +107,9 @@ def _grouped(starts: Sequence[Start]) -> Iterator[tuple[str, list[tuple[int, str
         yield group, [(place, visible(start.name)) for place, start in some]
 
 
-def _data(rules: Sequence[Formalized], made: Body, starts: Sequence[Start]) -> dict[str, Any]:
+def _data(
+    rules: Sequence[Formalized], made: Body, starts: Sequence[Start], before: Mapping[str, str]
+) -> dict[str, Any]:
     front = made.front or Front({}, {})
     variables = [*front.inputs] or [*made.propositions]
     places = {name: place for place, name in enumerate(variables)}
@@ -108,7 +119,16 @@ def _data(rules: Sequence[Formalized], made: Body, starts: Sequence[Start]) -> d
     ids = {rule.id: place for place, rule in enumerate(rules)}
     return {
         "most": MOST,
-        "requirements": [_requirement(rule, made.propositions, reads) for rule in rules],
+        "suite": {
+            "schema": SCHEMA,
+            "fretc": __version__,
+            "clock": str(rules[0].clock) if rules[0].clock else "",
+        },
+        "requirements": [
+            _requirement(rule, made.propositions, reads)
+            | {"before": ids[before[rule.id]] if rule.id in before else None}
+            for rule in rules
+        ],
         "variables": [_variable(name, front) for name in variables],
         "comparisons": [
             {
@@ -140,6 +160,12 @@ def _requirement(
     return {
         "label": visible(rule.id),
         "file": stem(rule),
+        "tested": {
+            "id": rule.id,
+            "sentence": printed(rule.written),
+            "fingerprint": rule.fingerprint,
+            "kept": [],
+        },
         "sentence": visible(printed(rule.written)),
         "response": visible(expression(rule.written.response)),
         "formula": _tree(formula, propositions) if known else None,

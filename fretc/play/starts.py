@@ -5,19 +5,14 @@ A value is of a variable or of a proposition; what a trace does not say is unkno
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from compiler.explanation.explain import explanation
-from compiler.files.checked_json import MisshapenError, parsed
-from compiler.files.records import decoded
-from compiler.files.text_files import read
 from compiler.formalization.formalized import Formalized
 from fretc.analysis.evidence import Document
 from fretc.testing.suite import Suite
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
-from fretish.diagnostics.source import Source
 from fretish.printer import sentence as printed
 
 Value = bool | int | float | str | None
@@ -25,8 +20,6 @@ Ticks = tuple[int, dict[str, Value]]
 """How many equal ticks there are one after the other, and their values."""
 MOST = 2_000
 """Ticks of a trace in a page."""
-SUITE = "build/tests/suite.json"
-"""Where `fretc test` writes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,32 +96,6 @@ def of_analysis(document: Document, changed: Sequence[str]) -> Iterator[Start]:
             loop = rows[conflict.loop :] if conflict.loop is not None else []
             name = f"{', '.join(conflict.requirements)}: {conflict.because}"
             yield Start("Conflicts", name, name, conflict.requirements, (*rows, *loop, *loop))
-
-
-def read_suite(path: str) -> Suite | Diagnostic:
-    """Read and check what `fretc test` has written."""
-    source = read(path)
-    if isinstance(source, Diagnostic):
-        return source
-    try:
-        return decoded(parsed(source.text).value, Suite)
-    except json.JSONDecodeError as error:
-        return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
-    except MisshapenError as error:
-        return _wrong(source, f"is not what `fretc test` writes: {error}")
-    except RecursionError:
-        return _wrong(source, "is not JSON that fretc can read: it is nested too deeply")
-    except ValueError as error:
-        return _wrong(source, f"is not JSON that fretc can read: {error}")
-
-
-def _wrong(source: Source, what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_EVIDENCE,
-        f"`{source.name}` {what}",
-        Source(source.name, "").span(),
-        help="make it again: `fretc test`",
-    )
 
 
 def stale(path: str, why: str, again: str) -> Diagnostic:

@@ -5,6 +5,8 @@ Nothing in the file is trusted: what its types (`fretc.testing.suite`) do not ha
 
 from __future__ import annotations
 
+import json
+
 from compiler.files.checked_json import MisshapenError, parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
@@ -23,6 +25,8 @@ def read(path: str) -> Suite | Diagnostic:
         return source
     try:
         return decoded(parsed(source.text).value, Suite)
+    except json.JSONDecodeError as error:
+        return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
     except (MisshapenError, ValueError) as error:
         return _wrong(source, f"is not what `fretc test` writes: {error}")
     except RecursionError:

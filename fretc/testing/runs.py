@@ -214,6 +214,38 @@ class Runs:
         return {*read, *(name for name, theirs in readers.items() if theirs & read)}
 
 
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A shortest word that two sentences judge differently."""
+
+    word: Word
+    doubt: str
+    """Why nobody may be able to bring its values about; empty: they are real."""
+
+
+def difference(rule: Formalized, other: Formalized, seconds: float) -> Difference | Absence:
+    """What tells two sentences apart; without it they judge all finite runs alike.
+
+    Args:
+        rule: a sentence.
+        other: another one, over the same bindings.
+        seconds: of a processor.
+    """
+    both = [rule, other]
+    try:
+        bench = Bench(rule, (), [other], Budget(seconds))
+        letters = bench.difference(other, ())
+    except (BeyondError, OutOfTimeError) as error:
+        return Absence(why=str(error))
+    if letters is None:
+        return Absence()
+    atoms = _atoms(both)
+    signals = {name: read for name, read in _read(both).items() if name not in read}
+    made = word(letters, bench.alphabet, Naming(atoms, atoms, signals, {}))
+    assert is_killed(judged(rule, made), judged(other, made), made.ticks)
+    return Difference(made, bench.doubt)
+
+
 def _read(rules: Iterable[Formalized]) -> dict[str, frozenset[str]]:
     """The signals or variables that each atom reads."""
     found: dict[str, frozenset[str]] = {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from functools import lru_cache
 
 from fretish import expressions as e
 from fretish import units
@@ -51,6 +52,16 @@ def _constant(expression: e.Expression) -> Exact | None:
     assert not isinstance(dimension, Diagnostic), "the reader of bindings refuses the expression"
     value = number(expression) if dimension is not None else None
     return (dimension, value) if dimension is not None and value is not None else None
+
+
+@lru_cache(1024)
+def quantity(digits: str, name: str, read_in: units.Unit) -> Fraction:
+    """A quantity in a unit, or in a power of it: 4 m^2 are 40 000 beside numbers in cm."""
+    own_unit = units.unit(name)
+    assert own_unit is not None, "the parser refuses unknown units"
+    powers = (1, 0, 2, 3, -1, -2)
+    same = (n for n in powers if own_unit.dimension == tuple(n * d for d in read_in.dimension))
+    return Fraction(digits) * own_unit.factor / read_in.factor ** next(same, 0)
 
 
 def number(expression: e.Expression) -> Fraction | None:

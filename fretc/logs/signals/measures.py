@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from fretc.logs.signals.samples import EXACT, WHOLE, Numbers, Values, scaled
 from fretish import expressions as e
-from fretish.bindings.constants import called, computed, whole_exponent
+from fretish.bindings.constants import called, computed, quantity, whole_exponent
 from fretish.expressions import MIRRORED
-from fretish.units import ONE, Unit, unit
+from fretish.units import ONE, Unit
 
 COMPARE: dict[str, Callable[..., NDArray[np.bool_]]] = {
     "<": np.less,
@@ -104,7 +104,7 @@ def term(expression: e.Expression, scope: Scope) -> Term:
         case e.Number(digits):
             return _constant(digits)
         case e.Quantity(digits, name, _):
-            return _quantity(digits, name, scope.unit)
+            return quantity(digits, name, scope.unit)
         case e.Name(id):
             if id not in scope.numbers:
                 raise ExpressionError(f"there is no `{id}`")
@@ -125,16 +125,6 @@ def term(expression: e.Expression, scope: Scope) -> Term:
 
 
 _constant = lru_cache(1024)(Fraction)
-
-
-@lru_cache(1024)
-def _quantity(digits: str, name: str, read_in: Unit) -> Fraction:
-    """A quantity in a unit, or in a power of it: 4 m^2 are 40 000 beside numbers in cm."""
-    own_unit = unit(name)
-    assert own_unit is not None, "the parser refuses unknown units"
-    powers = (1, 0, 2, 3, -1, -2)
-    same = (n for n in powers if own_unit.dimension == tuple(n * d for d in read_in.dimension))
-    return Fraction(digits) * own_unit.factor / read_in.factor ** next(same, 0)
 
 
 def _measure(value: Term) -> Measure:

@@ -10,6 +10,7 @@ import pytest
 
 from tests.command import Fretc
 
+ROOT = Path(__file__).parents[3]
 NEAR = "whenever near the robot shall within 2 ticks satisfy stopped"
 PROBABLE = "whenever near the robot shall with probability > 0.9 within 2 ticks satisfy stopped"
 
@@ -85,7 +86,7 @@ def test_tests_and_conflicts_are_there_as_long_as_they_are_about_the_same(fretc:
         ("{", "is not JSON"),
         ("{}", "is not what `fretc test` writes"),
         ("[" * 100_000, "nested too deeply"),
-        ('{"a": 1, "a": 2}', "is not JSON that fretc can read"),
+        ('{"a": 1, "a": 2}', "`a` is there twice in one object"),
     ],
 )
 def test_a_file_of_something_else_is_refused(fretc: Fretc, text: str, message: str) -> None:
@@ -102,3 +103,35 @@ def test_a_file_that_is_read_is_never_written_over(fretc: Fretc) -> None:
     write("requirements/r1.fret", NEAR)
     assert fretc("play", "-o", "requirements/r1.fret").status == 2
     assert Path("requirements/r1.fret").read_text("utf-8") == NEAR
+
+
+def test_a_page_against_what_requirements_were(fretc: Fretc) -> None:
+    write("requirements/a.fret", NEAR)
+    write("requirements/b.fret", NEAR)
+    write("old/a.fret", NEAR.replace("2 ticks", "3 ticks"))
+    write("old/b.fret", NEAR)
+    run = fretc("play", "--against", "old")
+    assert run.status == 0
+    page = Path("build/play.html").read_text("utf-8")
+    assert "<li>a: a shortest trace that tells both versions apart has 3 ticks</li>" in page
+    assert "<li>b: the same as before</li>" in page
+    found = data(page)
+    assert abouts(page)[0] == "a: a shortest trace that tells both versions apart has 3 ticks"
+    assert [each["before"] for each in found["requirements"]] == [1, None, None]
+    missing = fretc("play", "--against", "none")
+    assert missing.status == 2
+    assert missing.err.startswith("F901")
+
+
+@pytest.mark.slow
+def test_a_violation_of_a_recorded_run_is_a_start(fretc: Fretc, tmp_path: Path) -> None:
+    log = tmp_path / "off.mcap"
+    assert fretc("simulate", "safety-silent", "--duration", "25", "-o", str(log)).status == 0
+    folder = str(ROOT / "requirements/mission")
+    run = fretc("play", folder, "--log", str(log))
+    assert run.status == 0, run.err
+    first = data(Path("build/play.html").read_text("utf-8"))["starts"][0]
+    assert first["about"].startswith(f"R15, violation 1 of {log}: ticks ")
+    assert {"moving", "alive"} & {*first["rows"][0][1]}
+    missing = fretc("play", folder, "--log", "none.mcap")
+    assert (missing.status, missing.err.split()[0]) == (2, "F901")

@@ -125,3 +125,19 @@ def test_a_time_that_is_no_number_is_a_mistake(fretc: Fretc, folder: Path, comma
     run = fretc(command, str(folder), "--time", "nan")
     assert run.status == 2
     assert "nan is not a number of seconds" in run.err
+
+
+def test_tests_of_a_file_are_written_again_as_they_are(fretc: Fretc, folder: Path) -> None:
+    assert fretc("test", str(folder), "--emit", "csv").status == 0
+    made = {path.name: path.read_text() for path in Path("build/tests/csv").iterdir()}
+    Path("build/tests/suite.json").rename("kept.json")
+    again = fretc(
+        "test", str(folder), "--suite", "kept.json", "--emit", "csv", "--emit-to", "again"
+    )
+    assert (again.status, Path("build/tests/suite.json").exists()) == (0, False)
+    assert {path.name: path.read_text() for path in Path("again/csv").iterdir()} == made
+    text = Path("kept.json").read_text()
+    Path("kept.json").write_text(text.replace('"verdict": "violated"', '"verdict": "satisfied"', 1))
+    wrong = fretc("test", str(folder), "--suite", "kept.json", "--emit", "csv", "--emit-to", "new")
+    assert (wrong.status, Path("new").exists()) == (2, False)
+    assert "expects what the monitor does not say: violated" in wrong.err

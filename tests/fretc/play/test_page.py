@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import random
 import re
+import subprocess
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from importlib.resources import files
+from importlib import resources
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,7 +24,10 @@ from compiler.formalization.reference import (
 )
 from compiler.targets.python.monitor import text as monitor_text
 from fretc.play.page import html
-from fretc.play.starts import Start
+from fretc.play.starts import Start, of_suite
+from fretc.testing.exports.files import Form, files
+from fretc.testing.reader import read
+from fretc.testing.suite import Suite
 from monitors.loading import load
 from tests.meaning import SCOPES
 from tests.monitoring import rule
@@ -46,11 +51,17 @@ def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
     contexts: list[Any] = []
 
     def open_it(
-        *sentences: str, starts: Sequence[Start] = (), address: str = "", **options: Any
+        *sentences: str,
+        starts: Sequence[Start] = (),
+        before: Mapping[str, str] | None = None,
+        address: str = "",
+        **options: Any,
     ) -> Page:
         path = tmp_path / f"{len(contexts)}.html"
         rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences, 1)]
-        path.write_text(html(rules, [(HOSTILE, HOSTILE)], starts), encoding="utf-8")
+        path.write_text(
+            html(rules, [(HOSTILE, HOSTILE)], starts, before, [HOSTILE]), encoding="utf-8"
+        )
         contexts.append(browser.new_context(offline=True, **options))
         page: Page = contexts[-1].new_page()
         page.on("console", lambda message: messages.append(message.text))
@@ -304,6 +315,63 @@ def test_a_saved_table_is_judged_alike_by_the_monitor(opened: Open, tmp_path: Pa
     assert told(page, "R1", "at this tick") == shown
 
 
+def test_saved_tests_pass_with_the_monitor_and_give_the_trace_again(
+    opened: Open, tmp_path: Path
+) -> None:
+    rows = [{"near": t in (1, 6), "stopped": None if t == 2 else t > 8} for t in range(12)]
+    rules = [rule(BATTERY, "R1"), rule(WITHIN, "R2")]
+    page = opened(BATTERY, WITHIN, address=address(rows) + "&v.battery=0*4_20.5_u_19.75*6")
+    shown = everything(page)
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save tests").click()
+    path = tmp_path / download.value.suggested_filename
+    download.value.save_as(path)
+    suite = read(str(path))
+    assert isinstance(suite, Suite)
+    assert [test.requirement for test in suite.tests] == ["R1", "R2"]
+    made, left = files(suite, rules, Form.PYTEST)
+    assert not left
+    folder = tmp_path / "tests"
+    folder.mkdir()
+    for each in made:
+        (folder / each.path).write_text(each.text, encoding="utf-8")
+    run = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(folder)]
+    assert "2 passed" in subprocess.run(run, check=True, capture_output=True, text=True).stdout
+    again = opened(BATTERY, WITHIN, starts=[*of_suite(suite, rules)])
+    again.locator("#which").select_option("")
+    assert everything(again) == shown
+    lane(page, "battery").nth(2).click()
+    page.keyboard.press("Enter")
+    page.keyboard.type("inf")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Save tests").click()
+    assert "takes no infinite number" in page.locator("#status").inner_text()
+
+
+def test_both_versions_stand_side_by_side(opened: Open) -> None:
+    """They differ where verdicts of their monitors do."""
+    rows = [{"near": t in (1, 7), "stopped": t == 4} for t in range(14)]
+    later = WITHIN.replace("2 ticks", "4 ticks")
+    page = opened(later, WITHIN, before={"R1": "R2"}, address=address(rows))
+    machines = [load(f"{n}.py", monitor_text(rule(text))) for n, text in enumerate((later, WITHIN))]
+    expected = []
+    for row in rows:
+        for machine in machines:
+            machine.advance([tuple(row[name] for name in machine.PROPOSITIONS)])
+        one, other = ((m.verdicts(), m.standings()[0].finite) for m in machines)
+        expected.append(one != other)
+    assert True in expected[:-1]
+    assert False in expected
+    said = told(page, "R1", "now and before")
+    assert [text != "the same" for text in said] == expected
+    page.locator("#which").select_option("R1")
+    assert page.locator("#hidden").inner_text() == ""
+    assert page.locator("#why li").count() == 2
+    page.locator("#which").select_option("R2")
+    assert page.locator("#why li").count() == 1
+    assert HOSTILE[:9] in page.locator("#versions").inner_text()
+
+
 BAD_TABLES = (
     ("near\n", "the table has no rows"),
     ("near,x\n1,1\n", "`x` is no variable here: there are near, stopped"),
@@ -370,7 +438,7 @@ def test_axe_finds_nothing_serious_and_nothing_is_too_wide(
     page = opened(*sentences, address=address(rows), color_scheme=scheme, viewport=view)
     assert page.evaluate("document.documentElement.scrollWidth") == width
     page.locator("summary").click()
-    page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
+    page.evaluate((resources.files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
     violations = page.evaluate("axe.run({resultTypes: ['violations']})")["violations"]
     serious = [each for each in violations if each["impact"] in ("serious", "critical")]
     assert [(each["id"], each["nodes"][0]["html"][:200]) for each in serious] == []

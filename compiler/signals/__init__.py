@@ -1,0 +1,1 @@
+"""What a robot's samples say of the propositions: policies and comparisons, for any language."""

@@ -1,0 +1,193 @@
+"""Expressions of bindings → numbers and truths of one instant.
+
+Units are settled here: each constant becomes one in the unit of the signals that it meets, and
+signals in different units are converted where they meet. It is what
+`fretc.logs.signals.measures` does of whole columns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Literal
+
+from compiler.signals import numbers as n
+from fretish import expressions as e
+from fretish.bindings.constants import called, computed, quantity, whole_exponent
+from fretish.units import ONE, Unit
+
+
+@dataclass(frozen=True, slots=True)
+class _Measure:
+    """A number that is no constant: times `scale` it is in base units. None: always unknown."""
+
+    number: n.Number | None
+    scale: Fraction = Fraction(1)
+
+
+_Term = _Measure | Fraction
+_UNKNOWN = _Measure(None)
+_FUNCTIONS: Mapping[str, Literal["plus", "minus", "times", "over", "modulo"]] = {
+    "+": "plus",
+    "-": "minus",
+    "*": "times",
+    "/": "over",
+    "mod": "modulo",
+}
+_SIGNS: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {
+    "<": ">",
+    "<=": ">=",
+    ">": "<",
+    ">=": "<=",
+    "=": "=",
+    "!=": "!=",
+}
+
+
+@dataclass(slots=True)
+class Lowering:
+    """Of the expressions of one proposition, or of one `valid`."""
+
+    scales: Mapping[str, Fraction] = field(default_factory=dict)
+    """Factors to base units of the names; 1 where none is given."""
+    words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """What each signal of words may be: its number is the place of its word."""
+    unit: Unit = ONE
+    """In which quantities are read."""
+    held: list[tuple[n.Truth, int]] = field(default_factory=list)
+    """What is asked to have held, and for how many nanoseconds, in the order of `Held.place`."""
+
+    def truth(self, tree: e.Expression) -> n.Truth:
+        """The truth of an expression that the reader of bindings accepts, without `pre`."""
+        match tree:
+            case e.Truth(value):
+                return n.Known(value)
+            case e.Name(id):
+                return n.Flag(id)
+            case e.Comparison(op, e.Name(id), e.Word(text)):
+                return n.Compared(op, n.Given(id), self._place(id, text))
+            case e.Comparison(op, e.Word(text), e.Name(id)):
+                return n.Compared(_SIGNS[op], n.Given(id), self._place(id, text))
+            case e.Comparison(op, left, right):
+                return self._compared(op, self._term(left), self._term(right))
+            case e.Not(arg):
+                return n.Not(self.truth(arg))
+            case e.And(args):
+                return n.All(tuple(map(self.truth, args)))
+            case e.Or(args):
+                return n.Some(tuple(map(self.truth, args)))
+            case e.Implies(left, right):
+                return n.Some((n.Not(self.truth(left)), self.truth(right)))
+            case e.Iff(left, right):
+                return n.Same(self.truth(left), self.truth(right))
+            case e.Xor(left, right):
+                return n.Not(n.Same(self.truth(left), self.truth(right)))
+            case e.Persistence(arg, duration):
+                self.held.append((self.truth(arg), duration))
+                return n.Held(len(self.held) - 1)
+            case _:
+                raise AssertionError("the reader of bindings refuses a number as a truth value")
+
+    def _place(self, id: str, text: str) -> n.Fixed:
+        return n.Fixed(Fraction(self.words[id].index(text)))
+
+    def _compared(self, op: e.ComparisonOperator, left: _Term, right: _Term) -> n.Truth:
+        if isinstance(left, Fraction):
+            if isinstance(right, Fraction):
+                return n.Known(e.COMPARE[op](left, right))
+            left, right, op = right, left, _SIGNS[op]
+        x, y, _ = _together(left, right)
+        return n.Known(None) if x is None or y is None else n.Compared(op, x, y)
+
+    # Numbers
+
+    def _term(self, tree: e.Expression) -> _Term:
+        match tree:
+            case e.Number(digits):
+                return Fraction(digits)
+            case e.Quantity(digits, name):
+                return quantity(digits, name, self.unit)
+            case e.Name(id):
+                return _Measure(n.Given(id), self.scales.get(id, Fraction(1)))
+            case e.Negation(arg):
+                term = self._term(arg)
+                return -term if isinstance(term, Fraction) else _applied("negative", term)
+            case e.Arithmetic("^", base, exponent):
+                return _power(self._term(base), self._term(exponent))
+            case e.Arithmetic(op, left, right):
+                return _arithmetic(op, self._term(left), self._term(right))
+            case e.Call("abs", (arg,)):
+                term = self._term(arg)
+                return abs(term) if isinstance(term, Fraction) else _applied("absolute", term)
+            case e.Call("min" | "max" as name, args):
+                return _end(name, [self._term(arg) for arg in args])
+            case _:
+                raise AssertionError("the reader of bindings refuses it as a number")
+
+
+def _together(left: _Measure, right: _Term) -> tuple[n.Number | None, n.Number | None, Fraction]:
+    """Both in one unit, and the scale of it."""
+    if isinstance(right, Fraction):
+        return left.number, n.Fixed(right / left.scale), left.scale
+    if left.scale == right.scale:
+        return left.number, right.number, left.scale
+    return _in_base(left), _in_base(right), Fraction(1)
+
+
+def _in_base(term: _Measure) -> n.Number | None:
+    return None if term.number is None else n.InBase(term.number, term.scale)
+
+
+def _applied(function: Literal["negative", "absolute"], term: _Measure) -> _Measure:
+    if term.number is None:
+        return _UNKNOWN
+    return _Measure(n.Applied(function, term.number), term.scale)
+
+
+def _arithmetic(op: e.ArithmeticOperator, left: _Term, right: _Term) -> _Term:
+    if isinstance(left, Fraction) and isinstance(right, Fraction):
+        exact = computed(op, left, right)
+        return _UNKNOWN if exact is None else exact
+    if op in ("*", "/"):
+        a, b = _factor(left), _factor(right)
+        x, y, scale = a.number, b.number, a.scale * b.scale if op == "*" else a.scale / b.scale
+    elif isinstance(left, Fraction):
+        assert isinstance(right, _Measure)
+        y, x, scale = _together(right, left)
+    else:
+        x, y, scale = _together(left, right)
+    if x is None or y is None:
+        return _UNKNOWN
+    return _Measure(n.Computed(_FUNCTIONS[op], x, y), scale)
+
+
+def _factor(term: _Term) -> _Measure:
+    return _Measure(n.Fixed(term)) if isinstance(term, Fraction) else term
+
+
+def _power(base: _Term, exponent: _Term) -> _Term:
+    assert isinstance(exponent, Fraction), "the reader of bindings refuses another exponent"
+    if isinstance(base, Fraction):
+        exact = computed("^", base, exponent)
+        return _UNKNOWN if exact is None else exact
+    if base.number is None:
+        return _UNKNOWN
+    times = whole_exponent(exponent)
+    return _Measure(n.Power(base.number, times), base.scale**times)
+
+
+def _end(name: Literal["min", "max"], args: Sequence[_Term]) -> _Term:
+    """The least or the greatest, two at a time from left to right."""
+    found, *rest = args
+    for term in rest:
+        if isinstance(found, Fraction):
+            if isinstance(term, Fraction):
+                found = called(name, [found, term])
+                continue
+            found, term = term, found
+        x, y, scale = _together(found, term)
+        if x is None or y is None:
+            return _UNKNOWN
+        found = _Measure(n.Chosen("lesser" if name == "min" else "greater", x, y), scale)
+    return found

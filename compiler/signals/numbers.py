@@ -1,0 +1,140 @@
+"""Numbers and truths of one instant, as every language computes them.
+
+A number is a 32-bit float, a 64-bit float, or exact: a whole number of 64 bits from 2^53 on, and
+what the least or the greatest of it and another one is. A number may be unknown, and what is
+computed of it is unknown, too. `monitors.kernel.readings` has a function for each of these nodes
+but `Given`; a constant becomes the nearest number of the kind that it meets.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """The number of a signal, or of a field of its message."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Fixed:
+    """A constant in the unit of what it meets; it stands beside no other constant."""
+
+    value: Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Applied:
+    """A function of one number: of the same kind as that."""
+
+    function: Literal["negative", "absolute"]
+    arg: Number
+
+
+@dataclass(frozen=True, slots=True)
+class Computed:
+    """Arithmetic in 64-bit floats, rounded once; unknown where it divides by zero.
+
+    `modulo` has the sign of the right side.
+    """
+
+    function: Literal["plus", "minus", "times", "over", "modulo"]
+    left: Number
+    right: Number
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The less or the greater of two numbers, of the kind that holds both.
+
+    Where the right side is a constant, whole numbers become 64-bit floats first.
+    """
+
+    function: Literal["lesser", "greater"]
+    left: Number
+    right: Number
+
+
+@dataclass(frozen=True, slots=True)
+class Power:
+    """The 64-bit float multiplied with itself, `times` factors from left to right."""
+
+    base: Number
+    times: int
+
+
+@dataclass(frozen=True, slots=True)
+class InBase:
+    """`arg * numerator / denominator` in 64-bit floats, the factor's parts as the nearest ones."""
+
+    arg: Number
+    scale: Fraction
+
+
+Number = Given | Fixed | Applied | Computed | Chosen | Power | InBase
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """A truth that no number changes; None: unknown."""
+
+    value: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class Flag:
+    """A signal as a truth: 1 is true, 0 is false, any other number is unknown."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """`left sign right`; only the right side may be a constant. Unknown where a side is."""
+
+    sign: str
+    left: Number
+    right: Number
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """Whether a truth has held for a duration: an input, the `place`-th of its proposition."""
+
+    place: int
+
+
+@dataclass(frozen=True, slots=True)
+class Not:
+    """Kleene's negation."""
+
+    arg: Truth
+
+
+@dataclass(frozen=True, slots=True)
+class All:
+    """Kleene's conjunction."""
+
+    args: tuple[Truth, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Some:
+    """Kleene's disjunction."""
+
+    args: tuple[Truth, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Same:
+    """Kleene's equivalence: unknown where a side is."""
+
+    left: Truth
+    right: Truth
+
+
+Truth = Known | Flag | Compared | Held | Not | All | Some | Same

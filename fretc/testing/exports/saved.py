@@ -1,0 +1,131 @@
+"""Tests out of a file, as far as they are about requirements as they are, and say what is right.
+
+The file may be anybody's: a test counts where its names can name files, its values are those that
+monitors read, and the monitor of its requirement gives the verdict that it expects.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from compiler.files.records import replace
+from compiler.formalization.formalized import Formalized
+from compiler.targets.python import monitor as emitted
+from compiler.targets.python.comparisons import NUMBER, TRUTH, Input, front
+from fretc.testing.exports.tables import Table, table
+from fretc.testing.suite import Suite, Test
+from monitors.kernel import Monitor
+from monitors.kernel.verdicts import PENDING
+from monitors.loading import load
+
+MOST = 1_000_000
+"""Ticks of all tests of a file."""
+_NAME = re.compile(r"[a-z0-9]+(?:[-_][a-z0-9]+)*", re.ASCII)
+_LONGEST = 100
+
+
+class WrongError(Exception):
+    """The message says what is wrong with which test."""
+
+
+@dataclass(frozen=True, slots=True)
+class Saved:
+    """What of a file counts."""
+
+    suite: Suite
+    others: tuple[str, ...]
+    """The ids of its requirements that are not there, or have another sentence now."""
+
+
+def saved(suite: Suite, rules: Sequence[Formalized]) -> Saved:
+    """The tests of a file that are about the rules.
+
+    Raises:
+        WrongError: one of them is not a test of its requirement.
+    """
+    known = {rule.id: rule for rule in rules}
+    same = {
+        each.id
+        for each in suite.requirements
+        if each.id in known and known[each.id].fingerprint == each.fingerprint
+    }
+    tests = tuple(test for test in suite.tests if test.requirement in same)
+    if sum(test.ticks for test in tests) > MOST:
+        raise WrongError(f"its tests have more than {MOST} ticks")
+    names = [test.name for test in tests]
+    for test in tests:
+        if not _NAME.fullmatch(test.name) or len(test.name) > _LONGEST:
+            raise WrongError(f"`{test.name}` cannot name a test: small letters, digits and `-` can")
+        if names.count(test.name) > 1:
+            raise WrongError(f"the name `{test.name}` comes twice")
+    for id in same:
+        monitor = load(f"{id}.py", emitted.text(known[id]))
+        for test in tests:
+            if test.requirement == id:
+                _check(known[id], monitor, test)
+    chosen = {
+        part: tuple(each for each in getattr(suite, part) if each.requirement in same)
+        for part in ("obligations", "mutants")
+    }
+    requirements = tuple(each for each in suite.requirements if each.id in same)
+    others = tuple(each.id for each in suite.requirements if each.id not in same)
+    return Saved(replace(suite, requirements=requirements, tests=tests, **chosen), others)
+
+
+def _check(rule: Formalized, monitor: Monitor, test: Test) -> None:
+    """Whether the monitor can read it, and says what it expects.
+
+    Raises:
+        WrongError: not so.
+    """
+    variables = front((rule,), rule.watched)
+    try:
+        read = table(rule, test)
+    except KeyError as error:
+        raise WrongError(f"`{test.name}` lacks values of `{error.args[0]}`") from None
+    inputs = {} if variables is None or read.of_truths else variables.inputs
+    for _, values in read.rows:
+        for name, value in zip(read.names, values, strict=True):
+            if not _is_value(value, inputs.get(name, Input(TRUTH))):
+                raise WrongError(f"`{test.name}`: `{name}` cannot be {value!r}")
+    expected = (test.verdict, test.finite, test.decided, test.first_violation)
+    if (found := _outcome(monitor, read)) != expected:
+        shown = ", ".join(f"{each}" for each in found)
+        raise WrongError(f"`{test.name}` expects what the monitor does not say: {shown}")
+
+
+def _is_value(value: object, kind: Input) -> bool:
+    match value:
+        case None:
+            return True
+        case bool():
+            return kind.kind == TRUTH
+        case int() | float():
+            return kind.kind == NUMBER
+        case _:
+            return value in kind.words
+
+
+def _outcome(monitor: Monitor, read: Table) -> tuple[object, ...]:
+    """The verdict where the run ends, FRET's, and the ticks of the decision and the violation."""
+    monitor.reset()
+    decided = None
+    for now, row in enumerate(_ticks(read)):
+        if read.of_truths or not hasattr(monitor, "take"):
+            monitor.advance([row])
+        else:
+            monitor.take([row])
+        if decided is None and monitor.verdicts()[0] != PENDING:
+            decided = now
+    (standing,) = monitor.standings()
+    return standing.verdict, standing.finite, decided, standing.first_violation
+
+
+def _ticks(read: Table) -> Iterator[Mapping[str, Any]]:
+    for count, values in read.rows:
+        row = dict(zip(read.names, values, strict=True))
+        for _ in range(count):
+            yield row

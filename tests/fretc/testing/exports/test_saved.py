@@ -1,0 +1,86 @@
+"""Tests out of a file count as far as they are right and about requirements as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from compiler.files.records import decoded, plain
+from compiler.formalization.formalized import Formalized
+from fretc.testing.assembly import suite
+from fretc.testing.exports.saved import WrongError, saved
+from fretc.testing.generation import batch
+from fretc.testing.suite import Suite
+from tests.monitoring import rule
+
+WITHIN = "whenever near the robot shall within 2 ticks satisfy stopped"
+NUMBERS = "whenever battery < 20 the robot shall within 2 ticks satisfy docking"
+
+
+@dataclass(frozen=True)
+class Made:
+    rules: tuple[Formalized, ...]
+    document: Any
+
+
+@pytest.fixture
+def made() -> Made:
+    rules = (rule(WITHIN, "R1"), rule(NUMBERS, "R2"))
+    return Made(rules, plain(suite(rules, (), [batch(each, (), 60.0) for each in rules])))
+
+
+def test_what_was_made_is_taken_as_it_is(made: Made) -> None:
+    written = decoded(made.document, Suite)
+    found = saved(written, made.rules)
+    assert (found.suite, found.others) == (written, ())
+    assert {test.requirement for test in found.suite.tests} == {"R1", "R2"}
+
+
+def test_what_is_about_another_sentence_is_left_out(made: Made) -> None:
+    changed = (rule(WITHIN.replace("2", "3"), "R1"), made.rules[1])
+    found = saved(decoded(made.document, Suite), changed)
+    assert found.others == ("R1",)
+    for part in (found.suite.tests, found.suite.obligations, found.suite.mutants):
+        assert {each.requirement for each in part} == {"R2"}
+
+
+FAULTS: dict[str, tuple[str, Callable[[Any], object]]] = {
+    "a place outside": ("cannot name a test", lambda t: t.update(name="../../x")),
+    "a line break": ("cannot name a test", lambda t: t.update(name="x\n")),
+    "a value that is not there": ("lacks values of `", lambda t: t["rows"][0].update(values={})),
+    "a number for a truth value": (
+        "cannot be 1",
+        lambda t: t["rows"][0]["values"].update(near=1, docking=1),
+    ),
+    "a truth value for a number": (
+        "cannot be True",
+        lambda t: t["rows"][0]["values"].update(battery=True, near="x"),
+    ),
+    "another verdict": (
+        "expects what the monitor does not say",
+        lambda t: t.update(verdict="no data"),
+    ),
+    "another tick": ("expects what the monitor does not say", lambda t: t.update(decided=77)),
+    "too many ticks": ("more than 1000000 ticks", lambda t: t["rows"][0].update(count=2**40)),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+@pytest.mark.parametrize("requirement", ["R1", "R2"])
+def test_a_test_that_is_none_is_refused(made: Made, name: str, requirement: str) -> None:
+    message, spoil = FAULTS[name]
+    test = next(t for t in made.document["tests"] if t["requirement"] == requirement)
+    spoil(test)
+    if requirement == "R1" and name == "a truth value for a number":
+        message = "cannot be 'x'"
+    with pytest.raises(WrongError, match=message):
+        saved(decoded(made.document, Suite), made.rules)
+
+
+def test_two_tests_of_one_name_are_refused(made: Made) -> None:
+    made.document["tests"] = (*made.document["tests"], made.document["tests"][0])
+    with pytest.raises(WrongError, match="comes twice"):
+        saved(decoded(made.document, Suite), made.rules)

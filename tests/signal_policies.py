@@ -1,0 +1,237 @@
+"""Random bindings and samples, what the audit says of them, and what the descriptions say.
+
+The audit is asked by the functions that it calls itself: `sample` for a message, `truth` for a
+proposition.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from fractions import Fraction
+from types import SimpleNamespace
+from typing import Any, assert_never
+
+import numpy as np
+from hypothesis import strategies as st
+
+from compiler.signals import numbers as n
+from fretc.logs.signals.measures import Scope
+from fretc.logs.signals.propositions import truth, truth_values
+from fretc.logs.signals.samples import EXACT, Values
+from fretc.logs.signals.signals import is_chosen, sample
+from fretish import expressions as e
+from fretish.bindings.declarations import Invalid, Reading, Reduce, Signal, path
+from fretish.units import unit
+from monitors.kernel import readings
+from monitors.kernel.verdicts import Truth
+
+SIGNS = ("<", "<=", ">", ">=", "=", "!=")
+EDGES = (0, 1, 2, 3, 2**52 - 1, 2**52 + 1, 2**53 - 1, 2**53, 2**53 + 1, 2**63 - 1, 2**63, 2**64 - 1)
+DIGITS = (
+    "0",
+    "0.1",
+    "0.35",
+    "0.9",
+    "3",
+    "16777217",
+    "1e400",
+    "1e-400",
+    "5e-324",
+    "3.5e38",
+    "1e308",
+)
+digits = st.one_of(
+    st.sampled_from(DIGITS),
+    st.sampled_from(EDGES).map(str),
+    st.sampled_from([f"{2**52}.5", f"{2**53 + 1}.5", f"{2**63 + 1}", f"{2**64 - 1}.5", f"{2**64}"]),
+    st.integers(0, 20).map(str),
+    st.fractions(0, 4, max_denominator=8).map(lambda f: str(float(f))),
+)
+
+
+def _around(kind: type[np.floating[Any]]) -> list[float]:
+    """Each threshold as a number of a kind, with its neighbours."""
+    with np.errstate(over="ignore"):
+        near = [kind(float(Fraction(text))) for text in DIGITS if text != "1e400"]
+        ends = kind(-np.inf), kind(np.inf)
+        around = [each for x in near for each in (x, *(np.nextafter(x, end) for end in ends))]
+    return [float(sign * each) for each in around for sign in (1, -1)]
+
+
+SPECIAL = [math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, 2.0**52, 2.0**53, 2.0**53 + 2, 2.0**64]
+doubles = st.one_of(
+    st.floats(), st.sampled_from(SPECIAL), st.sampled_from(_around(np.float64)), st.integers(-9, 9)
+).map(np.float64)
+singles = st.one_of(
+    st.floats(width=32),
+    st.sampled_from([math.nan, math.inf, -math.inf, 0.0, -0.0, 2.0**-149]),
+    st.sampled_from(_around(np.float32)),
+    st.integers(-9, 9),
+).map(np.float32)
+signed = st.one_of(
+    st.sampled_from([s * x for x in EDGES for s in (1, -1)] + [-(2**63)]), st.integers(-9, 9)
+)
+longs = signed.filter(lambda x: -(2**63) <= x < 2**63).map(np.int64)
+unsigned = signed.filter(lambda x: x >= 0).map(np.uint64)
+KINDS: Mapping[str, st.SearchStrategy[Any]] = {
+    "float": singles,
+    "double": doubles,
+    "int64": longs,
+    "uint64": unsigned,
+    "int8": st.integers(-128, 127).map(np.int8),
+    "uint8": st.integers(0, 255).map(np.uint8),
+    "int16": st.sampled_from([-(2**15), -1, 0, 1, 3, 2**15 - 1]).map(np.int16),
+    "uint16": st.sampled_from([0, 1, 3, 2**16 - 1]).map(np.uint16),
+    "int32": st.sampled_from([-(2**31), -1, 0, 1, 2, 2**31 - 1]).map(np.int32),
+    "uint32": st.sampled_from([0, 1, 3, 2**32 - 1]).map(np.uint32),
+    "bool": st.booleans().map(np.bool_),
+}
+"""The types of fields, each with its numbers."""
+UNITS = ("m", "cm", "km", "mm")
+
+
+def numbers_of(names: tuple[str, ...]) -> st.SearchStrategy[e.Expression]:
+    """Expressions of bindings that are lengths, as far as anybody checks."""
+    leaves = st.one_of(
+        st.sampled_from(names).map(e.Name),
+        st.builds(e.Quantity, digits, st.sampled_from(UNITS)),
+        digits.map(e.Number),
+    )
+
+    def grown(parts: st.SearchStrategy[e.Expression]) -> st.SearchStrategy[e.Expression]:
+        powers = st.integers(1, 4).map(lambda k: e.Number(str(k)))
+        few = st.one_of(st.tuples(parts, parts), st.tuples(parts, parts, parts))
+        return st.one_of(
+            st.builds(e.Negation, parts),
+            st.builds(e.Arithmetic, st.sampled_from(["+", "-", "*", "/", "mod"]), parts, parts),
+            st.builds(e.Arithmetic, st.just("^"), st.sampled_from(names).map(e.Name), powers),
+            st.builds(e.Call, st.just("abs"), st.tuples(parts)),
+            st.builds(e.Call, st.sampled_from(["min", "max"]), few),
+        )
+
+    return st.recursive(leaves, grown, max_leaves=4)
+
+
+def truths_of(names: tuple[str, ...]) -> st.SearchStrategy[e.Expression]:
+    """Truth values of bindings over numbers; `x` also stands for one itself."""
+    sides = numbers_of(names)
+    leaves = st.one_of(
+        st.builds(e.Comparison, st.sampled_from(SIGNS), sides, sides),
+        st.builds(
+            e.Comparison,
+            st.sampled_from(SIGNS),
+            st.sampled_from(names).map(e.Name),
+            st.builds(e.Quantity, digits, st.sampled_from(UNITS)),
+        ),
+        st.sampled_from(names).map(e.Name),
+        st.booleans().map(e.Truth),
+    )
+    return st.recursive(
+        leaves,
+        lambda parts: st.one_of(
+            st.builds(e.Not, parts),
+            st.tuples(parts, parts).map(e.And),
+            st.tuples(parts, parts).map(e.Or),
+            st.builds(e.Implies, parts, parts),
+            st.builds(e.Iff, parts, parts),
+            st.builds(e.Xor, parts, parts),
+        ),
+        max_leaves=4,
+    )
+
+
+readings_of = st.sampled_from(Reading)
+invalids = st.builds(Invalid, readings_of, readings_of, readings_of, readings_of)
+
+
+@st.composite
+def signals(draw: st.DrawFn, name: str) -> Signal:
+    """A signal of numbers, of one field or of an array."""
+    each = draw(st.booleans())
+    found = path(f"/{name}.field" + "[:]" * each)
+    assert found is not None
+    chosen = draw(st.sampled_from(UNITS))
+    known = unit(chosen)
+    assert known is not None
+    valid = draw(st.one_of(st.none(), truths_of(("x", "least", "most"))))
+    reduce = draw(st.sampled_from([Reduce.MIN, Reduce.MAX])) if each else None
+    return Signal(
+        name,
+        found,
+        known,
+        chosen,
+        reduce=reduce,
+        valid=valid,
+        invalid=draw(invalids),
+        max_age=draw(st.sampled_from([None, 0, 10**8])),
+    )
+
+
+def audited_sample(signal: Signal, field: Any, fields: Mapping[str, Any]) -> Values:
+    """The number of a message with this field, as a log's series of one sample has it."""
+    single = getattr(field, "dtype", None) == np.float32
+    value = sample(signal, SimpleNamespace(field=field, **fields), single=single)
+    if isinstance(value, int):
+        return np.array([value], EXACT)
+    return np.array([value], np.float32 if single and is_chosen(signal) else np.float64)
+
+
+def audited_truth(
+    tree: e.Expression, given: Mapping[str, Signal], row: Mapping[str, Values]
+) -> Truth:
+    """What the audit says of a proposition where its signals have these numbers."""
+    scales = {name: signal.scale for name, signal in given.items()}
+    words = {name: signal.values for name, signal in given.items()}
+    (value,) = truth_values(truth(tree, Scope(1, row, scales=scales, words=words)))
+    return value
+
+
+# The descriptions, read by an interpreter over the kernel of monitors ----------------------------
+
+
+def number_of(tree: n.Number, row: Mapping[str, Any]) -> Any:
+    """The value of a number; `row` has what `readings.number` takes."""
+    match tree:
+        case n.Given(name):
+            return readings.number(row[name], name)
+        case n.Fixed(value):
+            return readings.exact(str(value))
+        case n.Applied(function, arg):
+            return getattr(readings, function)(number_of(arg, row))
+        case n.Computed(function, left, right) | n.Chosen(function, left, right):
+            return getattr(readings, function)(number_of(left, row), number_of(right, row))
+        case n.Power(base, times):
+            return readings.power(number_of(base, row), times)
+        case n.InBase(arg, scale):
+            return readings.in_base(number_of(arg, row), readings.exact(str(scale)))
+        case _:
+            assert_never(tree)
+
+
+def truth_of(tree: n.Truth, row: Mapping[str, Any]) -> Truth:
+    """The truth of a description that asks for no duration."""
+    match tree:
+        case n.Known(value):
+            return value
+        case n.Flag(name):
+            number = readings.number(row[name], name)
+            return None if number not in (0, 1) else number == 1
+        case n.Compared(sign, left, right):
+            return readings.compared(number_of(left, row), sign, number_of(right, row))
+        case n.Not(arg):
+            value = truth_of(arg, row)
+            return None if value is None else not value
+        case n.All(args):
+            values = [truth_of(arg, row) for arg in args]
+            return False if False in values else None if None in values else True
+        case n.Some(args):
+            values = [truth_of(arg, row) for arg in args]
+            return True if True in values else None if None in values else False
+        case n.Same(left, right):
+            first, second = truth_of(left, row), truth_of(right, row)
+            return None if first is None or second is None else first == second
+        case n.Held():
+            raise AssertionError("not a truth of one instant")
+        case _:
+            assert_never(tree)
