@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from threading import Thread
 from typing import Any
+from xmlrpc.client import ServerProxy
 
 import pytest
 
@@ -179,3 +180,22 @@ def test_without_rospy_the_package_is_named(tmp_path: Path) -> None:
     (absent,) = [each for each in source.arrivals(["/x"]) if isinstance(each, Problem)]
     assert absent.diagnostic.code == Code.MISSING_EXTRA
     assert str(tmp_path / "python") in absent.diagnostic.message
+
+
+def test_another_type_than_bound_and_a_simulated_clock_are_told_of(
+    here: Ros, folder: Path, tmp_path: Path
+) -> None:
+    bindings = (folder / "bindings.toml").read_text()
+    other = bindings.replace("geometry_msgs/Twist", "geometry_msgs/Vector3")
+    (folder / "bindings.toml").write_text(other)
+    here.master()
+    with ServerProxy(here.uri) as master:
+        master.setParam("/test", "/use_sim_time", True)
+    here.world("robot")
+    run = Watched(here, tmp_path, "--requirements", "requirements")
+    expected = {Code.WRONG_TYPE.number, Code.SIMULATED_TIME.number}
+    try:
+        until("both are told of", lambda: expected <= run.codes(), 30)
+        assert run.verdict("GO") != "satisfied"
+    finally:
+        run.close()
