@@ -18,6 +18,8 @@ from typing import Any, BinaryIO
 LENGTHS = struct.Struct("<II")
 _PERIOD = 0.5
 """Seconds between two looks at the master."""
+_PATIENCE = 5.0
+"""Seconds in which a master answers."""
 _CONNECTING = 2.0
 """Seconds in which those who publish already should answer."""
 
@@ -63,6 +65,7 @@ def _main() -> None:
         return
     master = rosgraph.Master("/fretc_watch")
     uri = rosgraph.get_master_uri()
+    _end_in_silence(rosgraph.Master("/fretc_watch"), frames, uri)
     pid = _pid(master)
     if pid is None:
         frames.send({"kind": "no master", "uri": uri})
@@ -117,6 +120,26 @@ def _pid(master: Any) -> int | None:
         return int(master.getPid())
     except Exception:  # as above
         return None
+
+
+def _end_in_silence(master: Any, frames: _Frames, uri: str) -> None:
+    """End the node where the master takes a call and does not answer it."""
+
+    def look() -> None:
+        pause = threading.Event()
+        while True:
+            timer = threading.Timer(_PATIENCE, give_up)
+            timer.daemon = True
+            timer.start()
+            _pid(master)
+            timer.cancel()
+            pause.wait(_PERIOD)
+
+    def give_up() -> None:
+        frames.send({"kind": "no master", "uri": uri})
+        os._exit(0)
+
+    threading.Thread(target=look, daemon=True).start()
 
 
 def _end_with_input() -> None:

@@ -137,7 +137,10 @@ def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
     assert ended["verdicts"] == {"GO": "satisfied", "HALT": "violated"}
 
 
-def test_a_master_that_ends_is_sought_again(here: Ros, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGSTOP])
+def test_a_master_that_is_gone_or_silent_is_sought_again(
+    here: Ros, monkeypatch: pytest.MonkeyPatch, number: int
+) -> None:
     for name, value in here.environment.items():
         monkeypatch.setenv(name, value)
     master = here.master()
@@ -151,10 +154,13 @@ def test_a_master_that_ends_is_sought_again(here: Ros, monkeypatch: pytest.Monke
 
     try:
         until("it is opened", lambda: has(Opened))
-        master.terminate()
-        master.wait(10)
-        until("it is interrupted", lambda: has(Interrupted))
-        here.master()
+        master.send_signal(number)
+        until("it is interrupted", lambda: has(Interrupted), 30)
+        if number == signal.SIGSTOP:
+            master.send_signal(signal.SIGCONT)
+        else:
+            master.wait(10)
+            here.master()
         until("it is connected again", lambda: has(Reconnected), 30)
     finally:
         source.close()
