@@ -21,7 +21,10 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
     from compiler.formalization.formalized import Formalized
+    from compiler.project.folder import Project
+    from fretc.play.recorded import Recorded
     from fretc.play.starts import Start
+    from fretc.play.versions import Side
 
 
 T = TypeVar("T")
@@ -39,6 +42,12 @@ _SECONDS = 20
     help="What the requirements were, a file or a folder: both versions side by side, and where "
     "they differ.",
 )
+@path_option(
+    "--log",
+    "logs",
+    multiple=True,
+    help="A recorded run: its violations are traces to start from. May be given several times.",
+)
 @tests_option
 @analysis_option
 @output_option(default="build/play.html", show_default=True, help="The page; `-` prints it.")
@@ -47,6 +56,7 @@ def play(
     requirements: str,
     bindings: str | None,
     against: str | None,
+    logs: tuple[str, ...],
     tests: str | None,
     analysis: str | None,
     output: str,
@@ -58,6 +68,7 @@ def play(
     from the traces of `fretc explain`, and from those of `fretc test` and `fretc analyze` where
     they have been made. With `--against` a requirement that has changed stands beside what it was,
     with the ticks at which both have other verdicts, and a shortest trace that tells them apart.
+    With `--log` it starts from the violations of a recorded run.
 
     Exit status: 0 the page has all requirements, 2 bad use or input, or a requirement of which no
     monitor can be made: the page names it.
@@ -68,7 +79,7 @@ def play(
     from fretc.commands.analyze import in_force, project_of
     from fretc.play.page import html
     from fretc.play.starts import of_examples
-    from fretc.play.versions import side_by_side, versions
+    from fretc.play.versions import Versions, side_by_side, versions
 
     project, _ = project_of(files, requirements, bindings)
     rules = in_force(project, None)
@@ -77,27 +88,58 @@ def play(
     if not known:
         stop(*refused.values())
     earlier = project_of((against,), requirements, bindings)[0] if against is not None else None
-    old = [rule for rule in in_force(earlier, None) if not refuse(rule)] if earlier else []
-    changes = versions(known, old, _SECONDS)
+    changes = versions(_side(project), _side(earlier), _SECONDS) if earlier else Versions()
     shown = [*side_by_side(changes, known)]
     clashing = [*clashes(shown)]
     if clashing:
         stop(*clashing)
     say([*refused.values()])
+    recorded = [*_recorded(project, known, logs)]
     starts = [
+        *(start for run in recorded for start in run.starts),
         *filter(None, [pair.start for pair in changes.pairs]),
         *of_examples(known),
         *_of_files(project.rules, known, tests, analysis),
     ]
-    notes = [*[pair.note for pair in changes.pairs], *changes.notes] if earlier else []
+    notes = [*(pair.note for pair in changes.pairs), *changes.notes]
+    notes += [note for run in recorded for note in run.notes]
     before = {pair.new.id: pair.old.id for pair in changes.pairs}
     left_out = [(id, said.message) for id, said in refused.items()]
     page = html(shown, left_out, starts, before, notes)
     wordings = [*project.requirements, *(earlier.requirements if earlier else ())]
     sources = [requirement.wording.source.name for requirement in wordings]
-    inputs = filter(None, [bindings, tests, analysis])
+    inputs = filter(None, [bindings, tests, analysis, *logs])
     deliver({Path(output): page}, [*sources, *companions(sources), *inputs])
     raise SystemExit(BAD if refused else SHOWN)
+
+
+def _side(project: Project) -> Side:
+    """One of two versions."""
+    from compiler.targets.javascript.monitor import refuse
+    from fretc.commands.analyze import in_force
+    from fretc.play.versions import Side
+
+    rules = in_force(project, None)
+    refused = {rule.id: said.message for rule in rules if (said := refuse(rule)) is not None}
+    known = [rule for rule in rules if rule.id not in refused]
+    return Side(known, refused, project.declarations)
+
+
+def _recorded(
+    project: Project, known: Sequence[Formalized], logs: Sequence[str]
+) -> Iterator[Recorded]:
+    """What some logs show; one that cannot be read, or judged, stops the command."""
+    from fretc.audit.plan import Plan, planned
+    from fretc.play.recorded import of_log
+
+    if not logs:
+        return
+    plan = planned(project)
+    if not isinstance(plan, Plan):
+        stop(*plan)
+    say([*plan.refusals])
+    for log in logs:
+        yield _good(of_log(known, plan, log))
 
 
 def _of_files(

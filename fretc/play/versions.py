@@ -1,19 +1,43 @@
-"""Requirements as they are and as they were: what has changed, and what tells both apart."""
+"""Requirements as they are and as they were: what has changed, and what tells both apart.
+
+Two sentences are held against each other only where a tick is the same and all that both read means
+the same in the bindings: a run of the one is then a run of the other.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from compiler.formalization.formalized import Formalized
 from fretc.play.starts import MOST, Start
 from fretc.testing.runs import Absence, difference
+from fretish.bindings.canonical import bound, clock
+from fretish.bindings.declarations import Declarations
 from fretish.reading.recursion import deep
 
 
 @dataclass(frozen=True, slots=True)
+class Side:
+    """One version of a project."""
+
+    rules: Sequence[Formalized]
+    """Those that a monitor can be made of."""
+    refused: Mapping[str, str]
+    """The ids of the others, and why they are none."""
+    declarations: Declarations | None
+    """With the propositions that sentences state."""
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Of all its requirements."""
+        return (*(rule.id for rule in self.rules), *self.refused)
+
+
+@dataclass(frozen=True, slots=True)
 class Pair:
-    """A requirement that has another sentence than before."""
+    """A requirement that is another sentence than before, over the same bindings."""
 
     new: Formalized
     old: Formalized
@@ -28,12 +52,12 @@ class Pair:
 class Versions:
     """Two versions of a project."""
 
-    pairs: tuple[Pair, ...]
-    notes: tuple[str, ...]
+    pairs: tuple[Pair, ...] = ()
+    notes: tuple[str, ...] = ()
     """What became of the other requirements, in words."""
 
 
-def versions(new: Sequence[Formalized], old: Sequence[Formalized], seconds: float) -> Versions:
+def versions(new: Side, old: Side, seconds: float) -> Versions:
     """Hold requirements against what they were.
 
     Args:
@@ -41,24 +65,57 @@ def versions(new: Sequence[Formalized], old: Sequence[Formalized], seconds: floa
         old: as they were; an only one is held against an only one, whatever their ids are.
         seconds: of a processor, for each pair.
     """
-    before = {rule.id: rule for rule in old}
-    if len(new) == len(old) == 1:
-        before = {new[0].id: old[0]}
-    taken = {rule.id for rule in (*new, *old)}
-    pairs = tuple(
-        _pair(rule, _named(before[rule.id], rule.id, taken), seconds)
-        for rule in new
-        if rule.id in before and rule.fingerprint != before[rule.id].fingerprint
-    )
-    ids = [rule.id for rule in new]
-    changed = {pair.new.id for pair in pairs}
+    ids, earlier = new.ids, old.ids
+    names = {id: id for id in earlier}
+    if len(ids) == len(earlier) == 1:
+        names, earlier = {ids[0]: earlier[0]}, ids
+    before = {rule.id: rule for rule in old.rules}
+    taken = {*new.ids, *old.ids}
+    pairs, notes, same = [], [], []
+    for rule in new.rules:
+        other = before.get(names.get(rule.id, ""))
+        if other is None:
+            continue
+        unlike = _unlike(rule, other, new.declarations, old.declarations)
+        if unlike:
+            notes.append(f"{rule.id}: {unlike}: its versions are not compared")
+        elif (rule.fingerprint, rule.ticks) == (other.fingerprint, other.ticks):
+            same.append(rule.id)
+        else:
+            pairs.append(_pair(rule, _named(other, rule.id, taken), seconds))
+    gone = "no monitor can be made of what it was"
+    notes += [
+        f"{id}: {gone}: {old.refused[names[id]]}" for id in ids if names.get(id) in old.refused
+    ]
     groups = {
-        "the same as before": [id for id in ids if id in before and id not in changed],
-        "new": [id for id in ids if id not in before],
-        "gone": [id for id in before if id not in ids],
+        "the same as before": same,
+        "new": [id for id in ids if id not in names],
+        "gone": [id for id in earlier if id not in ids],
     }
-    notes = [f"{', '.join(some)}: {what}" for what, some in groups.items() if some]
-    return Versions(pairs, tuple(notes))
+    notes += [f"{', '.join(some)}: {what}" for what, some in groups.items() if some]
+    return Versions(tuple(pairs), tuple(notes))
+
+
+def _unlike(
+    new: Formalized, old: Formalized, now: Declarations | None, then: Declarations | None
+) -> str:
+    """Why a run of one version is none of the other; empty: it is one."""
+    clocks = [clock(each.clock) if each else None for each in (now, then)]
+    if clocks[0] != clocks[1]:
+        return "a tick is something else now"
+    one, other = _meanings(new, now), _meanings(old, then)
+    both = one.keys() & other.keys()
+    changed = sorted(name for kind, name in both if one[kind, name] != other[kind, name])
+    return f"`{changed[0]}` means something else in the bindings now" if changed else ""
+
+
+def _meanings(rule: Formalized, declarations: Declarations | None) -> dict[tuple[str, str], Any]:
+    """What the bindings say of each name that a rule reads; None: nothing."""
+    found: dict[tuple[str, str], Any] = {("proposition", name): None for name in rule.watched}
+    if declarations is not None:
+        known = bound(declarations, rule.watched)
+        found |= {(kind, name): known[kind][name] for kind in known for name in known[kind]}
+    return found
 
 
 def _named(rule: Formalized, id: str, taken: set[str]) -> Formalized:
@@ -76,7 +133,8 @@ def _pair(new: Formalized, old: Formalized, seconds: float) -> Pair:
         if found.why:
             note = f"changed; whether a run tells both apart is not known: {found.why}"
         else:
-            note = "written in another way, and every finite run has the same verdict: proved"
+            note = "written in another way; all finite runs without unknown values have the same"
+            note += " verdicts: proved"
         return Pair(new, old, f"{new.id}: {note}", None)
     word = found.word
     count = f"{word.ticks} tick{'' if word.ticks == 1 else 's'}"

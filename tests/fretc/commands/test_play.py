@@ -10,6 +10,7 @@ import pytest
 
 from tests.command import Fretc
 
+ROOT = Path(__file__).parents[3]
 NEAR = "whenever near the robot shall within 2 ticks satisfy stopped"
 PROBABLE = "whenever near the robot shall with probability > 0.9 within 2 ticks satisfy stopped"
 
@@ -120,3 +121,18 @@ def test_a_page_against_what_requirements_were(fretc: Fretc) -> None:
     missing = fretc("play", "--against", "none")
     assert missing.status == 2
     assert missing.err.startswith("F901")
+
+
+@pytest.mark.slow
+def test_a_violation_of_a_recorded_run_is_a_start(fretc: Fretc, tmp_path: Path) -> None:
+    log = tmp_path / "off.mcap"
+    assert fretc("simulate", "safety-silent", "--duration", "25", "-o", str(log)).status == 0
+    folder = str(ROOT / "requirements/mission")
+    run = fretc("play", folder, "--log", str(log))
+    assert run.status == 0, run.err
+    first = data(Path("build/play.html").read_text("utf-8"))["starts"][0]
+    assert first["about"].startswith(f"R15, violation 1 of {log}: ticks ")
+    assert {"moving", "alive"} & {*first["rows"][0][1]}
+    missing = fretc("play", folder, "--log", "none.mcap")
+    assert missing.status == 2
+    assert "\nF901 " in missing.err

@@ -6,12 +6,15 @@ import random
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 
 import pytest
 
 from compiler.formalization.formalized import Formalized
-from fretc.play.versions import Versions, side_by_side, versions
+from compiler.project.folder import load
+from fretc.play.versions import Side, Versions, side_by_side, versions
 from fretc.testing.runs import Absence, Difference, difference
+from fretish.diagnostics.diagnostic import has_errors
 from tests.monitoring import rule
 from tests.strategies import Template, templates
 
@@ -67,7 +70,9 @@ AGAIN = "the robot shall never satisfy near & stopped"
 
 
 def of(new: dict[str, str], old: dict[str, str]) -> Versions:
-    now, then = ([named(text, id) for id, text in some.items()] for some in (new, old))
+    now, then = (
+        Side([named(text, id) for id, text in some.items()], {}, None) for some in (new, old)
+    )
     return versions(now, then, SECONDS)
 
 
@@ -77,7 +82,8 @@ def test_what_became_of_each_requirement() -> None:
     found = of(new, old)
     assert [pair.note for pair in found.pairs] == [
         "A: a shortest trace that tells both versions apart has 3 ticks",
-        "B: written in another way, and every finite run has the same verdict: proved",
+        "B: written in another way; all finite runs without unknown values have the same verdicts:"
+        " proved",
     ]
     assert found.notes == ("C: the same as before", "D: new", "E: gone")
     assert [pair.start is None for pair in found.pairs] == [False, True]
@@ -100,3 +106,65 @@ def test_a_trace_that_no_page_takes_is_a_note() -> None:
     (pair,) = of({"A": WITHIN.format(2_500)}, {"A": WITHIN.format(2_600)}).pairs
     assert pair.start is None
     assert pair.note.endswith("has 2501 ticks, and this page takes 2000")
+
+
+BINDINGS = """
+[clock]
+tick = "{tick}"
+[signal.d]
+path = "/scan.range"
+unit = "{unit}"
+[proposition.near]
+expr = "d < {near} m"
+[proposition.stopped]
+expr = "d > 2 m"
+"""
+NOT_COMPARED: dict[str, tuple[str, str, dict[str, str], str]] = {
+    "the clock": (
+        WITHIN.format(2),
+        WITHIN.format(2),
+        {"tick": "200 ms"},
+        "a tick is something else",
+    ),
+    "a proposition": (WITHIN.format(2), WITHIN.format(2), {"near": "3"}, "`near` means something"),
+    "a proof about another proposition": (SAME, AGAIN, {"near": "3"}, "`near` means something"),
+    "the unit of a signal": (
+        "the robot shall always satisfy d < 5",
+        "the robot shall never satisfy d >= 5",
+        {"unit": "km"},
+        "`d` means something",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", NOT_COMPARED)
+def test_what_reads_other_bindings_is_neither_the_same_nor_proved(
+    name: str, tmp_path: Path
+) -> None:
+    new, old, changes, why = NOT_COMPARED[name]
+    sides = []
+    for folder, sentence, other in (("new", new, {}), ("old", old, changes)):
+        place = tmp_path / folder
+        place.mkdir()
+        (place / "r.fret").write_text(sentence)
+        values = {"tick": "100 ms", "unit": "m", "near": "1"} | other
+        (place / "bindings.toml").write_text(BINDINGS.format(**values))
+        project = load([str(place / "r.fret")])
+        assert not has_errors(project.diagnostics), project.diagnostics
+        sides.append(Side(project.rules, {}, project.declarations))
+    found = versions(sides[0], sides[1], SECONDS)
+    assert found.pairs == ()
+    (note,) = found.notes
+    assert why in note
+    assert note.endswith("its versions are not compared")
+    again = versions(sides[0], sides[0], SECONDS)
+    assert again.notes == ("r: the same as before",)
+
+
+def test_what_no_monitor_can_be_made_of_is_neither_new_nor_gone() -> None:
+    rules = [named(SAME, "A")]
+    found = versions(Side(rules, {"B": "why"}, None), Side([], {"A": "that", "B": "why"}, None), 1)
+    assert found.notes == (
+        "A: no monitor can be made of what it was: that",
+        "B: no monitor can be made of what it was: why",
+    )

@@ -1,0 +1,164 @@
+"""Windows of recorded runs as traces to start from: a violation, and what led to it.
+
+A page judges a window as if nothing had been before it. So a window begins where that makes no
+difference: the signals of the monitor are those of the whole run at each of its ticks. But for one:
+a demand that lasts from before the window may begin with it.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from compiler.formalization.formalized import Formalized
+from compiler.targets.python import monitor as emitted
+from fretc.audit.plan import Plan
+from fretc.logs.reader import read
+from fretc.logs.signals.traces import Timeline, trace
+from fretc.play.starts import MOST, Start, Ticks
+from fretish.diagnostics.diagnostic import Diagnostic
+from monitors.kernel import Column, Monitor, evaluate
+from monitors.kernel.stepping import literals_of
+from monitors.kernel.verdicts import Signals
+from monitors.loading import load
+
+SHOWN = 20
+"""Violations of a requirement that are traces; the others are counted."""
+_AROUND = 10
+"""Ticks before what leads to a violation, and after it."""
+_AFTER = 200
+"""Ticks of a violation that lasts."""
+_BACK = (0, 10, 30, 100, 300, 1_000)
+"""How many ticks earlier a window may begin, where what was before would make a difference."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """What of a run is on a page."""
+
+    starts: tuple[Start, ...]
+    notes: tuple[str, ...]
+    """What is not, in words."""
+
+
+def of_log(rules: Sequence[Formalized], plan: Plan, log: str) -> Recorded | Diagnostic:
+    """The violations of a recorded run, or why the log cannot be read.
+
+    Args:
+        rules: those that the plan audits are looked at.
+        plan: of an audit.
+        log: its path.
+    """
+    audited = {claim.id for claim in plan.claims}
+    chosen = [rule for rule in rules if rule.id in audited]
+    recording = read(log, plan.declarations, tuple(plan.declarations.signals), plan.integrity)
+    if isinstance(recording, Diagnostic):
+        return recording
+    names = dict.fromkeys(name for rule in chosen for name in rule.watched)
+    truths = trace(plan.declarations, recording, tuple(names))
+    starts: list[Start] = []
+    notes: list[str] = []
+    for rule in chosen:
+        columns = {name: truths.columns[name] for name in rule.watched}
+        run = Run(rule, columns, truths.timeline, recording.name)
+        starts += run.starts()
+        notes += run.notes()
+    if not starts:
+        notes.append(f"{recording.name}: no whole tick of it violates a requirement")
+    return Recorded(tuple(starts), tuple(notes))
+
+
+class Run:
+    """One requirement over one run."""
+
+    def __init__(
+        self, rule: Formalized, columns: Mapping[str, Column], timeline: Timeline, name: str
+    ) -> None:
+        self._id, self._name, self._columns = rule.id, name, columns
+        self._monitor: Monitor = load(f"{rule.id}.py", emitted.text(rule))
+        self._times = timeline.times
+        self._ticks = len(timeline.times)
+        (self._outcome,) = evaluate(self._monitor, columns, self._ticks)
+        self._whole = self._signals(columns, self._ticks)
+        self._windows = [self._window(*each) for each in self._outcome.violations[:SHOWN]]
+
+    @property
+    def violations(self) -> int:
+        """How many stretches of ticks break it."""
+        return len(self._outcome.violations)
+
+    def starts(self) -> Iterator[Start]:
+        """The windows, as traces."""
+        for number, window in enumerate(self._windows, 1):
+            if window is None:
+                continue
+            first, last = window
+            begin = (int(self._times[first]) - int(self._times[0])) / 1e9
+            name = f"{self._id}, violation {number} of {self._name}"
+            about = f"{name}: ticks {first} to {last} of the run; tick 0 here is at {begin:.3f} s"
+            if not self._is_alike(first, last, 0):
+                about += ", and a demand from before begins with it"
+            yield Start("Recorded runs", name, about, (self._id,), (*self._rows(first, last),))
+
+    def notes(self) -> Iterator[str]:
+        """What is not among them."""
+        for number, window in enumerate(self._windows, 1):
+            if window is None:
+                what = f"violation {number} of {self._name} is not here"
+                yield f"{self._id}: {what}: what led to it takes more than {MOST} ticks"
+        more = self.violations - SHOWN
+        if more > 0:
+            yield f"{self._id}: {more} more violations of {self._name} are not here"
+
+    def _window(self, first: int, last: int) -> tuple[int, int] | None:
+        """The first and the last tick of a trace that shows a violation; None: it is too long."""
+        end = min(self._ticks - 1, last + _AROUND, first + _AFTER)
+        place = bisect_right(self._outcome.triggers, first)
+        trigger = self._outcome.triggers[place - 1] if place else first
+        horizon = self._monitor.REQUIREMENTS[0].horizon or 0
+        for begin, older in ((min(trigger, first - horizon), 0), (first - horizon, 1)):
+            for back in (*_BACK, begin):
+                start = max(0, begin - _AROUND - back)
+                if end - start < MOST and self._is_alike(start, end, older):
+                    return start, end
+        return None
+
+    def _is_alike(self, first: int, last: int, older: int) -> bool:
+        """Whether the signals of the window alone are those of the whole run.
+
+        Args:
+            first: the first tick.
+            last: the last one.
+            older: 1 where a trigger at the first tick may stand for earlier ones.
+        """
+        count = last - first + 1
+        every = (1 << count) - 1
+        part = {
+            name: Column(column.true >> first & every, column.unknown >> first & every)
+            for name, column in self._columns.items()
+        }
+        own = self._signals(part, count)
+        return all(
+            (whole >> first ^ alone) & every & ~(older if name == "trigger" else 0) == 0
+            for name, whole, alone in zip(2 * Signals._fields, self._whole, own, strict=True)
+        )
+
+    def _signals(self, columns: Mapping[str, Column], ticks: int) -> tuple[int, ...]:
+        """Those of both rails, as columns."""
+        every = (1 << ticks) - 1
+        rails = [
+            self._monitor.columns(every, **literals_of(self._monitor, columns, every, doubt))
+            for doubt in (False, True)
+        ]
+        return tuple(column & every for (signals,) in rails for column in signals)
+
+    def _rows(self, first: int, last: int) -> Iterator[Ticks]:
+        """Equal ticks one after the other."""
+        rows = [
+            {name: column.at(tick) for name, column in self._columns.items()}
+            for tick in range(first, last + 1)
+        ]
+        for values, equal in groupby(rows):
+            yield sum(1 for _ in equal), dict(values)
