@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import random
 import struct
 import subprocess
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,11 +19,20 @@ from compiler.project.folder import load
 from compiler.signals.policies import policy
 from compiler.targets.c.monitor import TARGET
 from compiler.targets.target import Options
+from fretc.logs.signals.propositions import Steps, truth_values
 from fretc.logs.signals.samples import EXACT, Values
+from fretc.logs.signals.traces import combined
+from fretc.logs.signals.words import word
+from fretish import expressions as e
+from fretish.bindings.declarations import Aggregate, Declarations, Proposition, Signal, path
+from fretish.clock import Clock
+from fretish.diagnostics.source import Source
+from fretish.units import ONE
 from monitors.kernel.verdicts import Truth
 from tests.c_monitors import CHECKED, STRICT, compiler
 from tests.each import each
-from tests.signal_policies import NOW, Case, Message, collected, numbered
+from tests.emitting import rule
+from tests.signal_policies import NOW, Case, Message, audited_truth, collected, numbered
 
 ROOT = Path(__file__).parents[4]
 TYPES = "float double bool int8 uint8 int16 uint16 int32 uint32 int64 uint64".split()
@@ -132,7 +146,11 @@ def hold(folder: Path, cases: list[Case], *flags: str, cc: str = "gcc") -> None:
 
 @pytest.mark.parametrize(
     ("cc", "flags"),
-    [("gcc", ["-O1", *CHECKED]), ("clang", ["-O3"]), ("gcc", ["-O3", "-march=native"])],
+    [
+        ("gcc", ["-O1", *CHECKED]),
+        pytest.param("clang", ["-O3"], marks=pytest.mark.slow),
+        pytest.param("gcc", ["-O3", "-march=native"], marks=pytest.mark.slow),
+    ],
 )
 def test_samples_say_in_c_what_they_say_in_an_audit(
     cc: str, flags: list[str], tmp_path: Path
@@ -170,3 +188,123 @@ def test_inexact_arithmetic_is_no_text_that_compiles(flag: str, tmp_path: Path) 
     done = subprocess.run(compile_, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode != 0
     assert "#error" in done.stderr
+
+
+WORDS = ("idle", 'say "?"', "dr\u00e9ive", "9")
+NUMBERS = (0, 4, -1)
+TICK = """
+#include <stdio.h>
+#include "monitors_signals.h"
+
+int main(void)
+{
+    static monitors_samples samples;
+    unsigned char length;
+    char text[16];
+    double number;
+    monitors_held held = {FRETC_UNKNOWN}, holding;
+    monitors_inputs tick, next;
+    bool is_first = true;
+    while (fread(&length, 1, 1, stdin) == 1 && fread(text, 1, 16, stdin) == 16
+           && fread(&number, 8, 1, stdin) == 1) {
+        samples.mode.number = monitors_sample_mode(text, length);
+        samples.gear.number = monitors_sample_gear(number);
+        monitors_instant(&samples, 0, &held, &next);
+        monitors_holding(&samples, 0, &held, &holding);
+        putchar(next.p0); putchar(next.p1); putchar(next.p2); putchar(holding.p3_for_1);
+        held = holding; /* as if it had held since then */
+        monitors_instant(&samples, 0, &held, &next);
+        putchar(next.p3);
+        if (is_first) { tick = next; } else { monitors_gather(&tick, &next); }
+        is_first = false;
+    }
+    monitors_assume(&tick);
+    putchar(tick.p0); putchar(tick.p1); putchar(tick.p2); putchar(tick.p3);
+    return 0;
+}
+"""
+
+
+def is_word(signal: str, sign: Any, text: str) -> e.Expression:
+    return e.Comparison(sign, e.Name(signal), e.Word(text))
+
+
+PROPOSITIONS = (
+    Proposition("p0", e.Or((is_word("mode", "=", WORDS[1]), is_word("mode", "=", WORDS[2])))),
+    Proposition("p1", is_word("mode", "!=", "idle"), aggregate=Aggregate.ANY, on_unknown=False),
+    Proposition("p2", is_word("gear", "!=", "back"), aggregate=Aggregate.ALL),
+    Proposition(
+        "p3",
+        e.Not(e.Persistence(is_word("gear", "=", "forward"), 10**9)),
+        aggregate=Aggregate.ALL,
+        on_unknown=True,
+    ),
+)
+
+
+def of_words() -> Declarations:
+    places = [path(f"/t.{name}") for name in ("mode", "gear")]
+    mode, gear = (place for place in places if place is not None)
+    signals = {
+        "mode": Signal("mode", mode, ONE, "", values=WORDS),
+        "gear": Signal("gear", gear, ONE, "", values=("park", "forward", "back"), numbers=NUMBERS),
+    }
+    named = {each.name: each for each in PROPOSITIONS}
+    return Declarations(Source("bindings.toml", ""), Clock(10**8), signals, named)
+
+
+def test_words_durations_and_the_instants_of_a_tick(tmp_path: Path) -> None:
+    declarations = of_words()
+    subjects = [rule(f"the sw shall always satisfy {p.name}", p.name) for p in PROPOSITIONS]
+    rules = [replace(each, declarations=declarations) for each in subjects]
+    for file in TARGET.emit(rules, Options(one_file=True)):
+        tmp_path.joinpath(str(file.path)).write_text(file.text, encoding="utf-8")
+    tmp_path.joinpath("main.c").write_text(TICK, encoding="utf-8")
+    sources = ["main.c", "monitors_signals.c", "-o", "main"]
+    subprocess.run([compiler("gcc"), *STRICT, *CHECKED, *sources], cwd=tmp_path, check=True)
+    choose = random.Random(7)
+    for _ in range(200):
+        rows = [
+            (choose.choice([*WORDS, "", "idle ", "Idle"]), choose.choice([*NUMBERS, 1.5, math.nan]))
+            for _ in range(choose.randint(1, 5))
+        ]
+        data = b"".join(
+            struct.pack("=B16sd", len(text.encode()), text.encode(), number)
+            for text, number in rows
+        )
+        done = subprocess.run([tmp_path / "main"], input=data, capture_output=True, check=True)
+        told = [TRUTHS[byte] for byte in done.stdout]
+        columns = [states(each, declarations, rows) for each in PROPOSITIONS]
+        expected = [[column[k] for column in columns] for k in range(len(rows))]
+        for k, now in enumerate(expected):
+            p0, p1, p2, holding, p3 = told[5 * k : 5 * k + 5]
+            assert [p0, p1, p2, p3] == now, rows
+            assert holding is (None if p3 is None else not p3)
+        assert told[5 * len(rows) :] == [
+            decided(p, [now[i] for now in expected]) for i, p in enumerate(PROPOSITIONS)
+        ], rows
+
+
+def states(
+    proposition: Proposition, declarations: Declarations, rows: list[tuple[str, float]]
+) -> list[Truth]:
+    """The audit's truths; a duration is as what it is about."""
+    found = []
+    for text, number in rows:
+        message = SimpleNamespace(mode=text, gear=number)
+        places = {name: word(each, message) for name, each in declarations.signals.items()}
+        row = {n: np.array([np.nan if isinstance(p, str) else p]) for n, p in places.items()}
+        tree = proposition.expression
+        if isinstance(tree, e.Not) and isinstance(tree.arg, e.Persistence):
+            tree = e.Not(tree.arg.arg)
+        found.append(audited_truth(tree, declarations.signals, row))
+    return found
+
+
+def decided(proposition: Proposition, truths: list[Truth]) -> Truth:
+    """What a tick says that sees these instants, in an audit."""
+    codes = np.array([(False, None, True).index(each) for each in truths], np.int8)
+    steps = Steps(np.arange(len(truths)), codes)
+    ends = np.array([0]), np.array([len(truths)])
+    (value,) = truth_values(combined(steps, *ends, proposition))
+    return value
