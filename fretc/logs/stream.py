@@ -107,8 +107,8 @@ class Stream:
         }
         clock = declarations.clock
         self._ticking = Ticking(_topics(declarations), clock.period, clock.phase, clock.topic)
-        self._end = 0
-        """The last message of all bound topics."""
+        self._begin, self._end = LATEST, 0
+        """The first and the last message of all bound topics."""
         self._recent: list[int] = []
         """The last ticks, from that of `_back` on; all of one time, if one of that time is one."""
         self._late: dict[str, list[_Span]] = {}
@@ -165,7 +165,7 @@ class Stream:
     def _put(self, topic: str, time: int, values: Iterable[tuple[_Queue, Value]]) -> None:
         for queue, (value, kind, foreign) in values:
             queue.put(time, value, kind, foreign)
-        self._end = max(self._end, time)
+        self._begin, self._end = min(self._begin, time), max(self._end, time)
 
     # Arrivals
 
@@ -332,8 +332,7 @@ class Stream:
         """What each of the new ticks sees, in a log that goes on up to `end`."""
         if not times:
             return ()
-        start, first = self._ticking.start, None
-        assert start is not None, "no tick is placed before a message"
+        start, first = self._begin, None
         before = self._recent
         if before:
             start = max(start, self._window())

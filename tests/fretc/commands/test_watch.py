@@ -19,8 +19,8 @@ from fretc.watch.text_output import rows
 from tests.command import Fretc, write
 from tests.fretc.logs.logs import MS, S, Sent, number
 from tests.fretc.logs.logs import write as log_of
+from tests.fretc.watch.sent import SENTENCES, Setting, plan_of
 from tests.fretc.watch.sent import Sent as Message
-from tests.fretc.watch.sent import Setting, plan_of
 from tests.json_schemas import validate
 
 ROOT = Path(__file__).parents[3]
@@ -224,5 +224,5 @@ def test_no_row_is_wider_than_the_screen(columns: int) -> None:
         session.arrive(Message("/x", 1.0, at).arrival)
         session.arrive(Message("/y", 9.0, at, delay=60).arrival)
     found = shown()
-    assert len(found) == 4 + 1 + 2 + 1
+    assert len(found) == len(SENTENCES) + 1 + 2 + 1
     assert any("late" in line for line in found)

@@ -18,6 +18,7 @@ SENTENCES = (
     "the r shall always satisfy !near | still",
     "upon near the r shall for 2 ticks satisfy slow",
     "whenever persisted(1, near) the r shall eventually satisfy slow",
+    "whenever near the r shall with probability >= 0.9 within 2 ticks satisfy still",
 )
 BINDINGS = """
 [clock]

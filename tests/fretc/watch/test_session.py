@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fretc.audit.one_log import audit, examined
@@ -79,6 +79,16 @@ def bound(some: Sequence[Sent], setting: Setting) -> bool:
     return any(each.topic in topics for each in some)
 
 
+LATE_FIRST = [
+    Sent("/y", 9.0, 44),
+    Sent("/x", 1.0, 68, delay=5),
+    Sent("/x", 1.0, 68, delay=5),
+    Sent("/x", 1.0, 23, delay=60),
+]
+"""The last of them is the first by its time, and later ticks look back to it."""
+
+
+@example(Setting(time="publish_time", slow="z < 5 for 25 ms", lateness=20), LATE_FIRST, 40)
 @given(settings_, messages, st.sampled_from([0, 3, 40]))
 def test_rows_and_verdicts_are_those_of_the_audit(
     setting: Setting, some: list[Sent], idle: int
