@@ -43,11 +43,6 @@ class Policy:
     """The other fields that `valid` reads."""
 
     @property
-    def reads(self) -> frozenset[str]:
-        """What `valid` reads: `x`, and other fields."""
-        return frozenset(name.id for name in e.names(self.signal.valid or e.Truth(True)))
-
-    @property
     def is_given(self) -> bool:
         """Whether the caller computes the number: a mean, in the field's unit; or a clearance."""
         return self.signal.reduce in (Reduce.MEAN, Reduce.OUTLINE)

@@ -117,7 +117,6 @@ def _signal(policy: Policy, name: str) -> dict[str, Any]:
         "reduce": signal.reduce.value if signal.reduce else "",
         "max_age": signal.max_age,
         "valid": valid,
-        "reads_x": policy.valid is not None and "x" in policy.reads,
         "fields": [*fields.values()],
         "parameters": "".join(f", double f_{each}" for each in fields.values()),
         "arguments": "".join(f", f_{each}" for each in fields.values()),
