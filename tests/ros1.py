@@ -124,13 +124,14 @@ class Ros:
             "ROS_IP": "127.0.0.1",
         }
 
-    def master(self) -> None:
+    def master(self) -> subprocess.Popen[str]:
         """Start it, and wait until it answers."""
         run = (
             f"import rosmaster.main; rosmaster.main.rosmaster_main(['--core', '-p', '{self.port}'])"
         )
-        self.start(PYTHON, "-c", run, stdout=subprocess.DEVNULL)
+        process = self.start(PYTHON, "-c", run, stdout=subprocess.DEVNULL)
         until("the master answers", self.state)
+        return process
 
     def start(self, *words: str, **how: Any) -> subprocess.Popen[str]:
         """A process; it is killed when the test ends."""

@@ -238,6 +238,9 @@ class Code(Enum):
     NOT_RECORDED = ("F952", "a watch cannot record any more")
     CLOCK_SET_BACK = ("F953", "a clock was set back while a robot was watched")
     REACTION_FAILED = ("F954", "the command of `--on-violation` has failed")
+    ROBOT_NOT_REACHED = ("F955", "the robot that is to be watched cannot be reached")
+    SEVERAL_PUBLISHERS = ("F956", "several nodes publish a topic that is watched")
+    SIMULATED_TIME = ("F957", "a robot that is watched has a simulated clock")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

@@ -1,0 +1,207 @@
+"""`fretc watch ros1` on real ROS 1: what it says is what an audit of its recording says."""
+
+import json
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from threading import Thread
+from typing import Any
+from xmlrpc.client import ServerProxy
+
+import pytest
+
+from fretc.watch.sources.ros1 import Ros1
+from fretc.watch.sources.source import Interrupted, Opened, Problem, Reconnected
+from fretish.diagnostics.diagnostic import Code
+from tests.ros1 import Ros, missing, ros, until
+
+ROOT = Path(__file__).parents[4]
+BINDINGS = """
+[clock]
+tick = "50 ms"
+time = "log_time"
+[signal.told]
+path = "/stop.data"
+type = "std_msgs/Bool"
+[signal.vx]
+path = "/cmd_vel.linear.x"
+type = "geometry_msgs/Twist"
+max_age = "5 s"
+[proposition.stop]
+expr = "told == 1"
+[proposition.moving]
+expr = "vx > 0.1"
+"""
+SENTENCES = {
+    "HALT": "whenever stop the robot shall within 2 ticks satisfy !moving",
+    "GO": "the robot shall eventually satisfy moving",
+}
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def here(tmp_path: Path) -> Iterator[Ros]:
+    if missing():
+        pytest.skip(missing())
+    with ros(tmp_path) as place:
+        yield place
+
+
+class Watched:
+    """`fretc`, and the lines that it has printed."""
+
+    def __init__(self, here: Ros, folder: Path, *words: str) -> None:
+        command = "from fretc.cli import main; main()"
+        run = [sys.executable, "-c", command, "watch", "ros1", "--format", "jsonl", *words]
+        self.process: subprocess.Popen[str] = subprocess.Popen(
+            run,
+            cwd=folder,
+            env={**here.environment, "PYTHONPATH": str(ROOT)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        )
+        self.lines: list[dict[str, Any]] = []
+        self._thread = Thread(target=self._read, daemon=True)
+        self._thread.start()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        self.lines.extend(json.loads(line) for line in self.process.stdout)
+
+    def verdict(self, requirement: str) -> str | None:
+        """The last that was said."""
+        found = [line for line in self.lines if line.get("requirement") == requirement]
+        return found[-1]["verdict"] if found else None
+
+    def codes(self) -> set[str]:
+        return {line["code"] for line in self.lines if "code" in line}
+
+    def end(self) -> int:
+        """Ctrl-C."""
+        self.process.send_signal(signal.SIGINT)
+        status = self.process.wait(30)
+        self._thread.join(5)
+        return status
+
+    def close(self) -> None:
+        """Leave nothing behind."""
+        self.process.kill()
+        self.process.wait()
+        self._thread.join(5)
+        assert self.process.stdout is not None
+        self.process.stdout.close()
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    folder = tmp_path / "requirements"
+    folder.mkdir()
+    for name, sentence in SENTENCES.items():
+        (folder / f"{name}.fret").write_text(sentence)
+    (folder / "bindings.toml").write_text(BINDINGS)
+    return folder
+
+
+def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
+    here: Ros, folder: Path, tmp_path: Path
+) -> None:
+    here.master()
+    robot = here.world("robot")
+    run = Watched(
+        here, tmp_path, "--requirements", "requirements", "--record", "run.mcap",
+        "--evidence", "live.json",
+    )  # fmt: skip
+    try:
+        until("it moves", lambda: run.verdict("GO") == "satisfied", 30)
+        assert run.verdict("HALT") != "violated"
+        robot.ask(True)
+        until("it goes on in spite of a stop", lambda: run.verdict("HALT") == "violated", 30)
+        here.world("second", drives=True, stop=None)
+        until("two publishers are told of", lambda: Code.SEVERAL_PUBLISHERS.number in run.codes())
+        assert run.end() == 1
+    finally:
+        run.close()
+    audit = [
+        sys.executable, "-c", "from fretc.cli import main; main()", "audit", "run.mcap",
+        "--requirements", "requirements", "-o", "audit.json",
+    ]  # fmt: skip
+    environment = {**here.environment, "PYTHONPATH": str(ROOT)}
+    audited = subprocess.run(audit, cwd=tmp_path, env=environment, check=False, capture_output=True)
+    assert audited.returncode == 1, audited.stderr
+    assert (tmp_path / "audit.json").read_bytes() == (tmp_path / "live.json").read_bytes()
+    (ended,) = [line for line in run.lines if line["type"] == "run"]
+    assert ended["verdicts"] == {"GO": "satisfied", "HALT": "violated"}
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGSTOP])
+def test_a_master_that_is_gone_or_silent_is_sought_again(
+    here: Ros, monkeypatch: pytest.MonkeyPatch, number: int
+) -> None:
+    for name, value in here.environment.items():
+        monkeypatch.setenv(name, value)
+    master = here.master()
+    source = Ros1()
+    found: list[object] = []
+    thread = Thread(target=lambda: found.extend(source.arrivals(["/stop"])), daemon=True)
+    thread.start()
+
+    def has(kind: type) -> bool:
+        return any(isinstance(item, kind) for item in tuple(found))
+
+    try:
+        until("it is opened", lambda: has(Opened))
+        master.send_signal(number)
+        until("it is interrupted", lambda: has(Interrupted), 30)
+        if number == signal.SIGSTOP:
+            master.send_signal(signal.SIGCONT)
+        else:
+            master.wait(10)
+            here.master()
+        until("it is connected again", lambda: has(Reconnected), 30)
+    finally:
+        source.close()
+        thread.join(10)
+    assert not thread.is_alive()
+    (gap,) = [item for item in found if isinstance(item, Reconnected)]
+    (before,) = [item for item in found if isinstance(item, Interrupted)]
+    assert before.since == gap.since < gap.until
+    assert before.problem.code == Code.ROBOT_NOT_REACHED
+
+
+def test_without_a_master_there_is_one_error(here: Ros, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in here.environment.items():
+        monkeypatch.setenv(name, value)
+    (problem,) = [each for each in Ros1().arrivals(["/x"]) if isinstance(each, Problem)]
+    assert problem.diagnostic.is_error
+    assert problem.diagnostic.code == Code.ROBOT_NOT_REACHED
+    assert here.uri.rstrip("/") in problem.diagnostic.message
+
+
+def test_without_rospy_the_package_is_named(tmp_path: Path) -> None:
+    source = Ros1(str(tmp_path / "python"))
+    (absent,) = [each for each in source.arrivals(["/x"]) if isinstance(each, Problem)]
+    assert absent.diagnostic.code == Code.MISSING_EXTRA
+    assert str(tmp_path / "python") in absent.diagnostic.message
+
+
+def test_another_type_than_bound_and_a_simulated_clock_are_told_of(
+    here: Ros, folder: Path, tmp_path: Path
+) -> None:
+    bindings = (folder / "bindings.toml").read_text()
+    other = bindings.replace("geometry_msgs/Twist", "geometry_msgs/Vector3")
+    (folder / "bindings.toml").write_text(other)
+    here.master()
+    with ServerProxy(here.uri) as master:
+        master.setParam("/test", "/use_sim_time", True)
+    here.world("robot")
+    run = Watched(here, tmp_path, "--requirements", "requirements")
+    expected = {Code.WRONG_TYPE.number, Code.SIMULATED_TIME.number}
+    try:
+        until("both are told of", lambda: expected <= run.codes(), 30)
+        assert run.verdict("GO") != "satisfied"
+    finally:
+        run.close()
