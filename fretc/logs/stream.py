@@ -109,6 +109,8 @@ class Stream:
         self._ticking = Ticking(_topics(declarations), clock.period, clock.phase, clock.topic)
         self._end = 0
         """The last message of all bound topics."""
+        self._begin: int | None = None
+        """The first one by its time, late ones too: a log begins there."""
         self._recent: list[int] = []
         """The last ticks, from that of `_back` on; all of one time, if one of that time is one."""
         self._late: dict[str, list[_Span]] = {}
@@ -166,6 +168,7 @@ class Stream:
         for queue, (value, kind, foreign) in values:
             queue.put(time, value, kind, foreign)
         self._end = max(self._end, time)
+        self._begin = time if self._begin is None else min(self._begin, time)
 
     # Arrivals
 
@@ -332,7 +335,7 @@ class Stream:
         """What each of the new ticks sees, in a log that goes on up to `end`."""
         if not times:
             return ()
-        start, first = self._ticking.start, None
+        start, first = self._begin, None
         assert start is not None, "no tick is placed before a message"
         before = self._recent
         if before:

@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory, mkdtemp
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fretc.api.requirements import read_project
@@ -174,6 +174,10 @@ def audited_rows(plan: Plan, recording: Recording) -> list[tuple[int, dict[str, 
     ]
 
 
+LATE_FIRST = [Sent("/x", 1.0, 0, delay=60), Sent("/x", 1.0, 40)]
+"""The first message by its time comes when ticks are judged; durations count from it, too."""
+
+
 def bound(some: Sequence[Sent], setting: Setting) -> bool:
     """Whether a message of a topic that is read has a time."""
     topics = {"/x", "/y", *(["/clock"] if "clock" in setting.tick else [])}
@@ -181,6 +185,7 @@ def bound(some: Sequence[Sent], setting: Setting) -> bool:
 
 
 @given(settings_, messages, st.sampled_from([0, 3, 40]))
+@example(Setting(slow="z < 5 for 25 ms", lateness=0), LATE_FIRST, 3)
 def test_rows_and_verdicts_are_those_of_the_audit(
     setting: Setting, some: list[Sent], idle: int
 ) -> None:
