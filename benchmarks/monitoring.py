@@ -44,11 +44,11 @@ def rule(sentence: str, id: str = "R1") -> Formalized:
     return made
 
 
-def always(trigger: f.Formula, demanded: f.Formula) -> Formalized:
+def always(trigger: f.Formula, demanded: f.Formula, id: str = "R1") -> Formalized:
     """`H(trigger -> demanded)` as a monitor: FRETish has no `since` of its own."""
     breach = f.and_(trigger, f.not_(demanded))
     watch = Watch(trigger, breach, f.FALSE, f.FALSE, f.FALSE, f.FALSE, None, 0, renewed=False)
-    return replace(rule("whenever a sw shall immediately satisfy b"), watch=watch)
+    return replace(rule("whenever a sw shall immediately satisfy b", id), watch=watch)
 
 
 A, B, C = f.Atom("a"), f.Atom("b"), f.Atom("c")

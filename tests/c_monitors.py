@@ -45,6 +45,7 @@ class Outcome(NamedTuple):
     possible: Reading
     verdict: str
     finite: Truth
+    owed: Truth
 
 
 VERDICTS = ("pending", "satisfied", "violated")
@@ -120,9 +121,11 @@ class Program:
         done = subprocess.run([self.path], input=data, capture_output=True, check=False)
         assert (done.returncode, done.stderr) == (0, b""), done.stderr.decode()
         head = struct.Struct(f"={len(self.sources)}I")
-        readings = struct.iter_unpack("=i7?i7?BB", done.stdout[head.size :])
+        readings = struct.iter_unpack("=i7?i7?BBB", done.stdout[head.size :])
         outcomes = (
-            Outcome(Reading(*r[:8]), Reading(*r[8:16]), VERDICTS[r[16]], _TRUTHS[r[17]])
+            Outcome(
+                Reading(*r[:8]), Reading(*r[8:16]), VERDICTS[r[16]], _TRUTHS[r[17]], _TRUTHS[r[18]]
+            )
             for r in readings
         )
         found = [
@@ -175,6 +178,7 @@ static void put(const fretc_outcome *o)
     put_reading(&o->possible);
     (void)putchar((int)o->verdict);
     (void)putchar(o->finite);
+    (void)putchar(o->owed);
 }}
 
 {"".join(_runner(i, each) for i, each in enumerate(sources))}
@@ -230,7 +234,7 @@ def of_python(machine: Monitor, rows: Rows) -> Iterator[list[Outcome]]:
             for rail in (machine.must, machine.may)
         ]
         yield [
-            Outcome(certain, possible, str(verdict), standing.finite)
+            Outcome(certain, possible, str(verdict), standing.finite, standing.owed)
             for certain, possible, verdict, standing in zip(
                 *rails, verdicts, standings, strict=True
             )

@@ -248,6 +248,7 @@ def readers(folder: Path) -> dict[str, Reader]:
     add("MCAP", "l.mcap", log, info, {}, binary=True)
     add("MCAP, audited", "log.mcap", log, ("audit", "log.mcap", "--jobs", "1"), binary=True)
     cdr = b"\0\1\0\0"
+    add("MCAP, watched", "log.mcap", log, ("watch", "log.mcap"), binary=True)
     add("ros1", "l.mcap", _log("ros1", "ros1msg", "a/B", ROS + HEADER, bytes(40)), info, {})
     ros2_text = ROS + HEADER.replace("time stamp", "int32 stamp")
     add(

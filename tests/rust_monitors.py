@@ -52,7 +52,10 @@ def fields(text: str, struct_: str) -> list[str]:
 
 
 def outcomes(
-    folder: Path, libraries: Sequence[str], traces: Sequence[tuple[int, Rows]]
+    folder: Path,
+    libraries: Sequence[str],
+    traces: Sequence[tuple[int, Rows]],
+    lints: Sequence[str] = (),
 ) -> list[list[list[Outcome]]]:
     """Of each trace all outcomes at each tick.
 
@@ -60,12 +63,13 @@ def outcomes(
         folder: for what is compiled.
         libraries: texts of `lib.rs`.
         traces: the place of a library, and rows in the order of its inputs.
+        lints: further options for the libraries.
     """
     rustc = program("rustc")
     for place, text in enumerate(libraries):
         (folder / f"m{place}.rs").write_text(text, encoding="utf-8")
         kind = ["--crate-type", "rlib", "--crate-name", f"m{place}"]
-        subprocess.run([rustc, *STRICT, *kind, f"m{place}.rs"], cwd=folder, check=True)
+        subprocess.run([rustc, *STRICT, *lints, *kind, f"m{place}.rs"], cwd=folder, check=True)
     (folder / "main.rs").write_text(_main(libraries), encoding="utf-8")
     externs = [f"--extern=m{place}=libm{place}.rlib" for place in range(len(libraries))]
     subprocess.run([rustc, "--edition", "2021", *externs, "main.rs"], cwd=folder, check=True)
@@ -75,9 +79,9 @@ def outcomes(
         for place, rows in traces
     )
     done = subprocess.run([folder / "main"], input=data, capture_output=True, check=True)
-    readings = struct.iter_unpack("=i7?i7?BB", done.stdout)
+    readings = struct.iter_unpack("=i7?i7?BBB", done.stdout)
     found = (
-        Outcome(Reading(*r[:8]), Reading(*r[8:16]), VERDICTS[r[16]], _TRUTHS[r[17]])
+        Outcome(Reading(*r[:8]), Reading(*r[8:16]), VERDICTS[r[16]], _TRUTHS[r[17]], _TRUTHS[r[18]])
         for r in readings
     )
     sizes = [len(fields(text, "Outcomes")) for text in libraries]
@@ -100,6 +104,7 @@ macro_rules! put {{
         }}
         $out.push(o.verdict as u8);
         $out.push(o.finite.map_or(2, u8::from));
+        $out.push(o.owed.map_or(2, u8::from));
     }}}};
 }}
 

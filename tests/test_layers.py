@@ -24,7 +24,8 @@ fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fr
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit
 fretc.audit.selection  fretc.audit.outputs  fretc.audit.bindings
 fretc.verification.engines  fretc.verification.monitor  fretc.verification.compiled
-fretc.verification.interceptor
+fretc.verification.c  fretc.verification.rust
+fretc.verification.javascript  fretc.verification.interceptor
 fretc.verification.loop  fretc.verification.layers  fretc.verification
 fretc.analysis.arena  fretc.analysis.arithmetic  fretc.analysis.games  fretc.analysis.controllers
 fretc.analysis

@@ -43,7 +43,7 @@ class Layer(StrEnum):
     """The same by AJPF's own verdict, which the `run.py` of a bundle has recorded."""
 
 
-ALL, PROVERS = ("verify", "proof"), ("dafny", "crosshair")
+ALL, PROVERS = ("verify", "proof"), ("frama-c", "dafny", "crosshair")
 METHODS = (*ALL, *PROVERS, *map(str, Layer))
 """Methods of `verify = [...]` that `fretc verify` can give a result for."""
 

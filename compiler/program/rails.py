@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
+from compiler.program.clocks import clocks, lengthened
 from compiler.program.instructions import (
     Advance,
     Assign,
@@ -101,6 +102,8 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
         program: of any requirements.
         prefixes: of each requirement's id, what the names of its own cells begin with.
     """
+    known = clocks(program)
+    program = lengthened(program, known)
     blocks = _needed(program)
     names = {name for block in blocks for name in _cells(block)}
     windows = {cell.name: cell for cell in program.cells if isinstance(cell, Window)}
@@ -116,7 +119,9 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
             steps.extend(moves)
         stages.append(Stage(block.comment, tuple(steps)))
     for requirement in program.requirements:
-        marks, stage, reading = _remembered(requirement, prefixes[requirement.id])
+        marks, stage, reading = _remembered(
+            requirement, prefixes[requirement.id], known.get(requirement.id)
+        )
         cells.extend(marks)
         stages.extend([stage] if stage.steps else [])
         readings.append(reading)
@@ -211,8 +216,13 @@ def _slid(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, .
     return (ring, *((clear,) if guarded else ()), age), steps
 
 
-def _remembered(requirement: Requirement, prefix: str) -> tuple[list[Cell], Stage, Reading]:
-    """The cells of a requirement's own, how they move, and what is read of them."""
+def _remembered(
+    requirement: Requirement, prefix: str, clock: str | None
+) -> tuple[list[Cell], Stage, Reading]:
+    """The cells of a requirement's own, how they move, and what is read of them.
+
+    `clock`: the counter that is as old as the open demand, if there is one.
+    """
     signals, cells, steps = requirement.signals, list[Cell](), list[Step]()
     latches: dict[str, Value] = {}
     for name, signal in (("broken", signals.breach), ("doomed", signals.doom)):
@@ -222,7 +232,9 @@ def _remembered(requirement: Requirement, prefix: str) -> tuple[list[Cell], Stag
             cells.append(flag)
             steps.append(Assign(flag.name, either([Variable(flag.name), signal])))
     deadline = None
-    if requirement.horizon is not None and signals.owed != FALSE:
+    if requirement.horizon is not None and clock is not None:
+        deadline = Deadline(clock, requirement.horizon)
+    elif requirement.horizon is not None and signals.owed != FALSE:
         deadline = Deadline(f"{prefix}_age", requirement.horizon)
         most, none = requirement.horizon + 1, Count(deadline.counter, -1)
         note = f"ticks since the trigger of the open demand of {requirement.id}; -1: none"

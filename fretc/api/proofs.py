@@ -31,7 +31,7 @@ def verify(
     Args:
         project: the requirements and their bindings.
         layers: some of `monitor`, `interceptor`, `loop`, `bounds`, `agent`, `ajpf`.
-        provers: `dafny` or `crosshair`, if they are installed.
+        provers: `frama-c`, `dafny` or `crosshair`, if they are installed.
         ajpf: results that AJPF has given.
         limit: seconds of a processor for each claim.
 

@@ -93,7 +93,8 @@ def examined(
     """
     signals = signals_of(declarations, propositions)
     slow = slow_topics(declarations, recording, signals)
-    late = late_topics(declarations, recording, signals, timeline(declarations, recording).times)
+    ticks = timeline(declarations, recording).times if recording.late else np.zeros(0, np.int64)
+    late = late_topics(declarations, recording, signals, ticks)
     blind = (
         finding
         for name in propositions

@@ -27,7 +27,9 @@ from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, VIOLATION, deliver, say
 from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
 
 if TYPE_CHECKING:
+    from compiler.project.folder import Project
     from fretc.report.model.views import Report
+    from fretc.report.page.html import Inset
 
 _HEADINGS = {
     "Made from": (
@@ -84,6 +86,11 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
     "--signers", help="Whose keys count; allowed_signers in the requirements' folder if not given."
 )
 @click.option(
+    "--play",
+    is_flag=True,
+    help="The page of `fretc play` is part of the HTML, at each requirement.",
+)
+@click.option(
     "--strict",
     is_flag=True,
     help="Exit as the report says: 1 violated or suspect, 3 something is not shown.",
@@ -99,6 +106,7 @@ def report(
     lock: str | None,
     waivers: str | None,
     signers: str | None,
+    play: bool,
     strict: bool,
     form: str | None,
     output: str | None,
@@ -150,7 +158,8 @@ def report(
     say_briefly([*project.diagnostics, *outcome.diagnostics], requirements)
     if outcome.report is None or outcome.details is None:
         raise SystemExit(BAD)
-    subject = Subject(outcome.report, project, outcome.details, outcome.diagnostics)
+    inset = _inset(project) if play else None
+    subject = Subject(outcome.report, project, outcome.details, outcome.diagnostics, inset)
     others = (bindings, hazards, verification, analysis, lock, waivers, signers)
     inputs = filter(None, (*others, *ajpf_results))
     read = [evidence, *files, *companions(files), *inputs, *outcome.details.logs]
@@ -158,6 +167,20 @@ def report(
     if has_errors([*project.diagnostics, *outcome.diagnostics]):
         raise SystemExit(BAD)
     raise SystemExit(_status(outcome.report) if strict else SHOWN)
+
+
+def _inset(project: Project) -> Inset | None:
+    """The page to play with traces; None: no requirement can be on it."""
+    from compiler.formalization.formalize import clashes
+    from compiler.targets.javascript.monitor import refuse
+    from fretc.play.page import inset
+    from fretc.play.starts import of_examples
+
+    refused = {rule.id: said.message for rule in project.rules if (said := refuse(rule))}
+    known = [rule for rule in project.rules if rule.id not in refused]
+    if not known or [*clashes(known)]:
+        return None
+    return inset(known, [*refused.items()], [*of_examples(known)])
 
 
 def _outputs(

@@ -59,9 +59,18 @@ if TYPE_CHECKING:
 @click.option(
     "--emit",
     "emitted",
-    type=click.Choice(("pytest", "csv", "fret", "mcap", "scenario")),
-    help="Write the tests: for pytest, as tables for monitors, for the simulator of FRET, as logs "
-    "of messages for audits, or as missions of the simulated robot that show the same.",
+    type=click.Choice(("pytest", "csv", "fret", "c", "mcap", "scenario")),
+    help="Write the tests: for pytest, as tables for monitors, for the simulator of FRET, as a "
+    "self-test in C, as logs of messages for audits, or as missions of the simulated robot that "
+    "show the same.",
+)
+@click.option(
+    "--language",
+    "languages",
+    multiple=True,
+    type=click.Choice(("python", "c", "js")),
+    help="The language of the monitor that tests for pytest step, maybe several; python if none "
+    "is given.",
 )
 @path_option(
     "--emit-to", default="build/tests", show_default=True, help="Folder for `--emit`; `-` prints."
@@ -100,6 +109,7 @@ def test(
     saved: str | None,
     seconds: float,
     emitted: str | None,
+    languages: tuple[str, ...],
     emit_to: str,
     runs: int,
     jobs: int,
@@ -139,6 +149,9 @@ def test(
         raise SystemExit(BAD)
     sources = [requirement.wording.source.name for requirement in project.requirements]
     protected = [*sources, *companions(sources), *filter(None, [bindings])]
+    if languages and emitted != "pytest":
+        why = "`--language` is about the tests of `--emit pytest`"
+        stop(Diagnostic(Code.BAD_USAGE, why, help="ask for these, or leave it out"))
     if against is not None:
         if emitted is not None or show is not None:
             clash = "`--against` tests a program, and makes no tests to emit or show"
@@ -161,7 +174,7 @@ def test(
         click.echo(coloured([*_lines(suite, rules, show)]), nl=False)
     outputs: dict[Path, str] = {} if saved or output == "-" else {Path(output): text}
     if emitted is not None and on_stage is None:
-        outputs |= _files(suite, rules, emitted, emit_to)
+        outputs |= _files(suite, rules, emitted, emit_to, languages)
     deliver(outputs, protected)
     if stopped:
         raise SystemExit(INTERRUPTED)
@@ -220,11 +233,19 @@ def _made(
     return suite(rules, assumed, found), stopped
 
 
-def _files(suite: Suite, rules: Sequence[Formalized], emitted: str, output: str) -> dict[Path, str]:
+def _files(
+    suite: Suite,
+    rules: Sequence[Formalized],
+    emitted: str,
+    output: str,
+    languages: Sequence[str],
+) -> dict[Path, str]:
     """The tests as files; those that cannot be written so are named."""
     from fretc.testing.exports.files import Form, files
+    from fretc.testing.exports.pytest_file import Language
 
-    artifacts, left = files(suite, rules, Form(emitted))
+    chosen = [each for each in Language if each in languages] or [Language.PYTHON]
+    artifacts, left = files(suite, rules, Form(emitted), chosen)
     for why in dict.fromkeys(left.values()):
         names = [name for name in left if left[name] == why]
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""

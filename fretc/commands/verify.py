@@ -33,6 +33,7 @@ from fretc.terminal.output import (
     say_briefly,
     stop,
 )
+from fretc.verification.layers.languages import language_of
 from fretc.verification.layers.table import OF_MONITOR, in_words
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
@@ -91,7 +92,7 @@ is vacuous, not checked, or stays stopped.
     type=click.Choice(PROVERS),
     help="A prover to ask as well, if it is installed.",
 )
-@path_option("--file", "monitor_file", help="A monitor that was made before, in Python or C.")
+@path_option("--file", "monitor_file", help="A monitor that was made before: .py, .c, .rs, .mjs.")
 @path_option("--interceptor", help="An interceptor that was made before.")
 @path_option("--agent", help="An agent in Gwendolen; with --properties.")
 @path_option("--properties", help="The properties of the agent, as AJPF reads them.")
@@ -236,7 +237,8 @@ def _read(path: str | None) -> Source | None:
 
 def _header(monitor: Source | None, layers: Sequence[str]) -> Source | None:
     """The header that a monitor in C includes, from its folder; None: it is not in C."""
-    if monitor is None or not monitor.name.endswith(".c"):
+    language = language_of(monitor.name) if monitor else None
+    if monitor is None or language is None:
         return None
     others = [name for name in layers if name in OF_MONITOR and name != Layer.MONITOR]
     if others:
@@ -247,6 +249,8 @@ def _header(monitor: Source | None, layers: Sequence[str]) -> Source | None:
                 help=f"ask about `{monitor.name}` with `--layer monitor`",
             )
         )
+    if language.name != "C":
+        return None
     included = re.search(r'^#include "(\w+\.h)"$', monitor.text, re.MULTILINE | re.ASCII)
     if included is None:
         stop(
@@ -269,12 +273,13 @@ def _proofs(project: Project, request: Request) -> Sequence[Proof]:
         proofs = prove(project, request)
     except NotAMonitorError as error:
         assert request.monitor is not None
+        language = language_of(request.monitor.name)
         stop(
             Diagnostic(
                 Code.BAD_MONITOR,
                 f"`{request.monitor.name}` is no generated monitor: {error}",
                 request.monitor.span(0, 0),
-                help="name a file that `--emit monitor` wrote",
+                help=f"name a file that `--emit {language.emit if language else 'monitor'}` wrote",
             )
         )
     if isinstance(proofs, Diagnostic):

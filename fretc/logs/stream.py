@@ -107,10 +107,8 @@ class Stream:
         }
         clock = declarations.clock
         self._ticking = Ticking(_topics(declarations), clock.period, clock.phase, clock.topic)
-        self._end = 0
-        """The last message of all bound topics."""
-        self._begin: int | None = None
-        """The first one by its time, late ones too: a log begins there."""
+        self._begin, self._end = LATEST, 0
+        """The first and the last message of all bound topics."""
         self._recent: list[int] = []
         """The last ticks, from that of `_back` on; all of one time, if one of that time is one."""
         self._late: dict[str, list[_Span]] = {}
@@ -167,8 +165,7 @@ class Stream:
     def _put(self, topic: str, time: int, values: Iterable[tuple[_Queue, Value]]) -> None:
         for queue, (value, kind, foreign) in values:
             queue.put(time, value, kind, foreign)
-        self._end = max(self._end, time)
-        self._begin = time if self._begin is None else min(self._begin, time)
+        self._begin, self._end = min(self._begin, time), max(self._end, time)
 
     # Arrivals
 
@@ -336,7 +333,6 @@ class Stream:
         if not times:
             return ()
         start, first = self._begin, None
-        assert start is not None, "no tick is placed before a message"
         before = self._recent
         if before:
             start = max(start, self._window())

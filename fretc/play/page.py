@@ -19,7 +19,7 @@ from compiler.targets.python.comparisons import NUMBER, Compared, Front, numbers
 from compiler.targets.target import stem
 from fretc.play.starts import MOST, Start
 from fretc.report.model.phrases import visible
-from fretc.report.page.html import hash_source
+from fretc.report.page.html import Inset, hash_source
 from fretc.testing.suite import SCHEMA
 from fretish.diagnostics import signs
 from fretish.printer import expression
@@ -52,7 +52,18 @@ def html(
     before: Mapping[str, str] | None = None,
     notes: Sequence[str] = (),
 ) -> str:
-    """The whole file.
+    """The whole file; arguments as of `inset`."""
+    return inset(rules, left_out, starts, before, notes).text
+
+
+def inset(
+    rules: Sequence[Formalized],
+    left_out: Sequence[tuple[str, str]],
+    starts: Sequence[Start],
+    before: Mapping[str, str] | None = None,
+    notes: Sequence[str] = (),
+) -> Inset:
+    """The whole file, for another page to open.
 
     Args:
         rules: at least one, of which JavaScript can be made, and all on one clock.
@@ -72,7 +83,8 @@ def html(
         **{part: render(f"play/{part}.js.j2", glyphs=json.dumps(_GLYPHS)) for part in _PARTS},
     )
     style = render("play/style.css.j2")
-    return render(
+    hashes = [hash_source(each) for each in (monitor, script, style)]
+    text = render(
         "play/page.html.j2",
         title=visible(", ".join(rule.id for rule in now[:_TITLED]) + _more(len(now))),
         notes=[visible(note) for note in notes],
@@ -86,10 +98,11 @@ def html(
         monitor=monitor,
         script=script,
         style=style,
-        monitor_hash=hash_source(monitor),
-        script_hash=hash_source(script),
-        style_hash=hash_source(style),
+        monitor_hash=hashes[0],
+        script_hash=hashes[1],
+        style_hash=hashes[2],
     )
+    return Inset(text, frozenset(rule.id for rule in rules), (hashes[0], hashes[1]), hashes[2])
 
 
 _PARTS = ("trace", "words", "grid", "gestures")

@@ -1,6 +1,7 @@
 """Whether proofs still stand: each claim of `fretc verify` is proved again, and compared.
 
-Only what fretc makes itself is proved again, in the layers and by the provers that the file names.
+Only what fretc makes itself is proved again, in the layers and by the provers that the file names,
+and in the language of the text that it is about.
 A claim about another text, or of a prover that is not installed, is not checked; so is what AJPF
 has said, which no command here asks again.
 """
@@ -17,6 +18,7 @@ from compiler.logic.claims import ALL, METHODS, PROVERS, Layer, Proof, Result
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
 from fretc.reproduction.outcome import PROOFS, Finding, Recheck, differs, unknown
+from fretc.reproduction.texts import other_build, remade
 from fretc.verification.ajpf_results import ajpf_proofs, written
 from fretc.verification.engines.sandbox import Limits
 from fretc.verification.layers.request import Progress, Request
@@ -103,9 +105,12 @@ def _prove(
     if AGENT in named:
         layers = [layer for layer in layers if layer != Layer.AGENT]
     rules = [rule for rule in project.rules if rule.id in named and monitor.refuse(rule) is None]
+    monitor_text, header = remade(own, project.rules)
     request = Request(
         layers,
         limits,
+        monitor_text,
+        header,
         provers=sorted({_prover(record.engine) for record in records} - {""}),
         ajpf=ajpf_proofs(rules, written())[0] if Layer.AJPF in layers else (),
         progress=progress,
@@ -138,6 +143,9 @@ def _compared(record: Proof, proofs_now: Sequence[Proof]) -> Recheck:
         return unknown(PROOFS, requirement, why, claim=claim)
     if now.result is Result.NOT_CHECKED:
         return unknown(PROOFS, requirement, now.detail, claim=claim)
+    other = other_build(record, now) if record.result is now.result else ""
+    if other:
+        return unknown(PROOFS, requirement, other, claim=claim)
     reasons = tuple(_differences(record, now))
     if record.result is Result.NOT_CHECKED and now.result is not Result.COUNTEREXAMPLE:
         why = f"it was not checked, says the file; it is {now.result} now"

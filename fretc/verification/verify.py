@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
@@ -20,22 +22,35 @@ def prove(project: Project, request: Request) -> tuple[Proof, ...] | Diagnostic:
     Raises:
         NotAMonitorError: the given text is no generated monitor.
     """
-    asked = [method for method in TABLE if request.names(method.name)]
-    calls = [
-        *((method, (rule,)) for rule in project.rules for method in asked if method.of_requirement),
-        *((method, project.rules) for method in asked if not method.of_requirement),
-    ]
-    proofs: list[Proof] = []
-    for method, rules in calls:
-        results = method.prove(rules, project, request)
-        if isinstance(results, Diagnostic):
-            return results
-        proofs.extend(results)
-    return tuple(proofs)
+    single, common = list[Proof](), list[Proof]()
+    for method in TABLE:
+        if request.names(method.name):
+            results = method.prove(project.rules, project, request)
+            if isinstance(results, Diagnostic):
+                return results
+            (single if method.of_requirement else common).extend(results)
+    places = {rule.id: place for place, rule in enumerate(project.rules)}
+    return (*sorted(single, key=lambda each: places[each.requirement]), *common)
 
 
 def refusals(project: Project, request: Request) -> tuple[Diagnostic, ...]:
-    """Why a monitor cannot be made of some requirements, where a layer steps one."""
+    """Why a monitor cannot be made of some requirements, where a layer steps one.
+
+    And why a prover that is asked cannot answer.
+    """
+    return (*_of_monitors(project, request), *_of_frama_c(request))
+
+
+def _of_frama_c(request: Request) -> Iterator[Diagnostic]:
+    if request.names("frama-c"):
+        from fretc.verification.layers.frama_c import refusal
+
+        refused = refusal(request)
+        if refused is not None:
+            yield refused
+
+
+def _of_monitors(project: Project, request: Request) -> tuple[Diagnostic, ...]:
     if not any(method.needs_monitor and request.names(method.name) for method in TABLE):
         return ()
     diagnostics = (monitor.refuse(rule) for rule in project.rules)

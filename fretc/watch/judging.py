@@ -26,6 +26,8 @@ class Judges:
         self.propositions = tuple(
             dict.fromkeys(name for each in self.monitors for name in each.PROPOSITIONS)
         )
+        self.counted = frozenset(each.id for each in plan.claims if each.chance is not None)
+        """Requirements with a probability: no single run shows whether they hold."""
         self.ledger = Ledger(self.monitors, kept)
 
     @property
@@ -75,11 +77,13 @@ class Judges:
         ticks, last = min(1, self.count), self.ledger.last or {}
         columns = {name: _column(last.get(name), ticks) for name in monitor.PROPOSITIONS}
         engine = partial(_outcome, before=ticks)
-        return str(
-            judged(
-                monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine
-            ).verdict
-        )
+        found = judged(monitor, columns, cut, ticks, intact=intact, end=self._end, engine=engine)
+        return self.said(monitor.REQUIREMENTS[0].id, str(found.verdict))
+
+    def said(self, requirement: str, verdict: str) -> str:
+        """What an audit says of a run with a verdict; one that only counts decides nothing."""
+        decides = requirement not in self.counted or verdict in (kernel.VACUOUS, kernel.NO_DATA)
+        return verdict if decides else str(kernel.INCONCLUSIVE)
 
 
 def _ahead(monitor: Monitor, rows: Sequence[Mapping[str, Truth]]) -> Monitor:

@@ -235,12 +235,14 @@ class Session:
         return tuple(
             State(
                 standing.requirement,
-                self._so_far(str(standing.verdict)),
+                self._so_far(judges.said(standing.requirement, str(standing.verdict))),
                 owing,
                 trigger,
                 self._tick_time(standing.open),
                 self._tick_time(standing.deadline),
-                self._tick_time(standing.first_violation),
+                None
+                if standing.requirement in judges.counted
+                else self._tick_time(standing.first_violation),
             )
             for standing, owing, trigger in read
         )

@@ -24,7 +24,8 @@ def rows(session: Session, titles: Mapping[str, str], screen: Screen) -> Iterato
     """The screen: requirements, then topics."""
     states = session.states()
     ids = [state.requirement for state in states]
-    names = {id: titled(id, titles.get(id, ""), _NAME) for id in ids}
+    most = min(_NAME, screen.width // 2)
+    names = {id: titled(id, titles.get(id, ""), most) for id in ids}
     room = max(map(width, names.values()), default=0)
     for state in states:
         sign = VERDICTS[state.verdict].sign

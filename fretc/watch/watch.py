@@ -104,7 +104,7 @@ class Watch:
         self._began = self._began or arrival.log_time
         found = self.session.arrive(arrival)
         if isinstance(found, Jump):
-            yield from self._begin_anew(found)
+            yield from self._begin_anew(found, arrival)
             if self.ended:
                 return
             found = self.session.arrive(arrival)
@@ -142,7 +142,7 @@ class Watch:
                 self._silent.add(name)
                 yield Found(_silent(name))
 
-    def _begin_anew(self, jump: Jump) -> Iterator[News]:
+    def _begin_anew(self, jump: Jump, arrival: Arrival) -> Iterator[News]:
         """A clock was set back: this run ends, and another one begins."""
         yield Found(_set_back(jump))
         yield from self.finish()
@@ -151,7 +151,7 @@ class Watch:
             yield Found(_two_clocks(jump))
             return
         self.session = Session(self._plan)
-        self._states, self._late, self._began = {}, 0, None
+        self._states, self._late, self._began = {}, 0, arrival.log_time
         self._silent = set()
         try:
             self._recorder = self._new_recorder()

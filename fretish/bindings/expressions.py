@@ -320,6 +320,7 @@ def looks_back(part: e.Expression) -> bool:
     return isinstance(part, e.Call) and part.name in _PRE
 
 
+@remembered
 def ticks_back(expression: e.Expression) -> int:
     """By how many ticks its value looks back: calls of `pre` within each other.
 

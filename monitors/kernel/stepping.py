@@ -219,8 +219,8 @@ class Standing(NamedTuple):
     deadline: int | None
     """The last tick at which that can be decided; None where there is no deadline."""
     owed: Truth
-    """Whether a demand is open: a driver stops unless this is False. None before the first tick,
-    and where an unknown value decides it. What only forbids (`always`, `until`) owes nothing."""
+    """Whether a demand begins at this tick or is open after it: a driver stops unless it is False.
+    None before the first tick, and where an unknown value decides it."""
 
 
 _PIECE, _FEW, _SOON = 4096, 64, 64
@@ -467,10 +467,10 @@ def _standing(
     deadline = None
     if opened is not None and requirement.horizon is not None:
         deadline = opened + requirement.horizon
-    owed = truth(certain.owed, possible.owed)
+    owed = truth(certain.trigger or certain.owed, possible.trigger or possible.owed)
     return Standing(
         requirement.id,
-        at_end(violated, owed, truth(must.last >= 0, may.last >= 0)),
+        at_end(violated, truth(certain.owed, possible.owed), truth(must.last >= 0, may.last >= 0)),
         finite_verdict(broken, truth(certain.fails, possible.fails)),
         must.violated if must.violated >= 0 else None,
         opened,

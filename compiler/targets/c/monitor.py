@@ -7,7 +7,8 @@ may hold. Its state is a struct; a step takes the same time whatever was unknown
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -18,7 +19,7 @@ from compiler.formalization.formalized import Formalized
 from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.program.program import Counter
-from compiler.program.rails import Rail, Reading, Ring, rail
+from compiler.program.rails import Reading, Ring, rail
 from compiler.targets.c.printer import Printer
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
@@ -71,38 +72,56 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
     """`<id>_monitor.h` and `.c` for each rule, or `monitors.h` and `.c` for all."""
     if options.one_file:
         return _files("monitors", "monitors", rules)
+    return tuple(file for name, base, rule in _apart(rules) for file in _files(name, base, [rule]))
+
+
+def _apart(rules: Sequence[Formalized]) -> Iterator[tuple[str, str, Formalized]]:
+    """The name of the files of each rule, and what its names begin with."""
     bases = prefixes_of([rule.id for rule in rules])
+    for rule in rules:
+        yield f"{module(stem(rule))}_monitor", bases[rule.id], rule
+
+
+@dataclass(frozen=True, slots=True)
+class Interface:
+    """What a caller of the monitor of one requirement names."""
+
+    file: str
+    """The name of its files, without the ending."""
+    base: str
+    """What the names of its types and functions begin with."""
+    inputs: Mapping[str, str]
+    """Proposition → the member of the inputs; in their order."""
+    outcome: str
+    """The member of the outcomes."""
+
+
+def interface(rules: Sequence[Formalized]) -> tuple[Interface, ...]:
+    """Of each rule, in files of its own as `emit` writes them."""
+    every = [(name, base, printed(name, [rule])) for name, base, rule in _apart(rules)]
     return tuple(
-        file
-        for rule in rules
-        for file in _files(f"{module(stem(rule))}_monitor", bases[rule.id], [rule])
+        Interface(name, base, printer.names, printer.rail.readings[0].prefix)
+        for name, base, printer in every
     )
 
 
 @deep
 def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
     """The header and the source of one monitor for all of the rules."""
-    propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
-    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
+    printer = printed(name, rules)
     meanings = {each: text for rule in rules for each, text in in_words(rule).items()}
-    guard = f"{name.upper()}_H"
-    reserved = _RESERVED | {guard, *filter(_TAKEN.fullmatch, propositions)}
-    names = legal_names(propositions, reserved, names=spoken)
-    prefixes = prefixes_of([rule.id for rule in rules])
-    members = legal_names(prefixes, reserved, names=prefixes)
-    made = rail(program({rule.id: rule.watch for rule in rules}), members)
-    printer = Printer.of(made, names)
-    values = _values(made, printer) | {"base": base, "header": f"{name}.h"}
+    values = _values(printer) | {"base": base, "header": f"{name}.h"}
     values["title"] = ", ".join(rule.id for rule in rules)
     source = render("c/monitor.c.j2", **values)
+    inputs = printer.names.items()
     header = render(
         "c/monitor.h.j2",
         **values,
-        guard=guard,
+        guard=_guard(name),
         rules=[described(rule) for rule in rules],
         tick=str(rules[0].clock) if rules[0].clock else "not declared",
         version=__version__,
-        inputs=[{"name": names[each], "text": meanings.get(each, each)} for each in propositions],
+        inputs=[{"name": own, "text": meanings.get(each, each)} for each, own in inputs],
         bytes=2 * printer.bytes,
         operations=_operations(source, len(rules)),
     )
@@ -112,8 +131,30 @@ def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact,
     )
 
 
-def _values(made: Rail, printer: Printer) -> dict[str, Any]:
+def printed(name: str, rules: Sequence[Formalized]) -> Printer:
+    """The words of C for a monitor of all of the rules.
+
+    Args:
+        name: of its header, without the ending.
+        rules: none of them refused.
+    """
+    propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
+    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
+    reserved = _RESERVED | {_guard(name), *filter(_TAKEN.fullmatch, propositions)}
+    names = legal_names(propositions, reserved, names=spoken)
+    prefixes = prefixes_of([rule.id for rule in rules])
+    members = legal_names(prefixes, reserved, names=prefixes)
+    made = rail(program({rule.id: rule.watch for rule in rules}), members)
+    return Printer.of(made, names)
+
+
+def _guard(name: str) -> str:
+    return f"{name.upper()}_H"
+
+
+def _values(printer: Printer) -> dict[str, Any]:
     """What both templates place."""
+    made = printer.rail
     return {
         "members": printer.members(),
         "literals": [*printer.literals()],

@@ -63,7 +63,11 @@ class Printer:
         return f"{'is' if literal.positive else 'not'}_{self.names[literal.proposition]}"
 
     def value(self, value: Value) -> str:
-        """An expression of type `bool`."""
+        """An expression of truth values.
+
+        It joins them by `&` and `|`, which evaluate both sides: where `&&` may jump, the processor
+        guesses, and is wrong as often as propositions change.
+        """
         match value:
             case Constant(truth):
                 return "true" if truth else "false"
@@ -76,15 +80,16 @@ class Printer:
             case Not(negated):
                 return f"!{self._tight(negated)}"
             case And(values):
-                return " && ".join(map(self._grouped, values))
+                return " & ".join(map(self._grouped, values))
             case Or(values):
-                return " || ".join(map(self._grouped, values))
+                return " | ".join(map(self._grouped, values))
             case _:
                 assert_never(value)
 
     def _grouped(self, value: Value) -> str:
-        """In parentheses, if it joins others."""
-        return f"({self.value(value)})" if isinstance(value, And | Or) else self.value(value)
+        """In parentheses, if it joins or compares others."""
+        joined = isinstance(value, And | Or | Age)
+        return f"({self.value(value)})" if joined else self.value(value)
 
     def _tight(self, value: Value) -> str:
         """In parentheses, if it has an operator."""
@@ -147,7 +152,7 @@ class Printer:
         """The ticks to a deadline; -1: there is none ahead."""
         if deadline is None:
             return "-1"
-        conditions = f"{self._grouped(is_open)} && rail->{deadline.counter} >= 0"
+        conditions = f"{self._grouped(is_open)} & (rail->{deadline.counter} >= 0)"
         return f"({conditions}) ? ({deadline.horizon} - rail->{deadline.counter}) : -1"
 
 

@@ -85,15 +85,16 @@ class Printer:
             case Not(negated):
                 return f"!{self._grouped(negated)}"
             case And(values):
-                return " && ".join(map(self._grouped, values))
+                return " & ".join(map(self._grouped, values))
             case Or(values):
-                return " || ".join(map(self._grouped, values))
+                return " | ".join(map(self._grouped, values))
             case _:
                 assert_never(value)
 
     def _grouped(self, value: Value) -> str:
-        """In parentheses, if it joins others."""
-        return f"({self.value(value)})" if isinstance(value, And | Or) else self.value(value)
+        """In parentheses, if it joins or compares others."""
+        joined = isinstance(value, And | Or | Age) or isinstance(getattr(value, "value", None), Age)
+        return f"({self.value(value)})" if joined else self.value(value)
 
     def _place(self, name: str) -> str:
         return f"self.{name}" if name in self.cells else name
@@ -153,7 +154,7 @@ class Printer:
         """The ticks to a deadline, if there is one ahead."""
         if deadline is None:
             return "None"
-        condition = f"{self._grouped(is_open)} && self.{deadline.counter} >= 0"
+        condition = f"{self._grouped(is_open)} & (self.{deadline.counter} >= 0)"
         ticks = f"u32::try_from({deadline.horizon} - self.{deadline.counter}).ok()"
         return f"if {condition} {{ {ticks} }} else {{ None }}"
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from compiler.project.folder import Project
     from fretc.report.model.views import Report
+    from fretc.report.page.html import Inset
     from fretc.report.sections.details import Details
 
 
@@ -30,6 +31,8 @@ class Subject:
     """The evidence behind its rows."""
     diagnostics: Sequence[Diagnostic]
     """Those of the report; the project has its own."""
+    inset: Inset | None = None
+    """What the page has in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +53,7 @@ class Form:
 def _html(subject: Subject) -> str:
     from fretc.report.page.html import html
 
-    return html(subject.report, subject.details, subject.project.rules)
+    return html(subject.report, subject.details, subject.project.rules, subject.inset)
 
 
 def _json(subject: Subject) -> Iterable[str]:

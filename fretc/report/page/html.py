@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from compiler.explanation.diagram import diagram
@@ -31,13 +31,31 @@ _MOST_CHANGES, _MOST_RUNS = 100, 20
 _SCRIPT, _STYLE = "report/page.js.j2", "report/style.css.j2"
 
 
-def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> str:
+@dataclass(frozen=True, slots=True)
+class Inset:
+    """A page that the report has in it, and opens at a requirement when it is asked for."""
+
+    text: str
+    requirements: frozenset[str]
+    """The ids of those that it is about."""
+    scripts: tuple[str, ...]
+    """The hash sources of its scripts: a page within a page keeps to the policies of both."""
+    style: str
+
+
+def html(
+    report: Report,
+    details: Details,
+    rules: Sequence[Formalized] = (),
+    inset: Inset | None = None,
+) -> str:
     """The whole file.
 
     Args:
         report: all parts.
         details: the evidence behind its rows.
         rules: formalized requirements; the page draws what they mean.
+        inset: the page of `fretc play`; None: the report has none.
     """
     choice = selection(report, details)
     page = slimmed(report, choice)
@@ -61,8 +79,9 @@ def html(report: Report, details: Details, rules: Sequence[Formalized] = ()) -> 
         consequences=visible_texts(_consequences(page.changes)),
         most=_MOST_CHANGES,
         most_runs=_MOST_RUNS,
-        script_hash=hash_source(script),
-        style_hash=hash_source(style),
+        inset=inset,
+        script_hashes=[hash_source(script), *(inset.scripts if inset else ())],
+        style_hashes=[hash_source(style), *([inset.style] if inset else ())],
     )
 
 

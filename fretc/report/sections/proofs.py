@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import ALL, PROVERS, Proof, Result
 from compiler.project.interceptor_options import ASSUMED
 from fretc.report.model import phrases
 from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
-from fretc.report.traceability.artefacts import Product
+from fretc.report.traceability.artefacts import Product, compiled_monitor
 from fretc.verification.layers.table import OF_MONITOR
 from fretc.verification.text_output import SIGNS
 
@@ -21,19 +22,22 @@ SHARED = ("interceptor", "agent")
 """The subjects of claims that are about no single requirement."""
 
 
-def proof_views(proofs: Iterable[Proof], products: Iterable[Product]) -> tuple[ProofView, ...]:
+def proof_views(
+    proofs: Iterable[Proof], products: Iterable[Product], rule: Formalized | None = None
+) -> tuple[ProofView, ...]:
     """The view of each proof.
 
     Args:
         proofs: about one requirement, or about shared parts.
         products: what the targets make now; a proof about another text is suspect.
+        rule: the requirement; None where it cannot be read, and of shared parts.
     """
     now = {product.file: product.sha256 for product in products if product.sha256}
-    return tuple(_view(proof, now) for proof in proofs)
+    return tuple(_view(proof, now, rule) for proof in proofs)
 
 
-def _view(proof: Proof, now: Mapping[str, str]) -> ProofView:
-    suspicions = tuple(_suspicions(proof, now))
+def _view(proof: Proof, now: Mapping[str, str], rule: Formalized | None) -> ProofView:
+    suspicions = tuple(_suspicions(proof, now, rule))
     return ProofView(
         requirement=proof.requirement,
         layer=str(proof.layer),
@@ -47,15 +51,23 @@ def _view(proof: Proof, now: Mapping[str, str]) -> ProofView:
     )
 
 
-def _suspicions(proof: Proof, now: Mapping[str, str]) -> Iterator[str]:
+def _suspicions(proof: Proof, now: Mapping[str, str], rule: Formalized | None) -> Iterator[str]:
     """Why a proof is about other texts than those of now; only texts that fretc makes count."""
     for name, examined in proof.artefacts.items():
         if name in now and now[name] != examined:
             what = "is not what it was" if name == ASSUMED else "is not made like that any more"
             yield f"{name} {what}"
-    monitors = {hash_ for name, hash_ in now.items() if name.endswith("_monitor.py")}
-    if proof.layer in OF_MONITOR and not monitors & {*proof.artefacts.values()}:
+    if proof.layer in OF_MONITOR and not _is_of_monitor(proof, now, rule):
         yield "it is about another monitor than the one that is made now"
+
+
+def _is_of_monitor(proof: Proof, now: Mapping[str, str], rule: Formalized | None) -> bool:
+    """Whether the monitor that is made now was examined, in any language."""
+    monitors = {hash_ for name, hash_ in now.items() if name.endswith("_monitor.py")}
+    return any(
+        examined in monitors or (rule is not None and examined == compiled_monitor(rule, name))
+        for name, examined in proof.artefacts.items()
+    )
 
 
 def covering(method: str, proofs: Sequence[ProofView]) -> list[ProofView]:

@@ -71,7 +71,8 @@ def section(
     """
     requirement, rule = assessment.requirement, assessment.rule
     products = (*assessment.products, *shared_products)
-    own_proofs = proof_views((p for p in proofs if p.requirement == assessment.id), products)
+    own = (proof for proof in proofs if proof.requirement == assessment.id)
+    own_proofs = proof_views(own, products, rule)
     shared_proofs = proof_views((p for p in proofs if p.requirement in SHARED), shared_products)
     clock = project.declarations.clock if project.declarations else None
     return RequirementView(

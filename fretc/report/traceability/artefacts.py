@@ -40,6 +40,24 @@ def products(rule: Formalized | None) -> tuple[Product, ...]:
     return tuple(product for name in names for product in _of_target(TARGETS[name], rule))
 
 
+_LANGUAGES = {"_monitor.c": "c", "lib.rs": "rust", "_monitor.mjs": "js"}
+"""How the names of monitors in other languages than Python end, and their target."""
+
+
+def compiled_monitor(rule: Formalized, file: str) -> str:
+    """SHA-256 of the monitor of the requirement alone that would be in such a file; or nothing.
+
+    Args:
+        rule: the requirement.
+        file: its name.
+    """
+    for end, target in _LANGUAGES.items():
+        if file.endswith(end):
+            made = _of_target(TARGETS[target], rule)
+            return next((one.sha256 for one in made if PurePath(one.file).name == file), "")
+    return ""
+
+
 def _of_target(target: Target, rule: Formalized) -> tuple[Product, ...]:
     refusal = target.refuse(rule)
     if refusal is not None:

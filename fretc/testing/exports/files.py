@@ -8,14 +8,15 @@ from pathlib import PurePosixPath
 from typing import assert_never
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
-from compiler.files.templating import render, to_json
+from compiler.files.templating import to_json
 from compiler.formalization.formalized import Formalized
+from compiler.targets.c import monitor as c
 from compiler.targets.python import monitor as emitted
 from fretc.testing.exports import simulator
+from fretc.testing.exports.pytest_file import Language, pytest_file, targets
+from fretc.testing.exports.self_test import self_test
 from fretc.testing.exports.tables import Table, csv_text, table, ticks
 from fretc.testing.suite import Suite, Test
-from monitors.kernel.verdicts import Verdict
 
 
 class Form(StrEnum):
@@ -24,6 +25,7 @@ class Form(StrEnum):
     PYTEST = "pytest"
     CSV = "csv"
     FRET = "fret"
+    C = "c"
 
 
 INDEX = "tests.csv"
@@ -33,7 +35,10 @@ Left = Mapping[str, str]
 
 
 def files(
-    suite: Suite, rules: Sequence[Formalized], form: Form
+    suite: Suite,
+    rules: Sequence[Formalized],
+    form: Form,
+    languages: Sequence[Language] = (Language.PYTHON,),
 ) -> tuple[tuple[Artifact, ...], Left]:
     """All files of a suite, and the tests that are in none of them.
 
@@ -41,57 +46,50 @@ def files(
         suite: made of the rules.
         rules: the requirements.
         form: of the files.
+        languages: of the monitors that tests for pytest step.
     """
     by_id = {rule.id: rule for rule in rules}
-    why = simulator.refusal if form is Form.FRET else _no_monitor
-    reasons = ((test.name, why(by_id[test.requirement], test)) for test in suite.tests)
-    left = {name: reason for name, reason in reasons if reason is not None}
+    reasons = {
+        each.name: _refusal(by_id[each.requirement], each, form, languages) for each in suite.tests
+    }
+    left = {name: reason for name, reason in reasons.items() if reason is not None}
     tests = [test for test in suite.tests if test.name not in left]
     tested = [by_id[id] for id in dict.fromkeys(test.requirement for test in tests)]
     match form:
         case Form.PYTEST:
-            made = [*emitted.emit(tested), *(_pytest(rule, suite) for rule in tested)]
+            made = [file for each in targets(languages) for file in each.emit(tested)]
+            sentences = {each.id: each.sentence for each in suite.requirements}
+            for rule in tested:
+                own = [test for test in tests if test.requirement == rule.id]
+                made.append(pytest_file(rule, sentences[rule.id], own, languages))
         case Form.CSV:
             tables = {test.name: table(by_id[test.requirement], test) for test in tests}
             made = [*emitted.emit(tested), *(_csv(name, each) for name, each in tables.items())]
             made.append(_index(tests, tables))
         case Form.FRET:
             made = [*_fret(tests, by_id)]
+        case Form.C:
+            made = [*c.emit(tested), self_test(tested, tests)] if tested else []
         case _:
             assert_never(form)
     return tuple(made), left
 
 
-def _no_monitor(rule: Formalized, test: Test) -> str | None:
-    """Why there is no monitor for a test; None: there is one."""
-    wrong = emitted.refuse(rule)
+def _refusal(rule: Formalized, test: Test, form: Form, languages: Sequence[Language]) -> str | None:
+    """Why a test cannot be written so, as where there is no monitor; None: it can."""
+    match form:
+        case Form.FRET:
+            return simulator.refusal(rule, test)
+        case Form.C:
+            languages = (Language.C,)
+        case Form.CSV:
+            languages = (Language.PYTHON,)
+        case Form.PYTEST:
+            pass
+        case _:
+            assert_never(form)
+    wrong = next(filter(None, (each.refuse(rule) for each in targets(languages))), None)
     return None if wrong is None else wrong.message
-
-
-def _tests(suite: Suite, rule: Formalized) -> list[Test]:
-    return [test for test in suite.tests if test.requirement == rule.id]
-
-
-def _pytest(rule: Formalized, suite: Suite) -> Artifact:
-    """`test_<id>.py`."""
-    (monitor,) = emitted.emit((rule,))
-    tests = [(test, _function(test), table(rule, test)) for test in _tests(suite, rule)]
-    text = render(
-        "tests/test_monitor.py.j2",
-        id=rule.id,
-        sentence=next(each.sentence for each in suite.requirements if each.id == rule.id),
-        monitor=monitor.path.name,
-        tests=tests,
-        violated=Verdict.VIOLATED,
-        pending=Verdict.PENDING,
-        satisfied=Verdict.SATISFIED,
-        version=__version__,
-    )
-    return Artifact(PurePosixPath(f"test_{monitor.path.stem.removesuffix('_monitor')}.py"), text)
-
-
-def _function(test: Test) -> str:
-    return f"test_{test.name.replace('-', '_')}"
 
 
 def _csv(name: str, own: Table) -> Artifact:

@@ -15,7 +15,7 @@ from compiler.files.records import replace
 from compiler.formalization.formalized import Formalized
 from compiler.targets.python import monitor as emitted
 from compiler.targets.python.comparisons import NUMBER, TRUTH, Input, front
-from fretc.testing.exports.tables import Table, table
+from fretc.testing.exports.tables import Table, table, truths
 from fretc.testing.suite import Suite, Test
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import PENDING
@@ -81,11 +81,17 @@ def _check(rule: Formalized, monitor: Monitor, test: Test) -> None:
     Raises:
         WrongError: not so.
     """
-    variables = front((rule,), rule.watched)
     try:
-        read = table(rule, test)
+        own = table(rule, test)
+        tables = (own,) if own.names == rule.watched else (own, truths(rule, test))
     except KeyError as error:
         raise WrongError(f"`{test.name}` lacks values of `{error.args[0]}`") from None
+    for read in tables:
+        _check_table(rule, monitor, test, read)
+
+
+def _check_table(rule: Formalized, monitor: Monitor, test: Test, read: Table) -> None:
+    variables = front((rule,), rule.watched)
     inputs = {} if variables is None or read.of_truths else variables.inputs
     for _, values in read.rows:
         for name, value in zip(read.names, values, strict=True):

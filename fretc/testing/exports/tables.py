@@ -39,6 +39,11 @@ def table(rule: Formalized, test: Test) -> Table:
     return Table(names, columns(test, names), of_truths=not known)
 
 
+def truths(rule: Formalized, test: Test) -> Table:
+    """The truth of the propositions of a test, as the monitor in C takes it."""
+    return Table(rule.watched, columns(test, rule.watched), of_truths=True)
+
+
 def columns(test: Test, names: Sequence[str]) -> tuple[Row, ...]:
     """Some columns of a test; ticks that are equal in them are one row."""
     found = ((row.count, tuple(row.values[name] for name in names)) for row in test.rows)

@@ -32,20 +32,25 @@ class Reading(NamedTuple):
     answer: int
 
 
-NAMES = (*(f"value of `{name}`" for name in Reading._fields), "verdict from the two readings")
+VERDICTS = ("pending", "satisfied", "violated")
+"""In the order of their numbers."""
+NAMES = (
+    *(f"value of `{name}`" for name in Reading._fields),
+    "verdict, or what is owed, from the two readings",
+)
 """Of the values that a step tells."""
 
 
-def judged(certain: Reading, possible: Reading) -> tuple[str, Truth]:
-    """The verdict whatever follows, and FRET's finite one, from what both rails tell."""
+def judged(certain: Reading, possible: Reading) -> tuple[str, Truth, Truth]:
+    """The verdict whatever follows, FRET's finite one, and what is owed, from both rails."""
     if certain.violated == 1:
         verdict = "violated"
     else:
         settled = certain.settled == 1 and possible.violated == 0
         verdict = "satisfied" if settled else "pending"
-    if certain.failed == 1:
-        return verdict, False
-    return verdict, None if possible.failed == 1 else True
+    finite: Truth = False if certain.failed == 1 else None if possible.failed == 1 else True
+    is_owed, may_be = (1 in (each.trigger, each.open) for each in (certain, possible))
+    return verdict, finite, True if is_owed else None if may_be else False
 
 
 class PythonRail:

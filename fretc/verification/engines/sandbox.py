@@ -14,6 +14,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from math import ceil
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
 from types import ModuleType
@@ -60,36 +61,78 @@ class Stopped:
 def confined(
     limits: Limits, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs
 ) -> R | Stopped:
-    """The result of the function, or why there is none.
+    """The result of one call in a process of its own: as `Session.call`."""
+    with Session(limits) as session:
+        return session.call(function, *args, **kwargs)
 
+
+class Session:
+    """Calls in a process of their own, one after the other, each with limits of its own.
+
+    One process serves them, until it is stopped or crashes: then the next call gets a new one.
     Whoever is interrupted meanwhile (Ctrl-C) ends the process.
-
-    Args:
-        limits: of time and memory.
-        function: of a module that can be imported, and not of the program: that is not executed
-            in another process.
-        args: what can be sent between processes, as can the result.
-        kwargs: likewise.
-
-    Raises:
-        Exception: what the function raises.
     """
-    shield()
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe(duplex=False)
-    call = (theirs, limits, function, args, kwargs)
-    process = context.Process(target=_serve, args=call, daemon=True)
-    try:
-        with _without_main():
-            process.start()
-        theirs.close()
-        answer: R | Stopped = _answer(ours, process, limits)
-        return answer
-    finally:
-        if process.pid is not None:
-            process.kill()
-            process.join()
-        ours.close()
+
+    def __init__(self, limits: Limits) -> None:
+        """No process begins before the first call.
+
+        Args:
+            limits: of time for each call, and of memory for the process.
+        """
+        self._limits = limits
+        self._process: SpawnProcess | None = None
+        self._connection: Connection | None = None
+
+    def __enter__(self) -> Session:
+        """The session itself."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """The process ends."""
+        self._end()
+
+    def call(self, function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> R | Stopped:
+        """The result of the function, or why there is none.
+
+        Args:
+            function: of a module that can be imported, and not of the program: that is not executed
+                in another process.
+            args: what can be sent between processes, as can the result.
+            kwargs: likewise.
+
+        Raises:
+            Exception: what the function raises.
+        """
+        complete = False
+        try:
+            connection, process = self._begun()
+            with suppress(BrokenPipeError):  # then it has ended, and there is no answer
+                connection.send((function, args, kwargs))
+            answer: R | Stopped = _answer(connection, process, self._limits)
+            complete = not isinstance(answer, Stopped)
+            return answer
+        finally:
+            if not complete:
+                self._end()
+
+    def _begun(self) -> tuple[Connection, SpawnProcess]:
+        if self._process is None or self._connection is None:
+            shield()
+            context = multiprocessing.get_context("spawn")
+            self._connection, theirs = context.Pipe()
+            self._process = context.Process(target=_serve, args=(theirs, self._limits), daemon=True)
+            with _without_main():
+                self._process.start()
+            theirs.close()
+        return self._connection, self._process
+
+    def _end(self) -> None:
+        if self._process is not None and self._process.pid is not None:
+            self._process.kill()
+            self._process.join()
+        if self._connection is not None:
+            self._connection.close()
+        self._process = self._connection = None
 
 
 @contextmanager
@@ -131,17 +174,23 @@ def _out_of_memory(limits: Limits) -> str:
     return f"out of memory: more than {limits.memory / 2**30:g} GiB"
 
 
-def _serve(
-    connection: Connection,
-    limits: Limits,
-    function: Callable[..., Any],
-    args: tuple[Any, ...],
-    kwargs: dict[str, Any],
-) -> None:
+def _serve(connection: Connection, limits: Limits) -> None:
+    """Answer calls until no further one comes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all; the first one decides
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    resource.setrlimit(resource.RLIMIT_CPU, (limits.seconds, limits.seconds + 5))
     resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
     gc.set_threshold(*_RARELY)
-    with suppress(OSError):
-        connection.send(reply(function, *args, **kwargs))
+    with suppress(EOFError, OSError):
+        while True:
+            function, args, kwargs = connection.recv()
+            _allow(limits.seconds)
+            connection.send(reply(function, *args, **kwargs))
+            del function, args, kwargs
+
+
+def _allow(seconds: int) -> None:
+    """So many seconds of a processor from now on."""
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    most = resource.getrlimit(resource.RLIMIT_CPU)[1]
+    soon = ceil(used.ru_utime + used.ru_stime) + seconds
+    resource.setrlimit(resource.RLIMIT_CPU, (soon if most < 0 else min(soon, most), most))

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from pathlib import PurePath
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Layer, Proof, not_checked, proof
 from compiler.project.folder import Project
-from fretc.verification.engines import sandbox as processes
-from fretc.verification.engines.sandbox import Stopped
-from fretc.verification.layers.request import Request, setup_of
-from fretc.verification.monitor.verifying import MOST_STATES, verified
+from fretc.verification.compiled.plan import Given
+from fretc.verification.engines.sandbox import Session, Stopped
+from fretc.verification.layers.languages import Row, language_of
+from fretc.verification.layers.request import Request, named_text, setup_of
+from fretc.verification.monitor.verifying import verified_beside, written
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 CLAIM = "the monitor means what the sentence says"
@@ -24,58 +24,65 @@ def prove(
 ) -> Iterable[Proof] | Diagnostic:
     """One proof for each rule; the text may hold monitors of other rules, too.
 
-    A diagnostic where it is in C and no compiler is installed.
+    A diagnostic where no tool is installed that compiles or runs it.
 
     Raises:
         NotAMonitorError: the given text is no generated monitor.
     """
-    if request.header is not None:
-        return _of_binary(rules, project, request)
-    return _of_python(rules, project, request)
+    language = language_of(request.monitor.name) if request.monitor else None
+    if request.monitor is None or language is None:
+        return _of_python(rules, project, request)
+    program = language.module.tool()
+    if program is None:
+        return Diagnostic(
+            Code.MISSING_EXTRA,
+            f"a monitor in {language.name} is {language.missing}",
+            help=language.install,
+        )
+    texts = (named_text(each) for each in (request.monitor, request.header))
+    given = Given(*(part for text in texts if text for part in (text.name, text.text)))
+    return _of_language(rules, project, request, language, (program, given))
 
 
 def _of_python(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
-    for rule in rules:
-        file = setup_of(rule, project, request).monitor
-        request.progress(f"{rule.id}: monitor")
-        outcome = processes.confined(
-            request.limits, verified, rule, file.text, MOST_STATES, tuple(project.rules)
-        )
-        if isinstance(outcome, Stopped):
-            outcome = not_checked(outcome.reason)
-        artefacts = {file.name: sha256(file.text)}
-        yield proof(rule.id, Layer.MONITOR, CLAIM, outcome, ENGINE, (), artefacts)
+    given = request.monitor
+    with Session(request.limits) as session:
+        whole = session.call(written, given.text, tuple(project.rules)) if given else None
+        for rule in rules:
+            file = setup_of(rule, project, request).monitor
+            request.progress(f"{rule.id}: monitor")
+            beside = file.text if given is None else whole if isinstance(whole, str) else None
+            outcome = session.call(verified_beside, rule, file.text, beside)
+            if isinstance(outcome, Stopped):
+                outcome = not_checked(outcome.reason)
+            artefacts = {file.name: sha256(file.text)}
+            yield proof(rule.id, Layer.MONITOR, CLAIM, outcome, ENGINE, (), artefacts)
 
 
-def _of_binary(
-    rules: Sequence[Formalized], project: Project, request: Request
-) -> Iterable[Proof] | Diagnostic:
-    """Proofs of a monitor in C."""
-    from fretc.verification.compiled import c_build, c_verifying
+def _of_language(
+    rules: Sequence[Formalized],
+    project: Project,
+    request: Request,
+    language: Row,
+    made: tuple[str, Given],
+) -> Iterator[Proof]:
+    """Proofs of a monitor in a language.
 
-    program = c_build.compiler()
-    if program is None:
-        names = ", ".join(f"`{name}`" for name in c_build.COMPILERS)
-        return Diagnostic(
-            Code.MISSING_EXTRA,
-            f"a monitor in C is compiled for its proof, and there is none of {names}",
-            help="install a C compiler, as with `apt install gcc`",
-        )
-    assert request.monitor is not None
-    assert request.header is not None
-    given = c_verifying.Given(
-        PurePath(request.monitor.name).name,
-        request.monitor.text,
-        PurePath(request.header.name).name,
-        request.header.text,
-    )
-    proofs = list[Proof]()
-    for rule in rules:
-        request.progress(f"{rule.id}: monitor in C")
-        found = c_verifying.verified(rule, given, program, request.limits, project.rules)
-        under = (f"the binary is what was proved: {found.compiler}",) if found.compiler else ()
+    Args:
+        rules: those that are asked about.
+        project: all rules.
+        request: the limits.
+        language: it.
+        made: its tool, and the text.
+    """
+    from fretc.verification.compiled.verifying import verified as examined
+
+    program, given = made
+    words = (f"{rule.id}: monitor in {language.name}" for rule in rules)
+    found = examined(rules, given, language.module, program, request.limits, project.rules)
+    for progress in words:
+        request.progress(progress)
+        rule, outcome, by, artefacts = next(found)
+        under = (f"{language.under}: {by}",) if by else ()
         engine = f"{ENGINE} and the monitor in Python"
-        proofs.append(
-            proof(rule.id, Layer.MONITOR, CLAIM, found.outcome, engine, under, found.artefacts)
-        )
-    return proofs
+        yield proof(rule.id, Layer.MONITOR, CLAIM, outcome, engine, under, artefacts)

@@ -26,11 +26,12 @@ class Method:
     """A layer, or a prover that is asked beside the layers."""
 
     name: str
-    """That of `--layer` or `--with`; a module of this package has the name, and `prove` in it."""
+    """That of `--layer` or `--with`; a module of this package has it, with `_` for `-`, and `prove`
+    in it."""
     claim: str
     """What it proves, as the help of `fretc verify` says it."""
     of_requirement: bool = False
-    """Whether it takes one requirement at a time; else all of them together."""
+    """Whether each proof is about one requirement; else about what all have."""
     needs_monitor: bool = False
     """Whether it steps the monitor of a requirement, and its runs are runs of that monitor."""
 
@@ -40,14 +41,15 @@ class Method:
         """The proofs about the rules; a diagnostic where a text of the request has a mistake.
 
         Args:
-            rules: one where it takes one at a time, else those of the project.
+            rules: those that are asked about.
             project: all rules, and what the bindings declare.
             request: the texts that are given, the limits, and the other wishes.
 
         Raises:
             NotAMonitorError: the given text is no generated monitor.
         """
-        module = import_module(f"fretc.verification.layers.{self.name}")
+        name = self.name.replace("-", "_")
+        module = import_module(f"fretc.verification.layers.{name}")
         return cast("Iterable[Proof] | Diagnostic", module.prove(rules, project, request))
 
 
@@ -57,6 +59,11 @@ TABLE = (
         "the text of a monitor means what its sentence says",
         of_requirement=True,
         needs_monitor=True,
+    ),
+    Method(
+        "frama-c",
+        "no input makes a monitor in C do what C leaves undefined",
+        of_requirement=True,
     ),
     Method(
         Layer.LOOP,

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 from compiler.formalization.letters import Valuation
 from compiler.program.program import MARKS
@@ -57,6 +58,16 @@ def slice_of(text: str, prefix: str, propositions: Mapping[str, str]) -> Slice:
         prefix: of the names of the requirement's signals and marks.
         propositions: each with its parameter.
     """
+    given = _sources(text)
+    reached = _closure(given, (f"{prefix}_{name}" for name in (*MARKS, "signals")))
+    return Slice(
+        frozenset(name for name, parameter in propositions.items() if parameter in reached),
+        reached,
+    )
+
+
+@lru_cache(maxsize=1)
+def _sources(text: str) -> _Given:
     rail = next(
         node
         for node in own(text).body
@@ -68,11 +79,7 @@ def slice_of(text: str, prefix: str, propositions: Mapping[str, str]) -> Slice:
     given: dict[str, frozenset[str]] = {}
     for name, sources in _given(advance.body, frozenset()):
         given[name] = given.get(name, frozenset()) | sources
-    reached = _closure(given, (f"{prefix}_{name}" for name in (*MARKS, "signals")))
-    return Slice(
-        frozenset(name for name, parameter in propositions.items() if parameter in reached),
-        reached,
-    )
+    return given
 
 
 def _closure(given: _Given, names: Iterable[str]) -> frozenset[str]:

@@ -257,7 +257,8 @@ if {_is_odd(name)}:
 
     def _remembers(self, statement: ast.stmt, bound: frozenset[str]) -> bool:
         """It notes the tick of an event in a mark, and does nothing else."""
-        for mark in self.carried.intersection(self.rail.marks):
+        stored = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name)}
+        for mark in self.carried.intersection(self.rail.marks, stored):
             noted, kind = f"{mark} = tick", mark.rpartition("_")[2]
             match statement:
                 case ast.Assign() if kind == "last" and is_one_of(statement, noted):

@@ -7,7 +7,7 @@ so a step that looks at the number of the tick cannot hide. The automaton knows 
 values only. The other signals of a monitor (triggers, answers, open demands, marks; all of them
 with unknown values too) are compared with the text that fretc writes for the sentence, state by
 state (`fretc.verification.monitor.rails`), and its column program with the one in that text, term
-by term (`fretc.verification.monitor.column_terms`); the text that fretc writes needs neither. The
+by term (`fretc.verification.monitor.columns`); the text that fretc writes needs neither. The
 column program is also compared with the steps on random traces, some with unknown values: that
 shows where they differ.
 """
@@ -15,17 +15,16 @@ shows where they differ.
 from __future__ import annotations
 
 import ast
-import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, excluded
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
-from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
 from compiler.targets.python.monitor import prefixes_of
 from fretc.verification.monitor import front_terms, rails
-from fretc.verification.monitor.column_terms import Terms
+from fretc.verification.monitor.columns import Terms, Word, agreed
 from fretc.verification.monitor.equivalence import (
     Difference,
     Equivalence,
@@ -37,29 +36,16 @@ from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.slices import Alone, slice_of
 from fretc.verification.monitor.statements import StrangeError
 from fretc.verification.monitor.text_check import own, strange
-from monitors.kernel import Column, Monitor
-from monitors.kernel.columns import column, truths
-from monitors.kernel.stepping import literals_of
+from monitors.kernel import Monitor
 from monitors.kernel.variables import Variable
-from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from monitors.source_text import kernel
-
-DRAWN = 20
-"""Traces on which the column program is compared, where the bound is small."""
-_FEWEST, _TICKS = 4, 40_000
-"""At least so many traces; at most so many ticks in all, if there are more traces than that."""
-
 
 MOST_STATES = 10**6
 
 
 class NotAMonitorError(Exception):
     """The text cannot be executed as a generated monitor; the message says why."""
-
-
-Word = tuple[tuple[Truth, ...], ...]
-"""The values of the propositions at each tick; None: unknown."""
 
 
 def verified(
@@ -76,19 +62,61 @@ def verified(
     Raises:
         NotAMonitorError: the text is no generated monitor.
     """
+    return verified_beside(rule, text, written(text, (rule, *others)), limit)
+
+
+def verified_beside(
+    rule: Formalized, text: str, whole: str | None, limit: int = MOST_STATES
+) -> Outcome:
+    """As `verified`.
+
+    Args:
+        rule: one that the target accepts, on its own clock.
+        text: that of its monitor, maybe with monitors of other rules.
+        whole: what fretc writes for all of them, from `written`: once for all rules of a text.
+        limit: the most states of the exploration.
+
+    Raises:
+        NotAMonitorError: the text is no generated monitor.
+    """
+    monitor = _opened(text)
+    if isinstance(monitor, str):
+        return not_checked(monitor)
+    return _compared(rule, text, monitor, limit, whole)
+
+
+def written(text: str, rules: Sequence[Formalized]) -> str | None:
+    """What fretc writes for the requirements of a text; None where not all of them are known.
+
+    Raises:
+        NotAMonitorError: the text is no generated monitor.
+    """
+    monitor = _opened(text)
+    by_id = {rule.id: rule for rule in rules}
+    if isinstance(monitor, str) or not all(each.id in by_id for each in monitor.REQUIREMENTS):
+        return None
+    return target.text(*(by_id[each.id] for each in monitor.REQUIREMENTS))
+
+
+@lru_cache(maxsize=1)
+def _opened(text: str) -> Monitor | str:
+    """The monitor; or why it is not executed. A file of many requirements is opened once.
+
+    Raises:
+        NotAMonitorError: the text is no generated monitor.
+    """
     _demand_monitor(text)
     reason = strange(text)  # nothing else is executed
     if reason is not None:
-        return not_checked(reason)
+        return reason
     try:
-        monitor = load(f"{rule.id}_monitor", text)
+        return load("monitor", text)
     except Exception as error:
-        return not_checked(f"it cannot be executed: {type(error).__name__}: {error}")
-    return _compared(rule, text, monitor, limit, others)
+        return f"it cannot be executed: {type(error).__name__}: {error}"
 
 
 def _compared(
-    rule: Formalized, text: str, monitor: Monitor, limit: int, others: Sequence[Formalized]
+    rule: Formalized, text: str, monitor: Monitor, limit: int, whole: str | None
 ) -> Outcome:
     """The outcome for a text that is safe to execute."""
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == rule.id]
@@ -108,13 +136,13 @@ def _compared(
         (expected,) = load("generated", generated).REQUIREMENTS
         if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
             return not_checked("it decides the same, but states another sentence or deadline")
-        fault = _front_compared(rule, generated, text, monitor, atoms, others)
+        fault = _front_compared(rule, (generated, whole), text, monitor, atoms)
         if fault is not None:
             return fault
-    ticks, word = _columns_compared(rule, monitor, place, atoms)
+    ticks, word = agreed(rule, monitor, place, needed)
     if word is not None:
         return _disagreement(atoms, word)
-    if text == generated or _is_generated(text, monitor, (*others, rule)):
+    if text == generated or (whole is not None and _is_like(whole, text)):
         return _proved(result, ticks)
     states = _compared_with_generated(
         rule, generated, text, monitor, place, (atoms, len(needed)), limit
@@ -209,35 +237,29 @@ def _whole(atoms: Sequence[str], word: Word) -> Trace:
     return Trace(tuple(atoms), tuple((*row, *(False,) * (len(atoms) - len(row))) for row in word))
 
 
-def _is_generated(text: str, monitor: Monitor, rules: Sequence[Formalized]) -> bool:
-    """Whether fretc writes this text for some of these rules, but for comments."""
-    generated = _generated(monitor, rules)
-    return generated is not None and ast.dump(own(generated)) == ast.dump(own(text))
-
-
-def _generated(monitor: Monitor, rules: Sequence[Formalized]) -> str | None:
-    """The text that fretc writes for the requirements of a monitor, where all are known."""
-    by_id = {rule.id: rule for rule in rules}
-    ids = [requirement.id for requirement in monitor.REQUIREMENTS]
-    return target.text(*(by_id[id] for id in ids)) if all(id in by_id for id in ids) else None
+@lru_cache(maxsize=1)
+def _is_like(whole: str, text: str) -> bool:
+    """Whether both are one text, but for comments."""
+    return ast.dump(own(whole)) == ast.dump(own(text))
 
 
 def _front_compared(
     rule: Formalized,
-    generated: str,
+    texts: tuple[str, str | None],
     text: str,
     monitor: Monitor,
     atoms: Sequence[str],
-    others: Sequence[Formalized],
 ) -> Outcome | None:
     """Why what it compares is not what the sentence does; None: it is.
 
     Another requirement in the file may read as a truth value what this one takes for a number:
     then what fretc writes for all of them counts.
     """
+    generated, whole = texts
     fault = _differing(rule, text, generated, monitor, atoms)
-    written = None if fault is None else _generated(monitor, (*others, rule))
-    return fault if written is None else _differing(rule, text, written, monitor, atoms)
+    if fault is None or whole is None:
+        return fault
+    return _differing(rule, text, whole, monitor, atoms)
 
 
 def _differing(
@@ -321,87 +343,3 @@ def _demand_monitor(text: str) -> None:
     targets = (node.target for node in tree.body if isinstance(node, ast.AnnAssign))
     if not any(isinstance(target, ast.Name) and target.id == "MONITOR" for target in targets):
         raise NotAMonitorError("it names no `MONITOR`")
-
-
-# Columns --------------------------------------------------------------------------------------
-
-
-def _columns_compared(
-    rule: Formalized, monitor: Monitor, place: int, atoms: Sequence[str]
-) -> tuple[int, Word | None]:
-    """The ticks on which both programs agree; and a trace on which they do not."""
-    bound, never = rule.ticks or 0, excluded(rule)
-    choose = random.Random(bound)
-    length = 4 * bound + 50
-    count = min(DRAWN, max(_FEWEST, _TICKS // length))
-    for number in range(count):
-        odds = 0.02 if number % 2 else 0.0
-        drawn = {name: _drawn(choose, length, bound, odds) for name in atoms}
-        drawn = _possible(drawn, never, length)
-        tick = _first_difference(monitor, place, drawn, length)
-        if tick is not None:
-            return 0, tuple(_rows(drawn, tick + 1))
-    return count * length, None
-
-
-def _possible(
-    columns: Mapping[str, Column], excluded: Sequence[Exclusion], length: int
-) -> dict[str, Column]:
-    """The columns with unknown values where they cannot be what they are."""
-    every, found = (1 << length) - 1, dict(columns)
-    for exclusion in excluded:
-        at = every
-        for name, value in exclusion:
-            true, unknown = found[name]
-            at &= true if value else every ^ (true | unknown)
-        for name, _ in exclusion:
-            true, unknown = found[name]
-            found[name] = Column(true & ~at, unknown | at)
-    return found
-
-
-def _first_difference(
-    monitor: Monitor, place: int, columns: Mapping[str, Column], length: int
-) -> int | None:
-    """The first tick at which the signals of both programs differ, on either rail."""
-    every = (1 << length) - 1
-    try:
-        must, may = (
-            monitor.columns(every, **literals_of(monitor, columns, every, doubt))[place]
-            for doubt in (False, True)
-        )
-        beyond = any(column >> length for column in (*must, *may))
-    except Exception:
-        return length - 1
-    if beyond:
-        return length - 1
-    monitor.reset()
-    values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
-    for tick in range(length):
-        monitor.advance([tuple([column[tick] for column in values])])
-        for rail, expected in ((monitor.must, must), (monitor.may, may)):
-            actual = [bool(value) for value in rail.signals()[place]]
-            if actual != [bool(column >> tick & 1) for column in expected]:
-                return tick
-    return None
-
-
-def _drawn(choose: random.Random, length: int, bound: int, unknown: float) -> Column:
-    """A column with odds of its own, or of runs about as long as the bound: edges matter."""
-    if choose.random() < 0.5:
-        odds = choose.choice((0.02, 0.2, 0.5, 0.95))
-        codes = bytearray(choose.random() < odds for _ in range(length))
-    else:
-        codes, value = bytearray(), choose.randrange(2)
-        while len(codes) < length:
-            run = choose.choice((1, 1, 2, bound - 1, bound, bound + 1, bound + 2))
-            codes += bytes((value,)) * run
-            value = 1 - value
-        del codes[length:]
-    if unknown:
-        codes = bytearray(2 if choose.random() < unknown else code for code in codes)
-    return column(codes)
-
-
-def _rows(columns: Mapping[str, Column], length: int) -> Iterator[tuple[Truth, ...]]:
-    return (tuple(column.at(tick) for column in columns.values()) for tick in range(length))

@@ -127,6 +127,32 @@ def test_a_time_that_is_no_number_is_a_mistake(fretc: Fretc, folder: Path, comma
     assert "nan is not a number of seconds" in run.err
 
 
+def test_tests_for_pytest_are_of_the_languages_that_are_named(fretc: Fretc, folder: Path) -> None:
+    run = fretc("test", str(folder), "--emit", "pytest", "--language", "js", "--language", "c")
+    assert run.status == 0
+    names = {path.name for path in (folder / "build/tests/pytest").iterdir()}
+    monitors = {f"r{i}_monitor.{ending}" for i in (1, 2) for ending in ("c", "h", "mjs")}
+    assert names == monitors | {"test_r1.py", "test_r2.py"}
+
+
+@pytest.mark.parametrize("emitted", [(), ("--emit", "c")])
+def test_a_language_without_tests_for_pytest_is_a_mistake(
+    fretc: Fretc, folder: Path, emitted: Sequence[str]
+) -> None:
+    run = fretc("test", str(folder), *emitted, "--language", "c")
+    assert run.status == 2
+    assert "F907 `--language` is about the tests of `--emit pytest`" in run.err
+    assert not (folder / "build").exists()
+
+
+def test_the_self_test_stands_beside_the_monitors(fretc: Fretc, folder: Path) -> None:
+    run = fretc("test", str(folder), "--emit", "c")
+    assert run.status == 0
+    names = {path.name for path in (folder / "build/tests/c").iterdir()}
+    monitors = {f"r{i}_monitor.{ending}" for i in (1, 2) for ending in ("c", "h")}
+    assert names == monitors | {"fretc_self_test.c"}
+
+
 def test_tests_of_a_file_are_written_again_as_they_are(fretc: Fretc, folder: Path) -> None:
     assert fretc("test", str(folder), "--emit", "csv").status == 0
     made = {path.name: path.read_text() for path in Path("build/tests/csv").iterdir()}

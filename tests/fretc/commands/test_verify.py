@@ -14,7 +14,6 @@ import pytest
 
 from compiler.files.templating import template_root
 from compiler.logic.claims import Proof
-from fretc.verification.compiled import c_build
 from fretc.verification.engines import crosshair
 from fretc.verification.engines import programs as external
 from fretc.verification.engines import sandbox as confined
@@ -38,11 +37,11 @@ WROTE = "wrote build/verification.json\n"
 def in_this_process(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
     """A new process takes a quarter of a second; that calls can be sent, some tests show."""
 
-    def direct(limits: object, function: Callable[..., Any], *args: Any) -> Any:
+    def direct(session: object, function: Callable[..., Any], *args: Any) -> Any:
         return function(*args)
 
     if "confined" not in request.keywords:
-        monkeypatch.setattr(confined, "confined", direct)
+        monkeypatch.setattr(confined.Session, "call", direct)
 
 
 @pytest.fixture
@@ -99,71 +98,6 @@ def test_the_bound_is_counted_by_the_clock(fretc: Fretc) -> None:
     run = fretc("verify", "--monitor", path)
     assert run.status == 0
     assert "(102 states, 408 steps)" in run.out
-
-
-# In C -----------------------------------------------------------------------------------------
-
-needs_cc = pytest.mark.skipif(c_build.compiler() is None, reason="no C compiler is installed")
-
-
-@pytest.fixture
-def made_in_c(fretc: Fretc, r1: str) -> str:
-    """The monitor in C that was made of it."""
-    assert fretc(r1, "--emit", "c", "-o", ".").status == 0
-    return "r1_monitor.c"
-
-
-@needs_cc
-@pytest.mark.slow
-@pytest.mark.confined
-def test_a_monitor_in_c_is_proved_as_the_binary_that_it_is(
-    fretc: Fretc, r1: str, made_in_c: str
-) -> None:
-    run = fretc("verify", "--file", made_in_c, r1)
-    assert run.status == 0, run
-    assert run.out.startswith("✔ r1  monitor  proved under (1): the monitor means")
-    (proof,) = json.loads(Path("build/verification.json").read_text())["evidence"]
-    assert {*proof["artefacts"]} == {"r1_monitor.c", "r1_monitor.h", "r1_monitor.so"}
-    (assumption,) = proof["assumptions"]
-    assert all(flag in assumption for flag in c_build.FLAGS)
-    edited(made_in_c, "rail->oldest_1 >= 2", "rail->oldest_1 >= 1")
-    run = fretc("verify", "--file", made_in_c, r1, "--traces", "runs")
-    assert run.status == 1
-    assert Path("runs/r1_monitor_1.csv").exists()
-
-
-@needs_cc
-def test_a_text_in_c_that_fretc_would_not_write_is_not_run(
-    fretc: Fretc, r1: str, made_in_c: str
-) -> None:
-    edited(made_in_c, "    fretc_reading *reading;", "    fretc_reading *reading; abort();")
-    run = fretc("verify", "--file", made_in_c, r1)
-    assert run.status == 3
-    assert "not laid out as fretc writes it: `abort ( ) ;`" in run.out
-
-
-def test_without_a_compiler_it_says_what_to_install(
-    fretc: Fretc, r1: str, made_in_c: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("PATH", "")
-    run = fretc("verify", "--file", made_in_c, r1)
-    assert (run.status, run.out) == (2, "")
-    assert run.err.startswith("F908 a monitor in C is compiled for its proof")
-
-
-def test_a_loop_takes_no_monitor_in_c(fretc: Fretc, r1: str, made_in_c: str) -> None:
-    run = fretc("verify", "--layer", "loop", "--file", made_in_c, r1)
-    assert (run.status, run.out) == (2, "")
-    assert run.err.startswith("F907 `--layer loop` takes a monitor in Python")
-
-
-def test_a_monitor_in_c_needs_its_header(fretc: Fretc, r1: str, made_in_c: str) -> None:
-    Path("r1_monitor.h").unlink()
-    assert fretc("verify", "--file", made_in_c, r1).err.startswith("F901")
-    write("other.c", "int x;\n")
-    run = fretc("verify", "--file", "other.c", r1)
-    assert run.status == 2
-    assert run.err.startswith("F602 `other.c` is no generated monitor: it includes no header")
 
 
 # Refuted --------------------------------------------------------------------------------------

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 from tests.command import Fretc, write
+from tests.compiled_monitors import TONGUES
+from tests.fretc.commands.test_verify_languages import MADE
 from tests.fretc.logs.logs import MS, X_TEXT, number
 from tests.fretc.logs.logs import write as write_log
 
@@ -459,6 +461,33 @@ def test_proofs_are_made_again(audited: Fretc) -> None:
     run = audited("verify-evidence", "--no-proofs")
     assert run.status == 3
     assert "not checked: no proof was made again: `--no-proofs`\n" in run.out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MADE)
+def test_proofs_of_a_monitor_in_another_language_are_made_again(audited: Fretc, name: str) -> None:
+    made = MADE[name]
+    if TONGUES[name.lower()].is_missing:
+        pytest.skip(f"what {name} needs is not installed")
+    assert audited("requirements/r1.fret", "--emit", made.emit, "-o", ".").status == 0
+    verify = ("verify", "requirements/r1.fret", "--file", made.file)
+    assert audited(*verify).status == 0
+    run = audited("verify-evidence")
+    assert run.status == 0
+    assert "proofs\n  ✔ r1  stands: monitor: the monitor means what the sentence says\n" in run.out
+    text = Path("build/verification.json").read_text()
+    write("build/verification.json", text.replace(made.flags[0], "--other"))
+    run = audited("verify-evidence")
+    assert run.status == 3
+    assert " --other" in run.out
+    write("build/verification.json", text.replace('"proved"', '"counterexample"'))
+    assert audited("verify-evidence").status == 1
+    monitor = Path(made.file)
+    monitor.write_text(f"{monitor.read_text()}\n", encoding="utf-8")
+    assert audited(*verify).status == 0
+    run = audited("verify-evidence")
+    assert run.status == 3
+    assert f"it is about `{made.artefacts[0]}`, which is not made here" in run.out
 
 
 @pytest.mark.slow

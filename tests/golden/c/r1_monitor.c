@@ -23,7 +23,7 @@ static inline void r1_advance(r1_rail *rail, const r1_literals *now, r1_outcomes
 {
     fretc_reading *reading;
     /* !stopped S (too_close & !stopped) */
-    rail->since_1 = (now->is_too_close && now->not_stopped) || (now->not_stopped && rail->since_1);
+    rail->since_1 = (now->is_too_close & now->not_stopped) | (now->not_stopped & rail->since_1);
     /* R1 */
     reading = possible ? &outcomes->r1.possible : &outcomes->r1.certain;
     reading->left = -1;
@@ -38,6 +38,9 @@ static inline void r1_advance(r1_rail *rail, const r1_literals *now, r1_outcomes
 
 static void r1_judge(fretc_outcome *outcome)
 {
+    const bool certain = outcome->certain.trigger | outcome->certain.open;
+    const bool possible = outcome->possible.trigger | outcome->possible.open;
+
     if (outcome->certain.violated) {
         outcome->verdict = FRETC_VIOLATED;
     } else if (outcome->certain.settled && !outcome->possible.violated) {
@@ -45,13 +48,9 @@ static void r1_judge(fretc_outcome *outcome)
     } else {
         outcome->verdict = FRETC_PENDING;
     }
-    if (outcome->certain.failed) {
-        outcome->finite = FRETC_FALSE;
-    } else if (outcome->possible.failed) {
-        outcome->finite = FRETC_UNKNOWN;
-    } else {
-        outcome->finite = FRETC_TRUE;
-    }
+    /* FRETC_FALSE is 0, FRETC_TRUE 1 and FRETC_UNKNOWN 2: a jump would be guessed wrong each time that it changes. */
+    outcome->finite = (fretc_truth)((outcome->certain.failed ? 0u : 1u) << (outcome->possible.failed ? 1u : 0u));
+    outcome->owed = (fretc_truth)((certain ? 1u : 0u) | ((possible & !certain) ? 2u : 0u));
 }
 
 void r1_step(r1_state *state, const r1_inputs *inputs, r1_outcomes *outcomes)

@@ -110,9 +110,9 @@ function reading(signals, { broken, doomed, last, open }, horizon) {
 }
 
 /** The verdict on a run that ends here. */
-function ended(violated, owed, triggered) {
+function ended(violated, waits, triggered) {
   if (violated !== false) return violated ? "violated" : "no data";
-  if (owed !== false) return owed ? "inconclusive" : "no data";
+  if (waits !== false) return waits ? "inconclusive" : "no data";
   if (triggered !== false) return triggered ? "satisfied" : "no data";
   return "vacuous";
 }
@@ -124,11 +124,12 @@ function outcome({ certain: must, possible: may }, index) {
   const violated = truth(certain.firstViolation !== null, possible.firstViolation !== null);
   const broken = truth(must.marks[index].broken >= 0, may.marks[index].broken >= 0);
   const fails = truth(certain.fails, possible.fails);
-  const owed = truth(certain.owed, possible.owed);
+  const waits = truth(certain.owed, possible.owed);
+  const owed = truth(certain.trigger || certain.owed, possible.trigger || possible.owed);
   const triggered = truth(certain.lastTrigger !== null, possible.lastTrigger !== null);
   return {
     verdict: violated ? "violated" : certain.settled && violated === false ? "satisfied" : "pending",
-    atEnd: ended(violated, owed, triggered),
+    atEnd: ended(violated, waits, triggered),
     finite: broken || fails ? false : broken === false && fails === false ? true : null,
     trigger: truth(certain.trigger, possible.trigger),
     breach: truth(certain.breach, possible.breach),

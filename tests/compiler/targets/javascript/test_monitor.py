@@ -72,7 +72,7 @@ def expected(
         "finite": standing.finite,
         "trigger": both["trigger"],
         "breach": both["breach"],
-        "owed": both["owed"],
+        "owed": standing.owed,
         "firstViolation": standing.first_violation,
         "open": standing.open,
         "deadline": standing.deadline,

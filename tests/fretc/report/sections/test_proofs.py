@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 import pytest
 from click.testing import CliRunner
 
+from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
@@ -15,6 +16,7 @@ from fretc.report.make import ReportBuild, make
 from fretc.report.sections.argument import Kind, argument
 from fretish.diagnostics.diagnostic import Code
 from tests.command import Fretc, write
+from tests.each import each
 from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
@@ -135,6 +137,21 @@ def test_a_proof_of_another_text_is_suspect(
     assert words([view]) == ["proved, suspect"]
     assert view["suspicions"][0] == why
     assert plan(report)[1:] == (False, False)
+
+
+@each("kind", ["c", "rust", "js"])
+def test_a_proof_of_the_monitor_in_another_language_stands(
+    tmp_path_factory: pytest.TempPathFactory, kind: str
+) -> None:
+    """If it is about the text that is made now; the same header says nothing."""
+    folder = tmp_path_factory.mktemp(kind)
+    (rule,) = project(folder, requirement("R1", SENTENCE, verify=["verify"])).rules
+    files = {file.path.name: sha256(file.text) for file in TARGETS[kind].emit([rule])}
+    (name,) = files.keys() & {"r1_monitor.c", "lib.rs", "r1_monitor.mjs"}
+    for artefacts, doubts in ((files, 0), ({**files, name: "0" * 64}, 1)):
+        report = reported(folder, {"artefacts": artefacts}, verify=["verify"])
+        (view,) = as_json(report)["requirements"][0]["proofs"]
+        assert len(view["suspicions"]) == doubts
 
 
 def test_a_prover_is_found_by_its_engine(tmp_path: Path) -> None:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import csv
 import json
 import re
+import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
+from functools import cache
 from itertools import product
 from pathlib import Path
 
@@ -15,10 +18,12 @@ import pytest
 from compiler.formalization.formalized import Formalized
 from fretc.testing.assembly import suite
 from fretc.testing.exports.files import INDEX, Form, files
+from fretc.testing.exports.pytest_file import Language
 from fretc.testing.generation import batch
 from fretc.testing.suite import Polarity, Suite
 from monitors.loading import executed, load
 from tests.each import each
+from tests.effort import some
 from tests.requirement_sets import rules
 
 SENTENCES = (
@@ -29,15 +34,25 @@ SENTENCES = (
 )
 
 
+SHORT = (
+    "upon level > 5 the sw shall within 3 ticks satisfy speed < 0.5 | x",
+    "the sw shall satisfy true",
+)
+"""Numbers, and no input."""
+
+
+@cache
 def made(*sentences: str) -> tuple[Suite, tuple[Formalized, ...]]:
     """A suite, each requirement by itself."""
     every = rules(*sentences)
     return suite(every, (), [batch(each, (), 60) for each in every]), every
 
 
-def written(folder: Path, form: Form, *sentences: str) -> tuple[Suite, tuple[Formalized, ...]]:
+def written(
+    folder: Path, form: Form, *sentences: str, languages: Sequence[Language] = (Language.PYTHON,)
+) -> tuple[Suite, tuple[Formalized, ...]]:
     found, every = made(*sentences)
-    artifacts, _ = files(found, every, form)
+    artifacts, _ = files(found, every, form, languages)
     for artifact in artifacts:
         (folder / artifact.path).write_text(artifact.text)
     return found, every
@@ -132,6 +147,58 @@ def test_a_wrong_monitor_fails(tmp_path: Path) -> None:
     for text in wrong:
         path.write_text(text)
         assert functions(tmp_path, "test_r1.py"), set(text.splitlines()) - {*right.splitlines()}
+
+
+ALL = (*Language,)
+needs_both = pytest.mark.skipif(
+    not (shutil.which("cc") and shutil.which("node")), reason="needs cc and Node"
+)
+
+
+@needs_both
+@pytest.mark.slow
+def test_one_file_steps_monitors_in_three_languages(tmp_path: Path) -> None:
+    """Two of them in one process, each with a library of its own."""
+    found, _ = written(tmp_path, Form.PYTEST, *SENTENCES[:3], *SHORT, languages=ALL)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)]
+    ran = subprocess.run(command, cwd="/", capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stdout
+    assert f"{len(found.tests)} passed" in ran.stdout
+
+
+WRONG = (
+    ("r1_monitor.c", r"rail->oldest_1 >= 3", "rail->oldest_1 >= 2", "in C"),
+    ("r1_monitor.c", r"= FRETC_UNKNOWN;", "= FRETC_TRUE;", "in C"),
+    ("r1_monitor.c", r"= FRETC_VIOLATED;", "= 7;", "IndexError"),
+    ("r1_monitor.c", r"\Z", "\n#error\n", "CalledProcessError"),
+    ("r1_monitor.mjs", r">= 3\b", ">= 2", "in JavaScript"),
+    ("r1_monitor.mjs", r"atEnd:", "other:", "in JavaScript"),
+    ("r1_monitor.mjs", r"\Z", "\nthrow 1;\n", "Node has ended"),
+    ("r1_monitor.py", r">= 3\b", ">= 2", "in Python"),
+)
+
+
+@needs_both
+@pytest.mark.slow
+@each("wrong", some(WRONG, 3))
+def test_a_wrong_monitor_fails_in_its_language(
+    wrong: tuple[str, str, str, str], tmp_path: Path
+) -> None:
+    """Whoever of the three it is, and where it cannot be run."""
+    name, old, new, reason = wrong
+    written(tmp_path, Form.PYTEST, SENTENCES[0], languages=ALL)
+    path = tmp_path / name
+    right = path.read_text()
+    assert re.search(old, right), old
+    path.write_text(re.sub(old, new, right))
+    ran = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.returncode == 1
+    assert reason in ran.stdout
 
 
 @each("sentence", SENTENCES[:3])

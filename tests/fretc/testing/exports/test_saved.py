@@ -59,6 +59,18 @@ FAULTS: dict[str, tuple[str, Callable[[Any], object]]] = {
         "cannot be True",
         lambda t: t["rows"][0]["values"].update(battery=True, near="x"),
     ),
+    "a truth that its numbers do not have": (
+        "expects what the monitor does not say|lacks",
+        lambda t: [
+            row["values"].update({"(battery < 20)": None, "near": None}) for row in t["rows"]
+        ],
+    ),
+    "no truth beside its numbers": (
+        r"lacks values of `(near|\(battery < 20\))`",
+        lambda t: [
+            row["values"].pop(name, 0) for row in t["rows"] for name in ("(battery < 20)", "near")
+        ],
+    ),
     "another verdict": (
         "expects what the monitor does not say",
         lambda t: t.update(verdict="no data"),

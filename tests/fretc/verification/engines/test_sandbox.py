@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.verification.engines.sandbox import DEFAULT, Limits, Stopped, confined
+from fretc.verification.engines.sandbox import DEFAULT, Limits, Session, Stopped, confined
 
 
 def twice(number: int) -> int:
@@ -79,6 +79,28 @@ def test_memory_is_limited() -> None:
 def test_a_crash_is_told() -> None:
     answer = confined(DEFAULT, die)
     assert answer == Stopped("the process crashed (signal 11); it may have had too little memory")
+
+
+def work(seconds: float) -> int:
+    """Of a processor."""
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+    return os.getpid()
+
+
+@pytest.mark.slow
+def test_calls_of_a_session_share_a_process_and_each_has_its_limits() -> None:
+    with Session(Limits(seconds=1)) as session:
+        first, second, third = (session.call(work, 0.6) for _ in range(3))
+        assert first == second == third
+        assert session.call(spin) == Stopped("out of time: more than 1 s of a processor")
+        assert session.call(twice, 21) == 42
+        assert isinstance(session.call(die), Stopped)
+        with pytest.raises(ValueError, match="no"):
+            session.call(fail)
+        assert session.call(twice, 4) == 8
+    assert multiprocessing.active_children() == []
 
 
 def test_the_program_itself_is_not_executed_once_more(tmp_path: Path) -> None:

@@ -13,7 +13,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 // Names are those of the requirements, and conditions those of their formulas: simpler ones might say less.
-#![allow(non_snake_case, clippy::nonminimal_bool, clippy::overly_complex_bool_expr, clippy::if_same_then_else)]
+#![allow(non_snake_case, clippy::assign_op_pattern, clippy::nonminimal_bool, clippy::overly_complex_bool_expr, clippy::if_same_then_else)]
 
 /// What is known of a truth value; `None`: it is unknown.
 pub type Truth = Option<bool>;
@@ -53,6 +53,8 @@ pub struct Outcome {
     pub verdict: Verdict,
     /// FRET's verdict on the finite run up to here.
     pub finite: Truth,
+    /// A demand begins at this tick or is open after it: stop, unless it is `Some(false)`.
+    pub owed: Truth,
     pub certain: Reading,
     pub possible: Reading,
 }
@@ -73,7 +75,14 @@ impl Outcome {
         } else {
             Some(true)
         };
-        Outcome { verdict, finite, certain, possible }
+        let owed = if certain.trigger || certain.open {
+            Some(true)
+        } else if possible.trigger || possible.open {
+            None
+        } else {
+            Some(false)
+        };
+        Outcome { verdict, finite, owed, certain, possible }
     }
 }
 
@@ -112,9 +121,10 @@ impl Rail {
         }
     }
 
+    #[inline(always)]
     fn advance(&mut self, now: &Literals) -> [Reading; 1] {
         // !stopped S (too_close & !stopped)
-        self.since_1 = (now.is_too_close && now.not_stopped) || (now.not_stopped && self.since_1);
+        self.since_1 = (now.is_too_close & now.not_stopped) | (now.not_stopped & self.since_1);
         [
             // R1
             Reading {

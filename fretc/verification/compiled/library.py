@@ -1,89 +1,123 @@
-"""A compiled monitor as a machine whose state can be saved, restored and stepped.
+"""A monitor in a shared library as a machine whose state can be saved, restored and stepped.
 
-Its state is the bytes of the cells that the requirement depends on. The form of the text
-(`c_form`) grants that a step reaches no other memory. Memory is not zero before `init` and `step`:
-what they leave out is seen.
+Its state is the bytes of the cells that the requirement depends on. The form of the text grants
+that a step reaches no other memory. Memory is not zero before the first state and each step: what
+they leave out is seen.
 """
 
 from __future__ import annotations
 
 import ctypes
+import hashlib
 import struct
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from compiler.formalization.letters import Valuation
-from fretc.verification.compiled.readings import Reading, judged
+from fretc.verification.compiled.plan import Plan
+from fretc.verification.compiled.readings import VERDICTS, Reading, judged
+from fretc.verification.compiled.tools import Binary, ToolError
 from fretc.verification.monitor.equivalence import Judgement
 from fretc.verification.monitor.rails import Letter
 from monitors.kernel.verdicts import Truth
 
-_OUTCOME = struct.Struct("@i7Bxi7BxIB3x")
-_VERDICTS = ("pending", "satisfied", "violated")
+_OUTCOME = struct.Struct("@i7Bxi7BxIBB2x")
 _TRUTHS: tuple[Truth, ...] = (False, True, None)
 _CODES = {False: 0, True: 1, None: 2}
 _GARBAGE = 0xA5
-_HEAD = 5
+_HEAD = 6
 """Numbers in the layout before those of cells."""
 
 
-class LayoutError(Exception):
-    """The structs of the library are not laid out as we read them; the message says which."""
-
-
 @dataclass(frozen=True, slots=True)
-class Plan:
-    """Where the requirement is in a library; it can be sent to another process."""
+class LibraryFile:
+    """A library that the loader takes."""
 
+    path: Path
     base: str
-    """What the names of the functions begin with."""
+    """What the names of its functions begin with."""
     cells: tuple[str, ...]
     """All of a rail, in the order of the layout."""
-    needed: frozenset[str]
-    """Those that the requirement depends on."""
-    outcome: int
-    """The place of the requirement among the outcomes."""
-    inputs: tuple[int, ...]
-    """For each value of a letter, the place of its input; -1: there is none."""
-    width: int
-    """How many inputs there are."""
+
+    @contextmanager
+    def running(self, plan: Plan) -> Iterator[Library]:
+        """The library as one requirement.
+
+        A process must load no library from a file that had another one: the loader knows a file by
+        its inode.
+
+        Raises:
+            ToolError: it cannot be loaded, or its structs are not as we read them.
+        """
+        try:
+            yield Library(self, plan)
+        except OSError as error:
+            raise ToolError(f"the library cannot be used: {error}") from None
+
+
+def saved(
+    binary: Binary, folder: Path, base: str, cells: tuple[str, ...]
+) -> tuple[LibraryFile, str]:
+    """The library in a folder of its own, and its SHA-256."""
+    path = folder / "monitor.so"
+    path.write_bytes(binary.data)
+    return LibraryFile(path, base, cells), hashlib.sha256(binary.data).hexdigest()
 
 
 class Library:
     """The compiled text, with memory of its own for one state."""
 
-    def __init__(self, path: Path, plan: Plan) -> None:
+    def __init__(self, file: LibraryFile, plan: Plan) -> None:
         """Before the first tick.
-
-        A process must load no two of them: the loader knows a file by its inode, which the next
-        file may get.
 
         Raises:
             OSError: the library cannot be loaded.
-            LayoutError: its structs are not as we read them.
+            ToolError: its structs are not as we read them.
         """
-        library: Any = ctypes.CDLL(str(path))
-        count = _HEAD + 2 * len(plan.cells)
+        library: Any = ctypes.CDLL(str(file.path))
+        count = _HEAD + 2 * len(file.cells)
         numbers = [*(ctypes.c_size_t * count).in_dll(library, "fretc_layout")]
-        size, possible, inputs, outcomes, outcome = numbers[:_HEAD]
+        size, certain, possible, inputs, outcomes, outcome = numbers[:_HEAD]
         if outcome != _OUTCOME.size or inputs != max(plan.width, 1):
-            raise LayoutError("this compiler lays out structs in another way")
-        places = dict(zip(plan.cells, zip(numbers[5::2], numbers[6::2], strict=True), strict=True))
-        self._cells = _joined([places[name] for name in plan.cells if name in plan.needed])
-        self._rails = (0, possible)
+            raise ToolError("this compiler lays out structs in another way")
+        places = dict(
+            zip(
+                file.cells,
+                zip(numbers[_HEAD::2], numbers[_HEAD + 1 :: 2], strict=True),
+                strict=True,
+            )
+        )
+        self._cells = _joined([places[name] for name in file.cells if name in plan.needed])
+        self._rails = (certain, possible)
         self._inputs = (ctypes.c_uint8 * inputs)()
         self._outcomes = (ctypes.c_uint8 * outcomes)()
         self._state = (ctypes.c_uint8 * size)()
         ctypes.memset(self._state, _GARBAGE, size)
         self._order = [(i, place) for i, place in enumerate(plan.inputs) if place >= 0]
         self._at = plan.outcome * outcome
-        self._step = getattr(library, f"{plan.base}_step")
+        self._step = getattr(library, f"{file.base}_step")
         self._step.restype = None
         self._arguments = tuple(map(ctypes.byref, (self._state, self._inputs, self._outcomes)))
-        getattr(library, f"{plan.base}_init")(ctypes.byref(self._state))
+        getattr(library, f"{file.base}_init")(ctypes.byref(self._state))
         self._library = library
+        self._starts = self.save(0), self.save(1)
+
+    def judging(self) -> Judging:
+        """Both rails, before the first tick."""
+        self._restart()
+        return Judging(self)
+
+    def rail(self, letters: Sequence[Letter], *, doubt: bool) -> CompiledRail:
+        """One of them, before the first tick."""
+        self._restart()
+        return CompiledRail(self, doubt=doubt)
+
+    def _restart(self) -> None:
+        for rail, start in enumerate(self._starts):
+            self.load(rail, start)
 
     def save(self, rail: int) -> bytes:
         """The cells of a rail: 0 the certain one, 1 the possible one."""
@@ -97,7 +131,7 @@ class Library:
             ctypes.memmove(start + at, saved[done : done + size], size)
             done += size
 
-    def step(self, letter: Sequence[Truth]) -> tuple[Reading, Reading, tuple[object, Truth | str]]:
+    def step(self, letter: Sequence[Truth]) -> tuple[Reading, Reading, tuple[object, ...]]:
         """Both readings after a tick, and what is judged from them.
 
         An input that no value of the letter is for is false.
@@ -107,10 +141,10 @@ class Library:
         ctypes.memset(self._outcomes, _GARBAGE, len(self._outcomes))
         self._step(*self._arguments)
         values = _OUTCOME.unpack_from(self._outcomes, self._at)
-        verdict, finite = values[16:]
+        verdict, *truths = values[16:]
         told = (
-            _VERDICTS[verdict] if verdict < len(_VERDICTS) else f"verdict {verdict}",
-            _TRUTHS[finite] if finite < len(_TRUTHS) else f"truth value {finite}",
+            VERDICTS[verdict] if verdict < len(VERDICTS) else f"verdict {verdict}",
+            *(_TRUTHS[each] if each < len(_TRUTHS) else f"truth value {each}" for each in truths),
         )
         return Reading(*values[:8]), Reading(*values[8:16]), told
 
@@ -144,7 +178,7 @@ class Judging:
 
     def step(self, letter: Valuation) -> Judgement:
         """The verdict that it tells, and FRET's finite one."""
-        _, _, (verdict, finite) = self._library.step(letter)
+        _, _, (verdict, finite, _) = self._library.step(letter)
         return str(verdict), finite is True
 
 

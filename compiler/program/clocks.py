@@ -1,0 +1,95 @@
+"""Counters of a program that are as old as an open demand, so that none of its own is needed.
+
+A demand is open while a counter of the oldest witness is not negative. Where a witness never comes
+without the guard, the counter starts when the demand opens, and is not set back while it is open.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import assert_never
+
+from compiler.program.instructions import Advance, Assign, Choose, Count, Instruction
+from compiler.program.program import Block, Counter, Program, Requirement
+from compiler.program.values import Age, And, Comparison, Value, Variable
+
+
+def clocks(program: Program) -> Mapping[str, str]:
+    """The counter of the open demand of requirements, by their ids; some have none."""
+    blocks = {block.name: block for block in program.blocks}
+    found = ((each.id, _clock(each, blocks)) for each in program.requirements)
+    return {id: counter for id, counter in found if counter is not None}
+
+
+def lengthened(program: Program, clocks: Mapping[str, str]) -> Program:
+    """The program whose counters tell a deadline's tick from later ones.
+
+    Args:
+        program: whose comparisons all hold of a counter's largest value as of any above it.
+        clocks: the counter of requirements, by their ids.
+    """
+    most: dict[str, int] = {}
+    for each in program.requirements:
+        if each.id in clocks and each.horizon is not None:
+            counter = clocks[each.id]
+            most[counter] = max(most.get(counter, 0), each.horizon + 1)
+    cells = tuple(
+        replace(cell, most=max(cell.most, most[cell.name]))
+        if isinstance(cell, Counter) and cell.name in most
+        else cell
+        for cell in program.cells
+    )
+    blocks = tuple(
+        _longer(each, most[each.name]) if each.name in most else each for each in program.blocks
+    )
+    return replace(program, cells=cells, blocks=blocks)
+
+
+def _clock(requirement: Requirement, blocks: Mapping[str, Block]) -> str | None:
+    owed = requirement.signals.owed
+    if requirement.horizon is None or requirement.renewed or not isinstance(owed, Variable):
+        return None
+    match blocks[owed.name].instructions:
+        case (Assign(_, Age(counter, Comparison.AT_LEAST, 0)),) if _starts_once(blocks[counter]):
+            return counter
+        case _:
+            return None
+
+
+def _starts_once(block: Block) -> bool:
+    """Whether the counter grows until it is -1, and then starts from 0."""
+    there = Age(block.name, Comparison.AT_LEAST, 0)
+    match block.instructions:
+        case (Choose(((kept, Advance()), (witness, Count(_, 0))), Count(_, -1)),):
+            return _conjuncts(kept) <= _conjuncts(witness) | {there}
+        case _:
+            return False
+
+
+def _conjuncts(value: Value) -> frozenset[Value]:
+    if isinstance(value, And):
+        return frozenset().union(*map(_conjuncts, value.values))
+    return frozenset((value,))
+
+
+def _longer(block: Block, most: int) -> Block:
+    """The block whose counter grows to `most`, or further if it did."""
+    made = list[Instruction]()
+    for instruction in block.instructions:
+        assert isinstance(instruction, Choose)
+        branches = tuple(
+            (condition, _grown(then, most)) for condition, then in instruction.branches
+        )
+        made.append(Choose(branches, _grown(instruction.otherwise, most)))
+    return replace(block, instructions=tuple(made))
+
+
+def _grown(instruction: Count | Advance, most: int) -> Count | Advance:
+    match instruction:
+        case Advance(counter, before):
+            return Advance(counter, max(before, most))
+        case Count():
+            return instruction
+        case _:
+            assert_never(instruction)

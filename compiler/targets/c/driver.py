@@ -1,0 +1,81 @@
+"""C that steps a monitor for ever with any inputs, and says what then holds, in ACSL.
+
+ACSL is the language of annotations that Frama-C reads. The widest ranges of cells are those of the
+program, so an analyzer has to find no invariant: it has to confirm these.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.program.program import Counter
+from compiler.program.rails import Reading, Ring
+from compiler.targets.c.monitor import printed
+from compiler.targets.c.printer import Printer
+
+ENTRY = "fretc_driver"
+"""The function that never returns."""
+
+
+@dataclass(frozen=True, slots=True)
+class Driver:
+    """The text, and what an analyzer has to know of the monitor."""
+
+    text: str
+    words: int
+    """Of the longest ring: so often its first values are set in a loop."""
+
+    @property
+    def assertions(self) -> tuple[int, ...]:
+        """The lines that have one."""
+        lines = enumerate(self.text.splitlines(), 1)
+        return tuple(number for number, line in lines if "/*@ assert " in line)
+
+
+@dataclass(frozen=True, slots=True)
+class _Range:
+    """Of a cell that is a number."""
+
+    name: str
+    least: int
+    most: int
+
+
+def driver(name: str, base: str, rules: Sequence[Formalized]) -> Driver:
+    """The driver of a monitor.
+
+    Args:
+        name: of its header, without the ending.
+        base: what the names of its functions begin with.
+        rules: in the order of its outcomes.
+    """
+    printer = printed(name, rules)
+    made, ranges = printer.rail, [*_ranges(printer)]
+    ends = {-1, 0, 1, *(end for cell in ranges for end in (cell.least, cell.most))}
+    text = render(
+        "c/driver.c.j2",
+        header=f"{name}.h",
+        base=base,
+        inputs=[*printer.names.values()],
+        ranges=ranges,
+        ends=sorted(ends),
+        readings=[_told(each) for each in made.readings],
+    )
+    words = (-(-cell.length // 32) for cell in made.cells if isinstance(cell, Ring))
+    return Driver(text, max(words, default=0))
+
+
+def _ranges(printer: Printer) -> Iterator[_Range]:
+    for cell in printer.rail.cells:
+        if isinstance(cell, Counter):
+            yield _Range(cell.name, cell.least, cell.most)
+        elif isinstance(cell, Ring):
+            yield _Range(f"{cell.name}_at", 0, cell.length - 1)
+
+
+def _told(reading: Reading) -> dict[str, object]:
+    horizon = -1 if reading.deadline is None else reading.deadline.horizon
+    return {"prefix": reading.prefix, "horizon": horizon, "truths": [*reading.truths]}

@@ -1,0 +1,62 @@
+"""The text of a monitor in C, Rust or JavaScript that proofs are about, made again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from compiler.emit import TARGETS
+from compiler.files.text_files import sha256
+from compiler.formalization.formalized import Formalized
+from compiler.logic.claims import Layer, Proof
+from compiler.targets.target import Options
+from fretc.verification.layers.languages import Row, language_of
+from fretish.diagnostics.source import Source
+
+
+class Remade(NamedTuple):
+    """A monitor with its header, if it has one."""
+
+    monitor: Source | None
+    header: Source | None
+
+
+def remade(records: Sequence[Proof], rules: Sequence[Formalized]) -> Remade:
+    """What fretc writes now for some of the rules, letter for letter what the proofs are about.
+
+    None where that is no such text, where there are several, and where its tool is not installed.
+    """
+    hashes = {name: value for each in records for name, value in _texts(each).items()}
+    of_monitor = [record for record in records if record.layer is Layer.MONITOR]
+    found = {name: row for name in hashes if (row := language_of(name))}
+    if len(found) != 1 or len(of_monitor) != len(records):
+        return Remade(None, None)
+    ((name, language),) = found.items()
+    for files in _written(language, records, rules) if language.module.tool() else ():
+        if all(sha256(files.get(each, "")) == value for each, value in hashes.items()):
+            headers = [Source(each, files[each]) for each in hashes if each != name]
+            return Remade(Source(name, files[name]), next(iter(headers), None))
+    return Remade(None, None)
+
+
+def other_build(before: Proof, now: Proof) -> str:
+    """Why proofs of one text cannot be compared: other tools made something else of it."""
+    is_other = before.assumptions != now.assumptions and _texts(before) == _texts(now)
+    if not is_other or not any(map(language_of, before.artefacts)):
+        return ""
+    return f"it says that {'; '.join(before.assumptions)}"
+
+
+def _texts(record: Proof) -> Mapping[str, str]:
+    """Its artefacts, without what a compiler has made."""
+    return {name: value for name, value in record.artefacts.items() if not name.endswith(".so")}
+
+
+def _written(
+    language: Row, records: Sequence[Proof], rules: Sequence[Formalized]
+) -> Iterator[Mapping[str, str]]:
+    """The files of a monitor of all rules, of those that the proofs are of, and of each."""
+    target, ids = TARGETS[language.emit], {record.requirement for record in records}
+    named = [rule for rule in rules if rule.id in ids]
+    for group, one_file in ((rules, True), (named, True), *(([rule], False) for rule in named)):
+        yield {each.path.name: each.text for each in target.emit(group, Options(one_file=one_file))}

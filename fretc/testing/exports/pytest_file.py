@@ -1,0 +1,94 @@
+"""Tests of one requirement as a file for pytest, and the monitors beside it that they step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import PurePosixPath
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.targets.c import monitor as c
+from compiler.targets.javascript import monitor as javascript
+from compiler.targets.python import monitor as python
+from compiler.targets.target import Target
+from fretc.testing.exports.tables import Table, table, truths
+from fretc.testing.suite import Test
+from monitors.kernel.verdicts import Verdict
+
+
+class Language(StrEnum):
+    """Of a monitor; the values are the words of `--language`."""
+
+    PYTHON = "python"
+    C = "c"
+    JAVASCRIPT = "js"
+
+
+TARGETS = {
+    Language.PYTHON: python.TARGET,
+    Language.C: c.TARGET,
+    Language.JAVASCRIPT: javascript.TARGET,
+}
+_IMPORTS = {
+    Language.PYTHON: ("importlib.util", "sys"),
+    Language.C: ("ctypes", "functools", "os", "shlex", "subprocess", "tempfile"),
+    Language.JAVASCRIPT: ("atexit", "functools", "json", "subprocess"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Case:
+    """What the template places of a test."""
+
+    own: Test
+    function: str
+    table: Table
+    truths: Table | None
+    """Of propositions, where the other table has numbers, and the monitor in C is tested."""
+
+
+def targets(languages: Sequence[Language]) -> list[Target]:
+    """What makes the monitors."""
+    return [TARGETS[language] for language in languages]
+
+
+def pytest_file(
+    rule: Formalized, sentence: str, tests: Sequence[Test], languages: Sequence[Language]
+) -> Artifact:
+    """`test_<id>.py`.
+
+    Args:
+        rule: one that no target of the languages refuses.
+        sentence: its own.
+        tests: of the rule.
+        languages: those of the monitors; each once.
+    """
+    (names,) = c.interface([rule]) if Language.C in languages else (None,)
+    monitors = [each.emit([rule])[0].path for each in targets(languages)]
+    stem = monitors[0].stem
+    text = render(
+        "tests/test_monitor.py.j2",
+        id=rule.id,
+        sentence=sentence,
+        monitors=[path.name for path in monitors],
+        stem=stem,
+        languages=languages,
+        imports=sorted({name for each in languages for name in _IMPORTS[each]}),
+        c=names,
+        tests=[_case(rule, test, languages) for test in tests],
+        violated=Verdict.VIOLATED,
+        pending=Verdict.PENDING,
+        satisfied=Verdict.SATISFIED,
+        version=__version__,
+    )
+    return Artifact(PurePosixPath(f"test_{stem.removesuffix('_monitor')}.py"), text)
+
+
+def _case(rule: Formalized, test: Test, languages: Sequence[Language]) -> _Case:
+    own = table(rule, test)
+    more = truths(rule, test) if Language.C in languages and own.names != rule.watched else None
+    return _Case(test, f"test_{test.name.replace('-', '_')}", own, more)

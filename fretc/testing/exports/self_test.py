@@ -1,0 +1,79 @@
+"""Tests as one file of C, for targets on which nothing else runs than what a C compiler makes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import Any
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.targets.c.monitor import Interface, interface
+from fretc.testing.exports.tables import Cell, truths
+from fretc.testing.suite import Test
+from monitors.kernel.verdicts import Verdict
+
+NAME = PurePosixPath("fretc_self_test.c")
+_CODES: Mapping[Cell, int] = {False: 0, True: 1, None: 2}
+"""Of truths, as headers of monitors have them."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Requirement:
+    """What the template places of a requirement."""
+
+    id: str
+    sentence: str
+    names: Interface
+    before: int
+    """How many tests are those of requirements before it."""
+    tests: tuple[Mapping[str, Any], ...]
+
+
+def self_test(rules: Sequence[Formalized], tests: Sequence[Test]) -> Artifact:
+    """The tests of monitors in C, which stand beside the file.
+
+    Args:
+        rules: each with a test at least.
+        tests: of them; they are numbered requirement by requirement, from 1 on.
+    """
+    requirements = [*_requirements(rules, tests)]
+    text = render("tests/self_test.c.j2", requirements=requirements, version=__version__)
+    return Artifact(NAME, text)
+
+
+def _requirements(rules: Sequence[Formalized], tests: Sequence[Test]) -> Iterator[_Requirement]:
+    before = 0
+    for rule, names in zip(rules, interface(rules), strict=True):
+        own = [test for test in tests if test.requirement == rule.id]
+        numbered = tuple(_test(rule, test, number) for number, test in enumerate(own, before + 1))
+        yield _Requirement(rule.id, rule.requirement.wording.text, names, before, numbered)
+        before += len(own)
+
+
+def _test(rule: Formalized, test: Test, number: int) -> dict[str, Any]:
+    rows = truths(rule, test).rows
+    return {
+        "number": number,
+        "name": test.name,
+        "words": test.words,
+        "rows": [(count, [_CODES[value] for value in values] or [0]) for count, values in rows],
+        "decided": _tick(test.decided),
+        "violated": _tick(test.first_violation),
+        "verdict": _verdict(test),
+        "finite": _CODES[test.finite],
+    }
+
+
+def _verdict(test: Test) -> str:
+    """From the tick on at which it is decided."""
+    if test.decided is None:
+        return "FRETC_PENDING"
+    return "FRETC_VIOLATED" if test.verdict is Verdict.VIOLATED else "FRETC_SATISFIED"
+
+
+def _tick(tick: int | None) -> str:
+    return "FRETC_NEVER" if tick is None else f"{tick}u"

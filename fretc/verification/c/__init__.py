@@ -1,0 +1,1 @@
+"""Monitors in C: the form of their text, and the library that a compiler makes of it."""

@@ -1,0 +1,71 @@
+"""A monitor in C and its driver, for an analyzer of C: nothing of it is compiled or run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import PurePath
+
+from compiler.files.text_files import sha256
+from compiler.formalization.formalized import Formalized
+from compiler.logic.claims import not_checked
+from compiler.targets.c.driver import ENTRY, driver
+from fretc.verification.c.form import without_comments
+from fretc.verification.c.language import base, checked
+from fretc.verification.compiled.plan import Checked, Given
+from fretc.verification.compiled.text import StrangeTextError
+from fretc.verification.compiled.verifying import Examined
+from fretc.verification.engines import frama_c
+from fretc.verification.engines.sandbox import Limits
+
+
+def analysed(
+    rules: Sequence[Formalized],
+    given: Given,
+    program: str,
+    limits: Limits,
+    others: Sequence[Formalized] = (),
+) -> Iterator[Examined]:
+    """What Frama-C says of a monitor, for each of its rules: it is one answer.
+
+    Args:
+        rules: those that are asked about; the target accepts them.
+        given: a monitor of them, maybe with others.
+        program: the path of Frama-C.
+        limits: of the analysis.
+        others: further rules that the texts may implement.
+
+    Raises:
+        NotAMonitorError: the texts name no requirement.
+    """
+    artefacts = {name: sha256(text) for name, text in given.texts.items()}
+    try:
+        found = checked(given, (*rules, *others))
+        run = prepared(given, found)
+    except StrangeTextError as error:
+        for rule in rules:
+            yield Examined(rule, not_checked(str(error)), frama_c.NAME, artefacts)
+        return
+    outcome, engine = frama_c.answer(program, run, limits)
+    artefacts[f"{PurePath(given.name).stem}_driver.c"] = sha256(run.driver)
+    own = {rule.id for rule in found.rules}
+    absent = not_checked("the monitor is of other requirements")
+    for rule in rules:
+        yield Examined(rule, outcome if rule.id in own else absent, engine, artefacts)
+
+
+def prepared(given: Given, found: Checked) -> frama_c.Run:
+    """The texts that are analysed. What stands in comments, as annotations do, is left out.
+
+    Args:
+        given: the texts.
+        found: what is known of their form.
+    """
+    made = driver(PurePath(given.header_name).stem, base(given), found.rules)
+    return frama_c.Run(
+        without_comments(given.text),
+        (given.header_name, without_comments(given.header)),
+        made.text,
+        ENTRY,
+        made.assertions,
+        made.words + 1,
+    )

@@ -1,0 +1,182 @@
+"""Whether a monitor in C has the form that fretc writes, read off its text before anything runs.
+
+The header, the types and the functions that lead to the step are token for token those of fretc.
+What the step and the first state do may be changed, within statements that give one cell, signal
+or local truth value to an expression of such. They have no call, no loop, no pointer and no address
+of their own, so they reach no memory but that of the one rail, and a step depends on nothing else.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+
+from fretc.verification.compiled.flow import Flow, Form, Grammar
+from fretc.verification.compiled.text import (
+    NAME,
+    Lexis,
+    Tokens,
+    is_constant,
+    same,
+    split,
+    strange,
+)
+
+LEXIS = Lexis(
+    re.compile(
+        r"(?!<:|:>|<%|%>|%:)"  # other spellings of brackets, braces and `#`
+        r"(?:(?P<gap>[ \t\r\n]+|/\*.*?\*/)"
+        r"|#[^\n]*|[A-Za-z_]\w*|\d\w*|\"C\"|->|\+\+|&&|\|\||<<|[<>=!]=|[-+*/%<>=!&|~?:;,.(){}\[\]])",
+        re.DOTALL | re.ASCII,
+    ),
+    re.compile(r"\\\s*\n|\?\?/|\r(?!\n)"),
+)
+"""A directive ends with its line, so it is one token."""
+_SIGNS = frozenset("! & | && || < <= > >= == != + - ? : ( ) true false".split())
+_KEPT = frozenset(
+    """
+    rail now outcomes possible reading
+    const bool uint32_t UINT32_C true false fretc_reading
+    """.split()
+)
+"""Parameters, which stand before `->` only; and words of C."""
+_POINTED = frozenset("* [ <<".split())
+"""Only what fretc writes for rings, and where it declares `reading`, has these."""
+
+
+def formed(text: str, written: str, base: str, cells: Sequence[str], inputs: Sequence[str]) -> Form:
+    """The form of a text of a C file.
+
+    Args:
+        text: it.
+        written: what fretc writes for the same requirements.
+        base: what the names of its functions begin with.
+        cells: the members of the struct of a rail.
+        inputs: those of the struct of inputs.
+
+    Raises:
+        StrangeTextError: it has another form.
+    """
+    given, own = LEXIS.tokens(text), LEXIS.tokens(written)
+    free = ((f"{base}_clear",), (f"{base}_advance",))
+    outside, (cleared, stepped) = split(given, free)
+    own_outside, own_bodies = split(own, free)
+    same(outside, own_outside)
+    known = frozenset(each for body in own_bodies for each in _statements(body))
+    for statement in _statements(cleared):
+        if statement not in known and not _is_first_value(statement):
+            raise strange(statement)
+    read = re.findall(r"now \. (\w+) = inputs -> (\w+) ==", " ".join(own))
+    literals = {literal: inputs.index(name) for literal, name in read}
+    step = _Step(known, cells, literals)
+    for statement in _statements(stepped):
+        step.read(statement)
+    return Form(step.sources, literals)
+
+
+def without_comments(text: str) -> str:
+    """A text in this form, with blanks for comments: each statement keeps its line."""
+    return re.sub(r"/\*.*?\*/", lambda comment: re.sub(r".", " ", comment[0]), text, flags=re.S)
+
+
+def _statements(body: Tokens) -> Iterator[Tokens]:
+    """Up to each semicolon and brace; an `else` stands with the brace that it comes after."""
+    start, depth = 0, 0
+    for place, token in enumerate(body):
+        depth += {"(": 1, ")": -1}.get(token, 0)
+        after = body[place + 1] if place + 1 < len(body) else ""
+        if (token in (";", "{") and depth == 0) or (token == "}" and after != "else"):
+            yield body[start : place + 1]
+            start = place + 1
+    if start < len(body):
+        raise strange(body[start:])
+
+
+def _is_first_value(statement: Tokens) -> bool:
+    """Whether it gives a constant to a cell."""
+    match statement:
+        case ("rail", "->", name, "=", *value, ";"):
+            return bool(NAME.fullmatch(name)) and is_constant(value)
+        case _:
+            return False
+
+
+class _Step(Flow):
+    """The body of a step, read statement by statement."""
+
+    def __init__(
+        self, known: frozenset[Tokens], cells: Sequence[str], literals: Mapping[str, int]
+    ) -> None:
+        """Nothing is read yet.
+
+        Args:
+            known: the statements that fretc writes.
+            cells: all of a rail.
+            literals: all of them.
+        """
+        self._known = known
+        self._rings = {a for each in known for a, b in pairwise(each) if b == "["}
+        fixed = {*self._rings, *(f"{ring}_at" for ring in self._rings)}
+        members = {("rail", "->"): {*cells} - fixed, ("now", "->"): literals}
+        super().__init__(Grammar(members, _SIGNS, _KEPT))
+        self._outcome = ""
+
+    def read(self, statement: Tokens) -> None:
+        """One more statement.
+
+        Raises:
+            StrangeTextError: it is of no form that is known to be harmless.
+        """
+        if not (self._branch(statement) or self._assignment(statement) or self._fixed(statement)):
+            raise strange(statement)
+
+    def _branch(self, statement: Tokens) -> bool:
+        match statement:
+            case ("if", "(", *test, ")", "{"):
+                self.conditions.append(self.names(test, statement))
+            case ("}", "else", "if", "(", *test, ")", "{") if self.conditions:
+                self.conditions[-1] |= self.names(test, statement)
+            case ("}", "else", "{") if self.conditions:
+                pass
+            case ("}",) if self.conditions:
+                self.conditions.pop()
+            case _:
+                return False
+        return True
+
+    def _assignment(self, statement: Tokens) -> bool:
+        if statement in self._known and not _POINTED.isdisjoint(statement):
+            return False
+        match statement:
+            case ("reading", "->", name, "=", *value, ";") if self._outcome and _is_free(name):
+                self.change([self._outcome], self.names(value, statement))
+                return True
+            case ("rail", _, _, "=", *value, ";"):
+                return self.give(statement[:3], value, statement)
+            case ("const", "bool", name, "=", *value, ";"):
+                return self.declare(name, value, statement)
+            case _:
+                return False
+
+    def _fixed(self, statement: Tokens) -> bool:
+        """What is as fretc writes it: the outcome that is told next, and rings."""
+        if statement not in self._known:
+            return False
+        match statement:
+            case ("reading", "=", "possible", "?", "&", "outcomes", "->", member, *_):
+                self._outcome = f"&{member}"
+                return not self.conditions
+            case ("(", "void", ")", _, ";"):
+                return True
+            case _:
+                names = frozenset(filter(_is_free, statement))
+                left = statement[: statement.index("=")] if "=" in statement else ()
+                # What points to a ring changes it, and is changed with it.
+                local = statement[2:3] if statement[:2] == ("const", "bool") else ()
+                self.known(names, names & {*left, *self._rings}, local)
+                return True
+
+
+def _is_free(name: str) -> bool:
+    return bool(NAME.fullmatch(name)) and name not in _KEPT

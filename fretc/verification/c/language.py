@@ -1,0 +1,76 @@
+"""Monitors in C."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from compiler.formalization.formalized import Formalized
+from compiler.targets.c.monitor import TARGET
+from compiler.targets.target import Options
+from fretc.verification.c.build import built, compiler, layout
+from fretc.verification.c.form import LEXIS, formed
+from fretc.verification.compiled.library import saved
+from fretc.verification.compiled.plan import Checked, Given, Prepared, implemented
+from fretc.verification.compiled.text import StrangeTextError, same
+
+_OUTCOMES = re.compile(r"^    fretc_outcome (\w+); /\* (.*) \*/$", re.MULTILINE)
+"""The members of that struct, and the ids beside them."""
+
+tool = compiler
+
+
+def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
+    """The texts in the form that fretc writes.
+
+    Args:
+        given: they.
+        rules: those that they may implement.
+
+    Raises:
+        StrangeTextError: they have another form.
+    """
+    own_rules = implemented([id for _, id in _OUTCOMES.findall(given.header)], rules)
+    own, own_header = _written(given, own_rules)
+    same(LEXIS.tokens(given.header), LEXIS.tokens(own_header))
+    prefix = base(given)
+    cells = _members(own_header, f"{prefix}_rail")
+    inputs = _members(own_header, f"{prefix}_inputs")
+    form = formed(given.text, own, prefix, cells, inputs)
+    outcomes = tuple(name for name, _ in _OUTCOMES.findall(own_header))
+    return Checked(own_rules, outcomes, form, cells, inputs)
+
+
+def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prepared:
+    """The library; nothing of it has run.
+
+    Raises:
+        ToolError: the compiler does not take the texts.
+    """
+    places = layout(given.header_name, base(given), checked.cells)
+    binary = built(program, given.text, (given.header_name, given.header), places)
+    library, digest = saved(binary, folder, base(given), checked.cells)
+    return Prepared(library, binary.engine, {f"{Path(given.name).stem}.so": digest})
+
+
+def base(given: Given) -> str:
+    """What the names of types and functions begin with, in texts that were checked."""
+    (found,) = re.findall(r"} (\w+)_outcomes ;", " ".join(LEXIS.tokens(given.header)))
+    return str(found)
+
+
+def _written(given: Given, rules: Sequence[Formalized]) -> tuple[str, str]:
+    """What fretc writes for these rules: in one file if the header has the name of that."""
+    for one_file in (False, True) if len(rules) == 1 else (True,):
+        files = {str(f.path): f.text for f in TARGET.emit(rules, Options(one_file=one_file))}
+        header = files.get(given.header_name)
+        if header is not None:
+            return files[given.header_name.removesuffix(".h") + ".c"], header
+    raise StrangeTextError(f"`{given.header_name}` is not the name that fretc gives the header")
+
+
+def _members(header: str, name: str) -> tuple[str, ...]:
+    """Of a struct."""
+    body = header[: header.index(f"\n}} {name};\n")].rpartition("typedef struct {")[2]
+    return tuple(re.findall(r"^    \w+ (\w+)(?:\[\d+\])?;", body, re.MULTILINE))

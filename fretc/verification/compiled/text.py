@@ -1,0 +1,196 @@
+"""Texts of programs as tokens, and where two of them differ.
+
+What is not free to change is compared token for token, so comments and layout are free.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+
+class Token(str):
+    """A token that knows its place."""
+
+    __slots__ = ("line",)
+    line: int
+
+    @classmethod
+    def at(cls, text: str, line: int) -> Token:
+        """A token of this line."""
+        token = cls(text)
+        token.line = line
+        return token
+
+
+Tokens = tuple[str, ...]
+
+NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+NUMBER = re.compile(r"(0|[1-9]\d*)u?", re.ASCII)
+_OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
+
+
+class StrangeTextError(Exception):
+    """The text is not laid out as fretc writes it; the message says where."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lexis:
+    """The tokens of a language, as far as fretc writes them."""
+
+    token: re.Pattern[str]
+    """A token, or layout and comments as the group `gap`."""
+    moving: re.Pattern[str]
+    """What moves the end of a line or of a comment: no text has it."""
+    line_bound: frozenset[str] = frozenset()
+    """Tokens after which the end of a line ends the statement, and is a token so."""
+
+    def tokens(self, text: str) -> Tokens:
+        """The text without comments and layout.
+
+        Raises:
+            StrangeTextError: there is something in it that fretc never writes.
+        """
+        moving = self.moving.search(text)
+        if moving:
+            raise StrangeTextError(
+                f"line {_line(text, moving.start())} ends elsewhere than it seems"
+            )
+        found, place, line = list[str](), 0, 1
+        while place < len(text):
+            match = self.token.match(text, place)
+            if match is None:
+                raise StrangeTextError(f"line {line} has `{text[place : place + 1]!a}`")
+            if match["gap"] is None:
+                found.append(Token.at(match[0], line))
+            elif "\n" in match[0] and found and found[-1] in self.line_bound:
+                found.append(Token.at("\n", line))
+            place = match.end()
+            line += match[0].count("\n")
+        return tuple(found)
+
+
+def _line(text: str, place: int) -> int:
+    return text.count("\n", 0, place) + 1
+
+
+def strange(statement: Sequence[str]) -> StrangeTextError:
+    """Of a statement that fretc would not write."""
+    words = " ".join(statement).replace("\n", "\\n")
+    line = next((f"line {token.line}" for token in statement if isinstance(token, Token)), "it")
+    return StrangeTextError(f"{line} is not laid out as fretc writes it: `{words[:80]}`")
+
+
+def same(given: Tokens, written: Tokens) -> None:
+    """Raises StrangeTextError, with the place, where two texts differ."""
+    if given == written:
+        return
+    pairs = zip(given, written, strict=False)
+    place = next((i for i, (a, b) in enumerate(pairs) if a != b), min(len(given), len(written)))
+    raise strange(given[max(0, place - 3) : place + 3])
+
+
+def split(text: Tokens, functions: Sequence[Tokens]) -> tuple[Tokens, list[Tokens]]:
+    """The text without the bodies of some functions; and the bodies.
+
+    Args:
+        text: the whole.
+        functions: the tokens that each begins with, in the order of the text.
+
+    Raises:
+        StrangeTextError: one is not there.
+    """
+    outside, bodies, place = list[str](), list[Tokens](), 0
+    for head in functions:
+        start = text.index("{", _place(text, head, place)) + 1
+        end = _end(text, start)
+        outside += text[place:start]
+        bodies.append(text[start : end - 1])
+        place = end - 1
+    return (*outside, *text[place:]), bodies
+
+
+def _place(text: Tokens, head: Tokens, start: int) -> int:
+    for place in range(start, len(text)):
+        if text[place : place + len(head)] == head and "{" in text[place:]:
+            return place
+    raise StrangeTextError(f"there is no `{' '.join(head)}`")
+
+
+def _end(text: Tokens, start: int) -> int:
+    """Behind the brace that closes the one before the start."""
+    end, depth = start, 1
+    while depth and end < len(text):
+        depth += {"{": 1, "}": -1}.get(text[end], 0)
+        end += 1
+    return end
+
+
+def end_of(text: Tokens, start: int, end: str) -> int:
+    """The place of the next such token that is in no brackets; else the end of the text."""
+    depth = 0
+    for place in range(start, len(text)):
+        token = text[place]
+        depth += (token in _OPENING) - (token in _CLOSING)
+        if token == end and depth == 0:
+            return place
+    return len(text)
+
+
+def parts(text: Tokens, end: str) -> Iterator[Tokens]:
+    """What stands before each of these ends that are in no brackets, and what is left at last."""
+    start = 0
+    while start < len(text):
+        place = end_of(text, start, end)
+        yield text[start:place]
+        start = place + 1
+
+
+def is_constant(value: Sequence[str]) -> bool:
+    """Whether it is a truth value or a whole number."""
+    *sign, last = value or ("",)
+    return sign in ([], ["-"]) and bool(last in ("true", "false") or NUMBER.fullmatch(last))
+
+
+def same_but_constants(given: Sequence[Tokens], own: Sequence[Tokens]) -> None:
+    """Raises StrangeTextError where fields differ in more than their constants.
+
+    Args:
+        given: fields with their values, `name : value`.
+        own: as fretc writes them.
+    """
+    if len(given) != len(own):
+        raise strange(given[-1] if given else ())
+    for actual, expected in zip(given, own, strict=True):
+        constants = is_constant(actual[2:]) and is_constant(expected[2:])
+        if actual != expected and not (constants and actual[:2] == expected[:2]):
+            raise strange(actual)
+
+
+Fields = list[tuple[str, Tokens]]
+"""Each field of a record with its value."""
+
+
+def records(text: Tokens, head: Tokens) -> list[Fields]:
+    """Those of an array.
+
+    Args:
+        text: with its brackets.
+        head: what each record begins with, up to its brace.
+
+    Raises:
+        StrangeTextError: it is no array of records.
+    """
+    if text[:1] != ("[",) or text[-1:] != ("]",):
+        raise strange(text)
+    return [_fields(record, head) for record in parts(text[1:-1], ",")]
+
+
+def _fields(record: Tokens, head: Tokens) -> Fields:
+    fields = [*parts(record[len(head) : -1], ",")]
+    if (record[: len(head)], record[-1:]) != (head, ("}",)):
+        raise strange(record)
+    if any(field[1:2] != (":",) for field in fields):
+        raise strange(record)
+    return [(field[0], field[2:]) for field in fields]

@@ -1,0 +1,75 @@
+"""What compiles or runs a monitor: programs of others, with limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from fretc.verification.engines.programs import MEMORY, STARTED, run
+
+_SECONDS = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """What a compiler has made."""
+
+    data: bytes
+    engine: str
+    """The compiler with its version and its flags."""
+
+
+class ToolError(Exception):
+    """There is no binary, or nothing runs the text; the message says why."""
+
+
+def compiled(
+    program: str,
+    flags: Sequence[str],
+    texts: Mapping[str, str],
+    steps: Sequence[Sequence[str]],
+    result: str,
+) -> Binary:
+    """A binary.
+
+    Args:
+        program: the compiler.
+        flags: of all steps.
+        texts: by the names of their files.
+        steps: further arguments of each call of the compiler.
+        result: the file that the last step writes.
+
+    Raises:
+        ToolError: the compiler does not take the text, or cannot be run.
+    """
+    with TemporaryDirectory(prefix="fretc-") as name:
+        folder = Path(name)
+        for file, text in texts.items():
+            (folder / file).write_text(text, encoding="utf-8")
+        known = version(program)
+        for step in steps:
+            try:
+                end = run([program, *flags, *step], folder, seconds=_SECONDS, memory=MEMORY)
+            except OSError as error:
+                raise ToolError(f"the compiler cannot be run: {error}") from None
+            if end.status != 0:
+                lines = (line for line in end.text.splitlines() if "error" in line)
+                raise ToolError(f"{known} does not compile it: {next(lines, 'it gives no reason')}")
+        return Binary((folder / result).read_bytes(), f"{known} {' '.join(flags)}")
+
+
+def version(program: str) -> str:
+    """The first line of what it prints about itself.
+
+    Raises:
+        ToolError: it cannot be run.
+    """
+    with TemporaryDirectory(prefix="fretc-") as folder:
+        try:
+            end = run([program, "--version"], Path(folder), seconds=STARTED, memory=MEMORY)
+        except OSError as error:
+            raise ToolError(f"`{program}` cannot be run: {error}") from None
+    first, *_ = end.text.splitlines() or [""]
+    return first or "a program that tells no version"

@@ -1,0 +1,158 @@
+"""Prove that a monitor in another language than Python means what its sentence means.
+
+Its text has the form that fretc writes, so that a step depends on nothing but its cells and inputs.
+It is compiled or run, and explored in two comparisons, each until no new pair of states appears:
+with the counter automaton of the sentence by both verdicts, for known values; and, rail by rail,
+with the monitor in Python by all that a reading has, with unknown values too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+from compiler.files.text_files import sha256
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import excluded
+from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
+from compiler.logic.orders import only_possible
+from compiler.targets.python import monitor as python
+from fretc.verification.compiled.plan import (
+    Checked,
+    Executable,
+    Given,
+    Language,
+    Machines,
+    Plan,
+    atoms,
+)
+from fretc.verification.compiled.readings import NAMES, PythonRail
+from fretc.verification.compiled.text import StrangeTextError
+from fretc.verification.compiled.tools import ToolError
+from fretc.verification.engines.sandbox import Limits, Session, Stopped
+from fretc.verification.monitor import rails
+from fretc.verification.monitor.equivalence import Difference
+from fretc.verification.monitor.verifying import MOST_STATES, judged_wrongly, lock_step
+from monitors.loading import load
+
+
+class Examined(NamedTuple):
+    """An outcome, with what it rests on."""
+
+    rule: Formalized
+    outcome: Outcome
+    engine: str
+    """What compiled or ran the text, with version and flags; empty where nothing did."""
+    artefacts: dict[str, str]
+    """SHA-256 of the texts and of what was made of them."""
+
+
+def verified(
+    rules: Sequence[Formalized],
+    given: Given,
+    language: Language,
+    program: str,
+    limits: Limits,
+    others: Sequence[Formalized] = (),
+) -> Iterator[Examined]:
+    """Compare a text with each of its rules, in processes of their own.
+
+    Args:
+        rules: those that are asked about; the target accepts them, and they have a clock.
+        given: a monitor of them, maybe with others.
+        language: of the text.
+        program: its tool.
+        limits: of each exploration.
+        others: further rules that the text may implement.
+    """
+    artefacts = {name: sha256(text) for name, text in given.texts.items()}
+    with TemporaryDirectory(prefix="fretc-") as folder, Session(limits) as session:
+        try:
+            checked = language.checked(given, (*rules, *others))
+            found = language.prepared(program, given, checked, Path(folder))
+        except (StrangeTextError, ToolError) as error:
+            for rule in rules:
+                yield Examined(rule, not_checked(str(error)), "", artefacts)
+            return
+        artefacts.update(found.artefacts)
+        for rule in rules:
+            outcome = _confined(rule, checked, found.executable, session)
+            yield Examined(rule, outcome, found.engine, artefacts)
+
+
+def _confined(
+    rule: Formalized, checked: Checked, executable: Executable, session: Session
+) -> Outcome:
+    try:
+        plan = checked.plan(rule)
+    except StrangeTextError as error:
+        return not_checked(str(error))
+    outcome = session.call(explored, rule, executable, plan, MOST_STATES)
+    if isinstance(outcome, Stopped):
+        return not_checked(f"{outcome.reason}; so may end what the text must not do")
+    return outcome
+
+
+# In the process that runs it --------------------------------------------------------------------
+
+
+def explored(rule: Formalized, executable: Executable, plan: Plan, limit: int) -> Outcome:
+    """Run the text, and compare it; a crash of a library is one of this process.
+
+    Args:
+        rule: the requirement.
+        executable: the text.
+        plan: where the requirement is in it.
+        limit: the most states of either comparison.
+    """
+    try:
+        with executable.running(plan) as machines:
+            return _explored(rule, machines, limit)
+    except ToolError as error:
+        return not_checked(str(error))
+
+
+def _explored(rule: Formalized, machines: Machines, limit: int) -> Outcome:
+    judged = lock_step(rule, machines.judging(), atoms(rule), limit)
+    if isinstance(judged, str):
+        return not_checked(judged)
+    if isinstance(judged, Difference):
+        return judged_wrongly(judged, atoms(rule))
+    states = _read(rule, machines, limit)
+    if not isinstance(states, int):
+        return states
+    return proved(
+        f"the same at every tick of every trace ({judged.states} states, {judged.steps} steps); "
+        "with unknown values too, triggers, answers, open demands, deadlines and what is settled "
+        f"are those of the monitor in Python ({states} states)"
+    )
+
+
+def _read(rule: Formalized, machines: Machines, limit: int) -> int | Outcome:
+    """The states in which each rail tells what that of the monitor in Python tells."""
+    names = atoms(rule)
+    if len(names) > rails.MOST_PROPOSITIONS:
+        most = rails.MOST_PROPOSITIONS
+        return not_checked(
+            f"{len(names)} propositions, more than {most}, are too many for unknown values"
+        )
+    every = tuple(product((False, True, None), repeat=len(names)))
+    letters = only_possible(every, names, excluded(rule))
+    monitor, states = load("reference", python.text(rule)), 0
+    for doubt in (False, True):
+        left = machines.rail(letters, doubt=doubt)
+        right = PythonRail(monitor, rule, names, doubt=doubt)
+        result = rails.in_lock_step(left, right, letters, limit, NAMES)
+        match result:
+            case None:
+                return not_checked(f"with unknown values there are more than {limit} states")
+            case rails.Apart(word, signal):
+                which = "possible" if doubt else "certain"
+                fault = f"the monitor in Python tells another {signal} in `{which}` on a trace"
+                return refuted(fault, Trace(names, word))
+            case rails.Same(count):
+                states += count
+    return states

@@ -1,0 +1,156 @@
+"""Whether a monitor in JavaScript has the form that fretc writes, read off before anything runs.
+
+All but the first values of cells and the body of `advance` are token for token those of fretc. In
+`advance` a statement gives one cell or local truth value to an expression of such, and the signals
+are made of such; literals, windows and marks are as fretc writes them. There is no call, no loop
+and no member but a cell, so a step reaches nothing else, and depends on nothing else.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Sequence
+
+from fretc.verification.compiled.flow import Flow, Form, Grammar
+from fretc.verification.compiled.text import (
+    NAME,
+    Lexis,
+    Tokens,
+    end_of,
+    parts,
+    records,
+    same,
+    same_but_constants,
+    split,
+    strange,
+)
+
+LEXIS = Lexis(
+    re.compile(
+        r"(?P<gap>[ \t\r\n]+|//[^\n]*|/\*.*?\*/)"
+        r"|[A-Za-z_$][\w$]*|\d[\w.]*(?:(?<=e)[-+]\d+)?|\"(?:[^\"\\\n]|\\.)*\"|`(?:[^`\\]|\\.)*`"
+        r"|\.\.\.|=>|[=!]==|\?\.|\?\?=?|>>>?=?|<<=?|\*\*=?|&&=?|\|\|=?|\+\+|--|[-+*/%&|^<>=!]=|"
+        r"[-+*/%&|^~<>=!?:;,.(){}\[\]]",
+        re.DOTALL | re.ASCII,
+    ),
+    re.compile(r"\r(?!\n)|[\u2028\u2029]"),
+    frozenset("return throw break continue yield async".split()),
+)
+"""After a `return` the end of a line ends the statement."""
+_SIGNS = frozenset("! && || < <= > >= == != === !== + - ? : ( ) true false".split())
+_KEPT = frozenset("rail tick truths mark slide true false null undefined const let var".split())
+_FREE: tuple[Tokens, ...] = (("function", "rail"), ("function", "advance"))
+_READ = re.compile(r"const (\w+) = truths \[ (\d+) \] === null")
+
+
+def formed(
+    text: str,
+    written: str,
+    cells: Sequence[str],
+    windows: Collection[str],
+    outcomes: Sequence[str],
+) -> Form:
+    """The form of a text of a module.
+
+    Args:
+        text: it.
+        written: what fretc writes for the same requirements.
+        cells: of a rail, all.
+        windows: those among them that are windows.
+        outcomes: names for them.
+
+    Raises:
+        StrangeTextError: it has another form.
+    """
+    given, own = LEXIS.tokens(text), LEXIS.tokens(written)
+    outside, (first, stepped) = split(given, _FREE)
+    own_outside, (own_first, own_stepped) = split(own, _FREE)
+    same(outside, own_outside)
+    same(first[:2] + first[-2:], own_first[:2] + own_first[-2:])
+    same_but_constants(*([*parts(each[2:-2], ",")] for each in (first, own_first)))
+    literals = {name: int(place) for name, place in _READ.findall(" ".join(own_stepped))}
+    step = _Step(frozenset(parts(own_stepped, ";")), {*cells} - {*windows})
+    statements, own_statements = [*parts(stepped, ";")], [*parts(own_stepped, ";")]
+    place, own_place = _signals_at(statements), _signals_at(own_statements)
+    for statement in statements[:place]:
+        step.read(statement)
+    step.conditions = []
+    told, own_told = statements[place][4:], own_statements[own_place][4:]
+    step.tell(outcomes, records(told, ("{",)), records(own_told, ("{",)))
+    same(_joined(statements[place + 1 :]), _joined(own_statements[own_place + 1 :]))
+    return Form(step.sources, literals)
+
+
+def _signals_at(statements: Sequence[Tokens]) -> int:
+    """The place of the statement that tells the signals."""
+    head = ("rail", ".", "signals", "=")
+    places = [i for i, each in enumerate(statements) if each[:4] == head]
+    if len(places) != 1:
+        raise strange(statements[places[1]] if places else head)
+    return places[0]
+
+
+def _joined(statements: Sequence[Tokens]) -> Tokens:
+    return tuple(token for each in statements for token in (*each, ";"))
+
+
+class _Step(Flow):
+    """The body of `advance`, read statement by statement."""
+
+    def __init__(self, known: frozenset[Tokens], cells: Collection[str]) -> None:
+        """Nothing is read yet.
+
+        Args:
+            known: the statements that fretc writes, without semicolons.
+            cells: those of a rail that are no windows.
+        """
+        self._known = known
+        super().__init__(Grammar({("rail", "."): cells}, _SIGNS, _KEPT))
+
+    def read(self, statement: Tokens) -> None:
+        """One more statement; what an `if` or `else` holds is a single one.
+
+        Raises:
+            StrangeTextError: it is of no form that is known to be harmless.
+        """
+        if statement in self._known and self._fixed(statement):
+            self.conditions = []
+        elif not self._assignment(self._branch(statement), statement):
+            raise strange(statement)
+
+    def _branch(self, statement: Tokens) -> Tokens:
+        """What stands behind the conditions, which are those of the statement now."""
+        rest = statement
+        if rest[:1] != ("else",):
+            self.conditions = []
+        elif not self.conditions:
+            raise strange(statement)
+        else:
+            rest = rest[1:]
+        if rest[:2] == ("if", "("):
+            end = end_of(rest, 1, ")")
+            self.conditions.append(self.names(rest[2:end], statement))
+            rest = rest[end + 1 :]
+        return rest
+
+    def _assignment(self, rest: Tokens, statement: Tokens) -> bool:
+        match rest:
+            case ("rail", ".", _, "=", *value):
+                return self.give(rest[:3], value, statement)
+            case ("const", name, "=", *value) if rest == statement:
+                return self.declare(name, value, statement)
+            case _:
+                return False
+
+    def _fixed(self, statement: Tokens) -> bool:
+        """Literals and windows, as fretc writes them."""
+        local = statement[1:2] if statement[0] == "const" else ()
+        if statement[2:4] == ("=", "truths"):
+            self.known(frozenset(), local, local)
+            return True
+        if "slide" not in statement:
+            return False
+        names = frozenset(each for each in statement if NAME.fullmatch(each)) - _KEPT
+        window = statement[statement.index("slide") + 4]
+        self.known(names, [window, statement[1] if local else statement[2]], local)
+        return True

@@ -1,0 +1,66 @@
+"""Monitors in JavaScript."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+
+from compiler.formalization.formalized import Formalized
+from compiler.program.lowering import program as lowered
+from compiler.program.program import Program, Requirement, Window
+from compiler.targets.javascript.monitor import text
+from fretc.verification.compiled.plan import Checked, Given, Prepared, implemented
+from fretc.verification.compiled.tools import version
+from fretc.verification.javascript.form import formed
+from fretc.verification.javascript.node import FLAGS, Module
+
+_IDS = re.compile(r'^[ \t]*\{ id: ("(?:[^"\\]|\\.)*"), sentence: ', re.MULTILINE)
+
+
+def tool() -> str | None:
+    """The path of Node, if it is installed."""
+    return shutil.which("node")
+
+
+def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
+    """The text in the form that fretc writes.
+
+    Raises:
+        StrangeTextError: it has another form.
+    """
+    own_rules = implemented([json.loads(id) for id in _IDS.findall(given.text)], rules)
+    made = _program(own_rules)
+    cells, ids = tuple(cell.name for cell in made.cells), tuple(each.id for each in own_rules)
+    form = formed(given.text, text(*own_rules), cells, _windows(made), ids)
+    return Checked(own_rules, ids, form, cells, ())
+
+
+def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prepared:
+    """The module.
+
+    Raises:
+        ToolError: Node cannot be run.
+    """
+    made = _program(checked.rules)
+    ages = {place: _ages(each) for place, each in enumerate(made.requirements)}
+    module = Module(program, given.text, checked.cells, _windows(made), ages)
+    return Prepared(module, f"Node {version(program)} {' '.join(FLAGS)}", {})
+
+
+def _program(rules: Sequence[Formalized]) -> Program:
+    return lowered({rule.id: rule.watch for rule in rules})
+
+
+def _windows(program: Program) -> dict[str, int]:
+    """Each window with the age of the oldest that it looks at."""
+    return {cell.name: cell.hi for cell in program.cells if isinstance(cell, Window)}
+
+
+def _ages(requirement: Requirement) -> tuple[str, ...]:
+    """The marks whose age counts: those that a deadline is told by."""
+    if requirement.horizon is None:
+        return ()
+    return ("open", "last") if requirement.renewed else ("open",)

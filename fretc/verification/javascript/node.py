@@ -1,0 +1,327 @@
+"""A monitor in JavaScript as a machine whose state can be saved, restored and stepped: Node.
+
+Node explores, and we compare: a message asks for a state, and the answer has the steps of that one
+and of many that come next, so that there are few messages. A state is the cells and marks that the
+requirement depends on, in ticks from now: what a step does with the number of its tick is in the
+part of the text that is as fretc writes it, and looks at differences alone.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from itertools import product
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+
+from compiler.formalization.letters import Valuation
+from fretc.verification.compiled.plan import Plan
+from fretc.verification.compiled.readings import Reading, judged
+from fretc.verification.compiled.tools import ToolError
+from fretc.verification.monitor.equivalence import Judgement
+from fretc.verification.monitor.rails import Letter
+from monitors.kernel.verdicts import Truth
+
+FLAGS = ("--disallow-code-generation-from-strings",)
+_ENDING = 10.0
+"""Seconds in which a process is gone that has closed its output."""
+_TRUTHS: tuple[Truth, ...] = (False, True, None)
+_EXPLORER = """
+import { createInterface } from "node:readline";
+import { init, judge, REQUIREMENTS } from "./monitor.mjs";
+
+const AHEAD = 20_000; // steps in one answer, beside those that are asked for
+const RAILS = ["certain", "possible"];
+const TRUTHS = ["trigger", "breach", "owed", "settled", "answer"];
+const code = (value) => [false, true, null].indexOf(value);
+
+/** All states that a plan reaches, found as they are asked for. */
+function search({ outcome, cells, windows, ages, rails, letters }) {
+  const { horizon } = REQUIREMENTS[outcome];
+  const now = Math.max(horizon ?? 0, ...windows.map(([, hi]) => hi)) + 2;
+  const machine = init();
+  const states = [], places = new Map(), told = [], readings = new Map();
+  let done = 0;
+
+  const saved = (rail, tick) => {
+    const marks = rail.marks[outcome];
+    return [
+      cells.map((name) => rail[name]),
+      windows.map(([name, hi]) => {
+        const { runs, first } = rail[name];
+        return runs.slice(first).map(([a, b]) => [Math.min(tick - a, hi), tick - b]);
+      }),
+      [marks.broken >= 0, marks.doomed >= 0],
+      ages.map((name) => (marks[name] < 0 ? -1 : Math.min(tick - marks[name], horizon + 1))),
+    ];
+  };
+  const load = (rail, [values, runs, latched, old]) => {
+    cells.forEach((name, i) => (rail[name] = values[i]));
+    windows.forEach(([name], i) => {
+      rail[name] = { runs: runs[i].map(([a, b]) => [now - a, now - b]), first: 0 };
+    });
+    const [broken, doomed] = latched.map((is) => (is ? 0 : -1));
+    const marks = { broken, doomed, last: -1, open: -1 };
+    ages.forEach((name, i) => (marks[name] = old[i] < 0 ? -1 : now - old[i]));
+    rail.marks[outcome] = marks;
+  };
+  const exact = (_, value) => {
+    if (typeof value !== "number") return value === undefined ? "undefined" : value;
+    return Object.is(value, -0) ? "-0" : String(value);
+  };
+  const placed = (tick) => {
+    const parts = rails.map((i) => saved(machine[RAILS[i]], tick));
+    const key = JSON.stringify(parts, exact);
+    if (!places.has(key)) {
+      places.set(key, states.length);
+      states.push(parts);
+    }
+    return places.get(key);
+  };
+  const reading = (said, marks, tick) => [
+    said.deadline === null ? -1 : Math.max(-1, said.deadline - tick),
+    code(said.firstViolation !== null),
+    marks.broken >= 0 ? 1 : code(said.fails),
+    ...TRUTHS.map((name) => code(said[name])),
+  ];
+  const outcomeOf = (tick, { certain, possible, verdict, finite, owed }) => {
+    const of = { certain, possible };
+    const parts = RAILS.map((name) => reading(of[name], machine[name].marks[outcome], tick));
+    const facts = RAILS.map((name) => {
+      const { broken, doomed } = machine[name].marks[outcome];
+      return [broken >= 0, doomed >= 0, of[name].fails, of[name].trigger || of[name].owed];
+    });
+    const isReal = facts[0].every((fact, i) => !fact || facts[1][i]);
+    const key = JSON.stringify([...parts, String(verdict), code(finite), code(owed), isReal]);
+    if (!readings.has(key)) {
+      readings.set(key, readings.size);
+      told.push(key);
+    }
+    return readings.get(key);
+  };
+  const step = (state, letter) => {
+    rails.forEach((rail, i) => load(machine[RAILS[rail]], states[state][i]));
+    machine.tick = now;
+    const said = judge(machine, letter)[outcome];
+    return [placed(machine.tick), outcomeOf(machine.tick, said)];
+  };
+
+  placed(machine.tick);
+  return (until) => {
+    const rows = [];
+    told.length = 0;
+    for (let ahead = AHEAD; done < states.length && (done <= until || ahead > 0); done += 1) {
+      rows.push(letters.map((letter) => step(done, letter)));
+      ahead -= letters.length;
+    }
+    return { rows, told: told.map((key) => JSON.parse(key)) };
+  };
+}
+
+let explore;
+for await (const line of createInterface({ input: process.stdin })) {
+  const { plan, until } = JSON.parse(line);
+  if (plan !== undefined) explore = search(plan);
+  process.stdout.write(`${JSON.stringify(explore(until))}\\n`);
+}
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """A module that was checked."""
+
+    program: str
+    text: str
+    cells: tuple[str, ...]
+    """All of a rail."""
+    windows: Mapping[str, int]
+    """Those that are windows, with the age of what they keep."""
+    ages: Mapping[int, tuple[str, ...]]
+    """For the place of each requirement, the marks whose age it reads."""
+
+    @contextmanager
+    def running(self, plan: Plan) -> Iterator[Node]:
+        """Node runs it, until the end.
+
+        Raises:
+            ToolError: Node cannot be started, or ends.
+        """
+        with TemporaryDirectory(prefix="fretc-") as name:
+            folder = Path(name)
+            (folder / "monitor.mjs").write_text(self.text, encoding="utf-8")
+            (folder / "explorer.mjs").write_text(_EXPLORER, encoding="utf-8")
+            with (
+                (folder / "errors.txt").open("wb") as errors,
+                _started(self, folder, errors) as node,
+            ):
+                yield Node(self, plan, node, folder / "errors.txt")
+
+
+@contextmanager
+def _started(module: Module, folder: Path, errors: Any) -> Iterator[subprocess.Popen[bytes]]:
+    """Node, without options of the user's: `NODE_OPTIONS` can load modules."""
+    plain = {name: value for name, value in os.environ.items() if not name.startswith("NODE_")}
+    try:
+        process = subprocess.Popen(
+            [module.program, *FLAGS, "explorer.mjs"],
+            cwd=folder,
+            env=plain,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=errors,
+        )
+    except OSError as error:
+        raise ToolError(f"Node cannot be started: {error}") from None
+    with process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+class Node:
+    """A requirement of a module."""
+
+    def __init__(
+        self, module: Module, plan: Plan, process: subprocess.Popen[bytes], errors: Path
+    ) -> None:
+        """Nothing is explored yet."""
+        self._module, self._plan = module, plan
+        self._process, self._errors = process, errors
+
+    def judging(self) -> Judging:
+        """Both rails, before the first tick."""
+        letters = tuple(product((False, True), repeat=len(self._plan.inputs)))
+        return Judging(self._table((0, 1), letters))
+
+    def rail(self, letters: Sequence[Letter], *, doubt: bool) -> TableRail:
+        """One of them, before the first tick."""
+        return TableRail(self._table((int(doubt),), letters), doubt=doubt)
+
+    def _table(self, rails: Sequence[int], letters: Sequence[Letter]) -> Table:
+        module, plan = self._module, self._plan
+        needed = [name for name in module.cells if name in plan.needed]
+        rows = []
+        for letter in letters:
+            row: list[Truth] = [False] * plan.width
+            for value, place in zip(letter, plan.inputs, strict=True):
+                if place >= 0:
+                    row[place] = value
+            rows.append(row)
+        order = {
+            "outcome": plan.outcome,
+            "cells": [name for name in needed if name not in module.windows],
+            "windows": [(name, module.windows[name]) for name in needed if name in module.windows],
+            "ages": module.ages[plan.outcome],
+            "rails": rails,
+            "letters": rows,
+        }
+        table = Table(self, {letter: i for i, letter in enumerate(letters)})
+        table.take(self.ask({"plan": order, "until": 0}))
+        return table
+
+    def ask(self, order: Mapping[str, Any]) -> Any:
+        """The answer to a message.
+
+        Raises:
+            ToolError: Node gives none.
+        """
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        with suppress(BrokenPipeError):  # then Node has ended, and there is no answer
+            self._process.stdin.write(f"{json.dumps(order)}\n".encode())
+            self._process.stdin.flush()
+        line = self._process.stdout.readline()
+        if not line.endswith(b"\n"):
+            with suppress(subprocess.TimeoutExpired):
+                if self._process.wait(_ENDING) == -signal.SIGXCPU:
+                    raise ToolError("out of time: Node took as many seconds of a processor")
+            text = self._errors.read_text(encoding="utf-8", errors="replace")
+            lines = (each for each in text.splitlines() if "Error" in each or "FATAL" in each)
+            raise ToolError(f"Node does not run it: {next(lines, 'it gives no reason')}")
+        return json.loads(line)
+
+
+class Told(NamedTuple):
+    """What is told after a step."""
+
+    rails: tuple[Reading, Reading]
+    """What holds for certain, and what may hold."""
+    verdicts: tuple[object, ...]
+    """The verdict, FRET's finite one, and what is owed."""
+    is_real: bool
+    """Whether what is certain is possible, too: a rail that goes on from wherever it is may be in
+    no state that it can have at this tick."""
+
+
+@dataclass(slots=True)
+class Table:
+    """The states that are known, by their numbers, and their steps."""
+
+    node: Node
+    letters: Mapping[Letter, int]
+    rows: list[list[tuple[int, int]]] = field(default_factory=list)
+    """Of each state and letter the next state, and the number of what is told."""
+    outcomes: list[Told] = field(default_factory=list)
+
+    def take(self, answer: Any) -> None:
+        """The steps of further states."""
+        self.rows += answer["rows"]
+        for certain, possible, verdict, *truths, is_real in answer["told"]:
+            rails = Reading(*certain), Reading(*possible)
+            both = (_TRUTHS[each] if each >= 0 else "no truth value" for each in truths)
+            self.outcomes.append(Told(rails, (verdict, *both), is_real))
+
+    def step(self, state: int, letter: Letter) -> tuple[int, int]:
+        """The next state, and the number of what is told."""
+        if state >= len(self.rows):
+            self.take(self.node.ask({"until": state}))
+        return self.rows[state][self.letters[letter]]
+
+
+class Judging:
+    """Both rails, where all propositions are known."""
+
+    def __init__(self, table: Table) -> None:
+        """Before the first tick."""
+        self._table, self._state = table, 0
+
+    def save(self) -> int:
+        """The number of the state."""
+        return self._state
+
+    def load(self, state: Any) -> None:
+        """Go back to a state."""
+        self._state = state
+
+    def step(self, letter: Valuation) -> Judgement:
+        """The verdict that it tells, and FRET's finite one."""
+        self._state, told = self._table.step(self._state, letter)
+        verdict, finite, _ = self._table.outcomes[told].verdicts
+        return str(verdict), finite is True
+
+
+class TableRail:
+    """One rail; the other one goes on from wherever it is."""
+
+    def __init__(self, table: Table, *, doubt: bool) -> None:
+        """Before the first tick; with `doubt` the rail of what may hold."""
+        self._table, self._rail, self._state = table, int(doubt), 0
+
+    def save(self) -> int:
+        """The number of the state."""
+        return self._state
+
+    def step(self, state: int, letter: Letter) -> tuple[object, ...]:
+        """What it tells one tick after a state, and whether the verdict follows from both rails."""
+        self._state, number = self._table.step(state, letter)
+        told = self._table.outcomes[number]
+        follows = not told.is_real or told.verdicts == judged(*told.rails)
+        return (*told.rails[self._rail], follows)

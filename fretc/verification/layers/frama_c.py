@@ -1,0 +1,89 @@
+"""Prover Frama-C: a monitor in C does nothing undefined, whatever its inputs are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import PurePath
+
+from compiler.formalization.formalized import Formalized
+from compiler.logic.claims import Layer, Proof, not_checked, proof
+from compiler.project.folder import Project
+from compiler.targets.c.monitor import TARGET
+from fretc.verification.c.analysis import analysed
+from fretc.verification.compiled.plan import Given
+from fretc.verification.engines import frama_c
+from fretc.verification.layers.request import Request
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+
+CLAIM = "the text in C does nothing that C leaves undefined, and each counter keeps its range"
+
+
+def refusal(request: Request) -> Diagnostic | None:
+    """F908 where Frama-C is not installed, F907 for a monitor that is not in C."""
+    if frama_c.program() is None:
+        return Diagnostic(
+            Code.MISSING_EXTRA,
+            "`--with frama-c` needs Frama-C, and there is no `frama-c` on the PATH",
+            help="Debian and Ubuntu: `apt install frama-c-base`; elsewhere: frama-c.com",
+        )
+    if request.monitor is not None and request.header is None:
+        return Diagnostic(
+            Code.BAD_USAGE,
+            f"`--with frama-c` takes a monitor in C, and `{request.monitor.name}` is none",
+            help="name a file that `--emit c` wrote",
+        )
+    return None
+
+
+def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+    """A proof for each rule: of the monitor that is given, else of the one that fretc writes.
+
+    Raises:
+        NotAMonitorError: the given text names no requirement.
+    """
+    refused, program = refusal(request), frama_c.program()
+    if refused is not None or program is None:
+        reason = refused.message if refused else ""
+        return (_not_checked(rule, reason) for rule in rules)
+    return _proofs(rules, project, request, program)
+
+
+def _proofs(
+    rules: Sequence[Formalized], project: Project, request: Request, program: str
+) -> Iterator[Proof]:
+    accepted = list[Formalized]()
+    for rule in rules:
+        refused = TARGET.refuse(rule)
+        if refused is None:
+            accepted.append(rule)
+        else:
+            yield _not_checked(rule, refused.message)
+    machines = " and ".join(f"`{name}`" for name in frama_c.MACHINES)
+    under = (f"C is that of the machines {machines} of Frama-C: an `int` has 16 or 32 bits",)
+    for given, own in _given(accepted, request):
+        request.progress(f"{given.name}: Frama-C")
+        found = analysed(own, given, program, request.limits, project.rules)
+        for rule, outcome, engine, artefacts in found:
+            yield proof(rule.id, Layer.MONITOR, CLAIM, outcome, engine, under, artefacts)
+
+
+def _not_checked(rule: Formalized, reason: str) -> Proof:
+    return proof(rule.id, Layer.MONITOR, CLAIM, not_checked(reason), frama_c.NAME)
+
+
+def _given(
+    rules: Sequence[Formalized], request: Request
+) -> Iterator[tuple[Given, Sequence[Formalized]]]:
+    """The text that is given, else one for each rule; with the rules that it is about."""
+    if request.monitor is not None and request.header is not None:
+        texts = (request.monitor, request.header)
+        yield _named([(PurePath(each.name).name, each.text) for each in texts]), rules
+        return
+    for rule in rules:
+        yield _named([(str(each.path), each.text) for each in TARGET.emit((rule,))]), [rule]
+
+
+def _named(texts: Sequence[tuple[str, str]]) -> Given:
+    """The file in C comes before its header."""
+    (name, text), (header_name, header) = texts
+    return Given(name, text, header_name, header)

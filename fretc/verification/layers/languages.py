@@ -1,0 +1,72 @@
+"""The languages of monitors that can be proved, beside Python."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import PurePath
+from typing import TYPE_CHECKING, cast
+
+if TYPE_CHECKING:
+    from fretc.verification.compiled.plan import Language
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A language of the table; its module is imported when it is asked for."""
+
+    name: str
+    suffixes: tuple[str, ...]
+    """Of its files."""
+    emit: str
+    """The kind of `--emit` that writes it."""
+    room: str
+    """The package below `fretc.verification`."""
+    missing: str
+    """What its monitors need, where that is not installed."""
+    install: str
+    under: str
+    """What is assumed of the tool, before its name."""
+
+    @property
+    def module(self) -> Language:
+        """What reads, compiles and runs its texts."""
+        name = f"fretc.verification.{self.room}.language"
+        return cast("Language", import_module(name))
+
+
+TABLE = (
+    Row(
+        "C",
+        (".c",),
+        "c",
+        "c",
+        "compiled for its proof, and there is none of `gcc`, `clang`, `cc`",
+        "install a C compiler, as with `apt install gcc`",
+        "the binary is what was proved",
+    ),
+    Row(
+        "Rust",
+        (".rs",),
+        "rust",
+        "rust",
+        "compiled for its proof, and there is no `rustc`",
+        "install Rust: see rustup.rs, or `apt install rustc`",
+        "the binary is what was proved",
+    ),
+    Row(
+        "JavaScript",
+        (".mjs", ".js"),
+        "js",
+        "javascript",
+        "run for its proof, and there is no `node`",
+        "install Node.js: see nodejs.org, or `apt install nodejs`",
+        "other engines run the text as this one did",
+    ),
+)
+
+
+def language_of(file: str) -> Row | None:
+    """The language of a file, by its suffix; None: Python."""
+    suffix = PurePath(file).suffix
+    return next((row for row in TABLE if suffix in row.suffixes), None)

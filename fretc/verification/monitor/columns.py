@@ -1,0 +1,221 @@
+"""The column program of a monitor's text: as terms, and beside its steps on drawn traces.
+
+Equal terms are equal columns of any trace. A name stands for its assigned term, a parameter for its
+literal. So two programs with equal terms differ in the names of their variables only, and a proof
+about one, at all lengths of a trace, holds of the other. Drawn traces show where a program and the
+steps of its monitor differ.
+"""
+
+from __future__ import annotations
+
+import ast
+import random
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import excluded
+from compiler.logic.orders import Exclusion
+from compiler.program.program import SIGNALS
+from fretc.verification.monitor.text_check import own
+from monitors.kernel import Column, Monitor
+from monitors.kernel.columns import column, truths
+from monitors.kernel.stepping import literals_of
+from monitors.kernel.verdicts import Truth
+
+DRAWN = 20
+"""Traces on which the column program is compared, where the bound is small."""
+_FEWEST, _TICKS = 4, 40_000
+"""At least so many traces; at most so many ticks in all, if there are more traces than that."""
+_FALSE = Column(0, 0)
+
+Word = tuple[tuple[Truth, ...], ...]
+"""The values of the propositions at each tick; None: unknown."""
+
+
+# Terms ------------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class Terms:
+    """Terms as numbers, equal for equal terms; texts to compare share one table."""
+
+    _numbers: dict[tuple[object, ...], int] = field(default_factory=dict)
+
+    def of(self, text: str, place: int) -> tuple[int, ...]:
+        """The terms of a requirement's signals, in their order.
+
+        Args:
+            text: a monitor's, laid out as fretc writes it.
+            place: of the requirement among those of the monitor.
+
+        Raises:
+            KeyError, IndexError: a signal, or the requirement, is left out.
+        """
+        monitor = next(
+            node
+            for node in own(text).body
+            if isinstance(node, ast.ClassDef) and node.name.endswith("Monitor")
+        )
+        names = {"every": self._number("every"), **self._literals(monitor)}
+        (columns,) = (
+            part
+            for part in monitor.body
+            if isinstance(part, ast.FunctionDef) and part.name == "columns"
+        )
+        *_, last = columns.body
+        for statement in columns.body:
+            match statement:
+                case ast.Assign([ast.Name(name)], value):
+                    names[name] = self._term(value, names)
+        assert isinstance(last, ast.Return)
+        assert isinstance(last.value, ast.Tuple)
+        signals = last.value.elts[place]
+        assert isinstance(signals, ast.Call)
+        terms = {keyword.arg: self._term(keyword.value, names) for keyword in signals.keywords}
+        return tuple(terms[name] for name in SIGNALS)
+
+    def _literals(self, monitor: ast.ClassDef) -> dict[str, int]:
+        for part in monitor.body:
+            match part:
+                case ast.Assign([ast.Name("LITERALS")], value):
+                    literals: tuple[tuple[str, str, bool], ...] = ast.literal_eval(value)
+                    return {
+                        name: self._number("literal", proposition, positive)
+                        for name, proposition, positive in literals
+                    }
+        return {}
+
+    def _number(self, *term: object) -> int:
+        return self._numbers.setdefault(term, len(self._numbers))
+
+    def _term(self, node: ast.expr, names: Mapping[str, int]) -> int:
+        match node:
+            case ast.Name(name):
+                return names[name]
+            case ast.Constant(value):
+                return self._number("constant", type(value), value)
+            case ast.BinOp(left, operator, right):
+                parts: Any = self._term(left, names), self._term(right, names)
+                return self._number(type(operator), *parts)
+            case ast.Call(ast.Name(name), args):
+                return self._number(name, *(self._term(arg, names) for arg in args))
+            case _:
+                raise AssertionError(f"not laid out as fretc writes it: {ast.unparse(node)}")
+
+
+# Drawn traces -----------------------------------------------------------------------------------
+
+
+def agreed(
+    rule: Formalized, monitor: Monitor, place: int, atoms: Sequence[str]
+) -> tuple[int, Word | None]:
+    """The ticks on which both programs agree; and a trace on which they do not."""
+    bound, never = rule.ticks or 0, excluded(rule)
+    is_alone = len(monitor.REQUIREMENTS) == 1
+    traces = _traces(monitor, bound, *((tuple(atoms), never) if is_alone or never else ((), ())))
+    for columns, ticks in traces:
+        tick = ticks[place]
+        if tick is not None:
+            return 0, tuple(_rows({n: columns.get(n, _FALSE) for n in atoms}, tick + 1))
+    return len(traces) * _length(bound), None
+
+
+def _length(bound: int) -> int:
+    """Of the traces for a bound, in ticks."""
+    return 4 * bound + 50
+
+
+@lru_cache(maxsize=16)
+def _traces(
+    monitor: Monitor, bound: int, atoms: tuple[str, ...], never: tuple[Exclusion, ...]
+) -> tuple[tuple[Mapping[str, Column], tuple[int | None, ...]], ...]:
+    """Drawn traces, with the first tick for each requirement at which both programs differ.
+
+    Requirements of one file and one bound share them.
+
+    Args:
+        monitor: of one requirement or several.
+        bound: what edges depend on.
+        atoms: the propositions that are drawn; none: all of the monitor.
+        never: what they cannot be together.
+    """
+    choose, length = random.Random(bound), _length(bound)
+    found = []
+    for number in range(min(DRAWN, max(_FEWEST, _TICKS // length))):
+        odds = 0.02 if number % 2 else 0.0
+        names = atoms or monitor.PROPOSITIONS
+        drawn = {name: _drawn(choose, length, bound, odds) for name in names}
+        drawn = _possible(drawn, never, length)
+        found.append((drawn, _first_differences(monitor, drawn, length)))
+    return tuple(found)
+
+
+def _possible(
+    columns: Mapping[str, Column], excluded: Sequence[Exclusion], length: int
+) -> dict[str, Column]:
+    """The columns with unknown values where they cannot be what they are."""
+    every, found = (1 << length) - 1, dict(columns)
+    for exclusion in excluded:
+        at = every
+        for name, value in exclusion:
+            true, unknown = found[name]
+            at &= true if value else every ^ (true | unknown)
+        for name, _ in exclusion:
+            true, unknown = found[name]
+            found[name] = Column(true & ~at, unknown | at)
+    return found
+
+
+def _first_differences(
+    monitor: Monitor, columns: Mapping[str, Column], length: int
+) -> tuple[int | None, ...]:
+    """For each requirement the first tick at which the signals of both programs differ, on a rail.
+
+    Propositions without a column are false.
+    """
+    every, places = (1 << length) - 1, range(len(monitor.REQUIREMENTS))
+    columns = {**dict.fromkeys(monitor.PROPOSITIONS, _FALSE), **columns}
+    try:
+        must, may = (
+            monitor.columns(every, **literals_of(monitor, columns, every, doubt))
+            for doubt in (False, True)
+        )
+        beyond = [any(each >> length for each in (*must[i], *may[i])) for i in places]
+    except Exception:
+        return (length - 1,) * len(places)
+    found: list[int | None] = [length - 1 if is_beyond else None for is_beyond in beyond]
+    monitor.reset()
+    values = [truths(columns[name], length) for name in monitor.PROPOSITIONS]
+    for tick in range(length):
+        monitor.advance([tuple([column[tick] for column in values])])
+        for rail, expected in ((monitor.must, must), (monitor.may, may)):
+            signals = rail.signals()
+            for place in [place for place in places if found[place] is None]:
+                now = [bool(column >> tick & 1) for column in expected[place]]
+                if [bool(value) for value in signals[place]] != now:
+                    found[place] = tick
+    return tuple(found)
+
+
+def _drawn(choose: random.Random, length: int, bound: int, unknown: float) -> Column:
+    """A column with odds of its own, or of runs about as long as the bound: edges matter."""
+    if choose.random() < 0.5:
+        odds = choose.choice((0.02, 0.2, 0.5, 0.95))
+        codes = bytearray(choose.random() < odds for _ in range(length))
+    else:
+        codes, value = bytearray(), choose.randrange(2)
+        while len(codes) < length:
+            run = choose.choice((1, 1, 2, bound - 1, bound, bound + 1, bound + 2))
+            codes += bytes((value,)) * run
+            value = 1 - value
+        del codes[length:]
+    if unknown:
+        codes = bytearray(2 if choose.random() < unknown else code for code in codes)
+    return column(codes)
+
+
+def _rows(columns: Mapping[str, Column], length: int) -> Iterator[tuple[Truth, ...]]:
+    return (tuple(column.at(tick) for column in columns.values()) for tick in range(length))

@@ -1,0 +1,146 @@
+"""A monitor in Rust as a shared library, with the layout of its state.
+
+The text is a crate of its own, with `forbid(unsafe_code)` as it stands; a module at its end tells
+where cells are. A second crate gives it functions that C can call. What would panic aborts.
+"""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+
+from fretc.verification.compiled.readings import Reading
+from fretc.verification.compiled.tools import Binary, compiled
+
+FLAGS = tuple(
+    "--edition 2021 -C opt-level=2 -C overflow-checks=on -C debug-assertions=on -C panic=abort"
+    " -C strip=symbols".split()
+)
+BASE = "fretc_monitor"
+"""What the names of the functions begin with."""
+_CRATE = "fretc_text"
+
+
+def compiler() -> str | None:
+    """The path of rustc, if it is installed."""
+    return shutil.which("rustc")
+
+
+def built(
+    program: str, text: str, cells: Sequence[str], inputs: Sequence[str], outcomes: Sequence[str]
+) -> Binary:
+    """The library of a monitor.
+
+    Args:
+        program: rustc.
+        text: of `lib.rs`.
+        cells: the fields of a rail.
+        inputs: those of the inputs.
+        outcomes: those of the outcomes.
+
+    Raises:
+        ToolError: the compiler does not take the text, or cannot be run.
+    """
+    texts = {
+        "text.rs": f"{text}\n{_layout(cells)}",
+        "library.rs": _library(len(cells), inputs, outcomes),
+    }
+    linked = ("--extern", f"{_CRATE}=lib{_CRATE}.rlib")
+    steps = (
+        ("--crate-type", "rlib", "--crate-name", _CRATE, "text.rs"),
+        ("--crate-type", "cdylib", *linked, "library.rs", "-o", "library.so"),
+    )
+    return compiled(program, FLAGS, texts, steps, "library.so")
+
+
+def _layout(cells: Sequence[str]) -> str:
+    """Rust that tells where the cells of a rail are: only the crate knows its private fields."""
+    places = "".join(
+        f"        core::mem::offset_of!(Rail, {cell}), size(|rail| &rail.{cell}),\n"
+        for cell in cells
+    )
+    return f"""
+pub mod fretc_layout {{
+    use super::{{Monitor, Rail}};
+
+    const fn size<T>(_: fn(&Rail) -> &T) -> usize {{
+        core::mem::size_of::<T>()
+    }}
+
+    pub const PLACES: [usize; {2 * len(cells) + 2}] = [
+        core::mem::offset_of!(Monitor, certain), core::mem::offset_of!(Monitor, possible),
+{places}    ];
+}}
+"""
+
+
+def _library(cells: int, inputs: Sequence[str], outcomes: Sequence[str]) -> str:
+    """Rust that C can call: inputs are a byte each, and outcomes as in C."""
+    given = ", ".join(f"{name}: TRUTHS[*values.add({i}) as usize]" for i, name in enumerate(inputs))
+    told = "".join(f"    told.add({i}).write(of(found.{n}));\n" for i, n in enumerate(outcomes))
+    _, *truths = Reading._fields
+    bits = ", ".join(f"reading.{name}.into()" for name in truths)
+    return f"""use std::mem::size_of;
+use {_CRATE}::{{fretc_layout::PLACES, Inputs, Monitor, Outcome, Reading}};
+
+const TRUTHS: [Option<bool>; 3] = [Some(false), Some(true), None];
+
+#[repr(C)]
+pub struct Rail {{
+    left: i32,
+    truths: [u8; {len(truths)}],
+}}
+
+#[repr(C)]
+pub struct Told {{
+    certain: Rail,
+    possible: Rail,
+    verdict: u32,
+    finite: u8,
+    owed: u8,
+}}
+
+fn rail(reading: Reading) -> Rail {{
+    let left = reading.left.map_or(-1, |left| i32::try_from(left).unwrap_or(i32::MIN));
+    Rail {{ left, truths: [{bits}] }}
+}}
+
+fn of(outcome: Outcome) -> Told {{
+    Told {{
+        certain: rail(outcome.certain),
+        possible: rail(outcome.possible),
+        verdict: outcome.verdict as u32,
+        finite: outcome.finite.map_or(2, u8::from),
+        owed: outcome.owed.map_or(2, u8::from),
+    }}
+}}
+
+#[no_mangle]
+#[allow(non_upper_case_globals)]
+pub static fretc_layout: [usize; {2 * cells + 6}] = {{
+    let mut layout = [0; {2 * cells + 6}];
+    layout[0] = size_of::<Monitor>();
+    layout[1] = PLACES[0];
+    layout[2] = PLACES[1];
+    layout[3] = {max(len(inputs), 1)};
+    layout[4] = {len(outcomes)} * size_of::<Told>();
+    layout[5] = size_of::<Told>();
+    let mut place = 2;
+    while place < PLACES.len() {{
+        layout[place + 4] = PLACES[place];
+        place += 1;
+    }}
+    layout
+}};
+
+#[no_mangle]
+pub unsafe extern "C" fn {BASE}_init(state: *mut Monitor) {{
+    state.write(Monitor::new());
+}}
+
+#[no_mangle]
+#[allow(unused_variables)]
+pub unsafe extern "C" fn {BASE}_step(state: *mut Monitor, values: *const u8, told: *mut Told) {{
+    let found = (*state).step(&Inputs {{ {given} }});
+{told}}}
+"""

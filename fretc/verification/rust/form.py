@@ -1,0 +1,173 @@
+"""Whether a monitor in Rust has the form that fretc writes, read off its text before rustc does.
+
+All but the first values of cells and the body of `advance` are token for token those of fretc, and
+so is `forbid(unsafe_code)`. In `advance` a statement gives one cell or local truth value to an
+expression of such; the last one makes the readings of such. There is no call, no macro and no loop,
+so neither the compiler nor the step runs anything else, and a step depends on nothing else.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+from fretc.verification.compiled.flow import Flow, Form, Grammar
+from fretc.verification.compiled.text import (
+    NAME,
+    Lexis,
+    Tokens,
+    end_of,
+    parts,
+    records,
+    same,
+    same_but_constants,
+    split,
+    strange,
+)
+
+LEXIS = Lexis(
+    re.compile(
+        r"(?P<gap>[ \t\r\n]+|//[^\n]*)"
+        r"|[A-Za-z_]\w*|\d\w*|->|=>|::|&&|\|\||<<=?|>>=?|\.\.=?|[-+*/%^&|<>=!]=|"
+        r"[-+*/%^&|<>=!?:;,.#$@(){}\[\]]",
+        re.ASCII,
+    ),
+    re.compile(r"\r(?!\n)"),
+)
+"""`/*` is no gap: such comments may hold others."""
+_SIGNS = frozenset("! & | && || < <= > >= == != + - ( ) { } if else true false".split())
+_KEPT = frozenset("self Self now true false if else let mut ref Reading None".split())
+_FREE: tuple[Tokens, ...] = (("const", "fn", "new"), ("fn", "advance"))
+_READ = re.compile(r"(\w+) : inputs \. (\w+) == Some")
+_DEADLINE = (("u32 :: try_from (", "("), (") . ok ( )", ")"), ("None", "0"))
+"""What only the ticks to a deadline have, and expressions that depend on the same."""
+
+
+def formed(
+    text: str,
+    written: str,
+    cells: Sequence[str],
+    inputs: Sequence[str],
+    outcomes: Sequence[str],
+) -> Form:
+    """The form of a text of a library.
+
+    Args:
+        text: it.
+        written: what fretc writes for the same requirements.
+        cells: the fields of a rail.
+        inputs: those of the inputs.
+        outcomes: those of the outcomes.
+
+    Raises:
+        StrangeTextError: it has another form.
+    """
+    given, own = LEXIS.tokens(text), LEXIS.tokens(written)
+    outside, (first, stepped) = split(given, _FREE)
+    own_outside, (own_first, own_stepped) = split(own, _FREE)
+    same(outside, own_outside)
+    same(first[:2] + first[-1:], own_first[:2] + own_first[-1:])
+    same_but_constants(*([*parts(each[2:-1], ",")] for each in (first, own_first)))
+    literals = {name: inputs.index(field) for name, field in _READ.findall(" ".join(own))}
+    *own_statements, readings = _statements(own_stepped)
+    step = _Step(frozenset(own_statements), cells, literals)
+    *statements, last = _statements(stepped) or [()]
+    for statement in statements:
+        step.read(statement)
+    head = ("Reading", "{")
+    step.tell(outcomes, records(last, head), records(readings, head), _of_deadline)
+    return Form(step.sources, literals)
+
+
+def _statements(body: Tokens) -> list[Tokens]:
+    """Heads of branches up to their brace, others up to the semicolon; what is left is the last."""
+    found, start = list[Tokens](), 0
+    while start < len(body):
+        end = _end(body, start)
+        found.append(body[start : end + 1])
+        start = end + 1
+    return found
+
+
+def _end(body: Tokens, start: int) -> int:
+    """The last token of the statement, or the end of the body."""
+    if body[start] != "if" and body[start] != "}":
+        return end_of(body, start, ";")
+    if body[start] == "}" and body[start + 1 : start + 2] != ("else",):
+        return start
+    return next((i for i in range(start, len(body)) if body[i] == "{"), len(body))
+
+
+class _Step(Flow):
+    """The body of `advance`, read statement by statement."""
+
+    def __init__(
+        self, known: frozenset[Tokens], cells: Sequence[str], literals: Mapping[str, int]
+    ) -> None:
+        """Nothing is read yet.
+
+        Args:
+            known: the statements that fretc writes.
+            cells: all of a rail.
+            literals: all of them.
+        """
+        self._known = known
+        self._rings = {a for each in known for a, b in pairwise(each) if b == "["}
+        fixed = {*self._rings, *(f"{ring}_at" for ring in self._rings)}
+        members = {("self", "."): {*cells} - fixed, ("now", "."): literals}
+        super().__init__(Grammar(members, _SIGNS, _KEPT))
+
+    def read(self, statement: Tokens) -> None:
+        """One more statement.
+
+        Raises:
+            StrangeTextError: it is of no form that is known to be harmless.
+        """
+        if not (self._branch(statement) or self._fixed(statement) or self._assignment(statement)):
+            raise strange(statement)
+
+    def _branch(self, statement: Tokens) -> bool:
+        match statement:
+            case ("if", *test, "{"):
+                self.conditions.append(self.names(test, statement))
+            case ("}", "else", "if", *test, "{") if self.conditions:
+                self.conditions[-1] |= self.names(test, statement)
+            case ("}", "else", "{") if self.conditions:
+                pass
+            case ("}",) if self.conditions:
+                self.conditions.pop()
+            case _:
+                return False
+        return True
+
+    def _assignment(self, statement: Tokens) -> bool:
+        match statement:
+            case ("self", ".", _, "=", *value, ";"):
+                return self.give(statement[:3], value, statement)
+            case ("let", name, "=", *value, ";"):
+                return self.declare(name, value, statement)
+            case _:
+                return False
+
+    def _fixed(self, statement: Tokens) -> bool:
+        """Of a ring, as fretc writes it: its bits, and its place."""
+        names = frozenset(name for name in statement if _is_free(name))
+        rings = {name for name in names if name.removesuffix("_at") in self._rings}
+        if statement not in self._known or not rings:
+            return False
+        local = statement[1:2] if statement[0] == "let" else ()
+        self.known(names, {*rings, *local}, local)
+        return True
+
+
+def _is_free(name: str) -> bool:
+    return bool(NAME.fullmatch(name)) and name not in _KEPT
+
+
+def _of_deadline(name: str, value: Tokens) -> Tokens:
+    """The value, without what only the ticks to a deadline have."""
+    words = " ".join(value)
+    for special, plain in _DEADLINE if name == "left" else ():
+        words = words.replace(special, plain)
+    return tuple(words.split())

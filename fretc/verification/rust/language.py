@@ -1,0 +1,51 @@
+"""Monitors in Rust."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from compiler.formalization.formalized import Formalized
+from compiler.targets.rust.monitor import TARGET
+from compiler.targets.target import Options
+from fretc.verification.compiled.library import saved
+from fretc.verification.compiled.plan import Checked, Given, Prepared, implemented
+from fretc.verification.rust.build import BASE, built, compiler
+from fretc.verification.rust.form import formed
+
+_OUTCOMES = re.compile(r"^[ \t]+/// (.*)\n[ \t]+pub (\w+): Outcome,$", re.MULTILINE)
+"""The fields of that struct, and the ids above them."""
+
+tool = compiler
+
+
+def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
+    """The text in the form that fretc writes.
+
+    Raises:
+        StrangeTextError: it has another form.
+    """
+    own_rules = implemented([id for id, _ in _OUTCOMES.findall(given.text)], rules)
+    files = TARGET.emit(own_rules, Options(one_file=True))
+    own = next(file.text for file in files if file.path.name == "lib.rs")
+    cells, inputs = _fields(own, "struct Rail"), _fields(own, "pub struct Inputs")
+    outcomes = tuple(name for _, name in _OUTCOMES.findall(own))
+    form = formed(given.text, own, cells, inputs, outcomes)
+    return Checked(own_rules, outcomes, form, cells, inputs)
+
+
+def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prepared:
+    """The library; nothing of it has run.
+
+    Raises:
+        ToolError: the compiler does not take the text.
+    """
+    binary = built(program, given.text, checked.cells, checked.inputs, checked.outcomes)
+    library, digest = saved(binary, folder, BASE, checked.cells)
+    return Prepared(library, binary.engine, {f"{Path(given.name).stem}.so": digest})
+
+
+def _fields(text: str, struct: str) -> tuple[str, ...]:
+    body = text.partition(f"\n{struct} {{\n")[2].partition("\n}\n")[0]
+    return tuple(re.findall(r"^    (?:pub )?(\w+): ", body, re.MULTILINE))

@@ -1,0 +1,205 @@
+"""Monitors in other languages than Python, verified in this process."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+from compiler.formalization.formalized import Formalized
+from compiler.logic.claims import Outcome, Result
+from compiler.targets.javascript.monitor import text as in_javascript
+from fretc.verification.c import language as c
+from fretc.verification.compiled.plan import Checked, Executable, Given, Language
+from fretc.verification.compiled.text import StrangeTextError
+from fretc.verification.compiled.tools import ToolError
+from fretc.verification.compiled.verifying import explored
+from fretc.verification.javascript import language as javascript
+from fretc.verification.rust import language as rust
+from tests import c_monitors, node, rust_monitors
+from tests.c_monitors import Reading, Rows, Source
+
+WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
+FOR = "upon p the sw shall for 2 ticks satisfy q & !m"
+RING = "only after m whenever p the sw shall within 2 ticks satisfy q"
+SENTENCES = (
+    WITHIN,
+    FOR,
+    RING,
+    "before m mode the sw shall always satisfy q",
+    "the sw shall until p satisfy q",
+    "when p the sw shall after 2 ticks satisfy q",
+    "whenever p the sw shall immediately satisfy x < 3",
+)
+REFUTED, REFUSED, SAME = "refuted", "refused", "same"
+KINDS = {Result.COUNTEREXAMPLE: REFUTED, Result.PROVED: SAME, Result.NOT_CHECKED: REFUSED}
+
+
+def edited(monitor: Given, old: str, new: str) -> Given:
+    assert monitor.text.count(old) == 1, (old, monitor.text.count(old))
+    return replace(monitor, text=monitor.text.replace(old, new))
+
+
+@dataclass(frozen=True)
+class Checker:
+    """One language, and where its libraries lie.
+
+    No two libraries have one file, for a process never lets go of one.
+    """
+
+    language: Language
+    folder: Path
+
+    def prepared(self, monitor: Given, *rules: Formalized) -> tuple[Checked, Executable]:
+        """The text, checked and compiled; `StrangeTextError` and `ToolError` say why not."""
+        checked = self.language.checked(monitor, rules)
+        program = self.language.tool()
+        assert program is not None
+        folder = Path(mkdtemp(dir=self.folder))
+        return checked, self.language.prepared(program, monitor, checked, folder).executable
+
+    def outcomes(self, monitor: Given, rules: Sequence[Formalized]) -> list[Outcome]:
+        """Of each requirement of one text."""
+        checked, executable = self.prepared(monitor, *rules)
+        return [explored(rule, executable, checked.plan(rule), 10**5) for rule in rules]
+
+    def outcome(self, monitor: Given, rule: Formalized) -> Outcome:
+        """Of a text of one requirement."""
+        (outcome,) = self.outcomes(monitor, [rule])
+        return outcome
+
+    def kind(self, monitor: Given, rule: Formalized) -> str:
+        """Whether it is refuted, refused, or the same as what fretc writes."""
+        try:
+            return KINDS[self.outcome(monitor, rule).result]
+        except (StrangeTextError, ToolError):
+            return REFUSED
+
+
+@dataclass(frozen=True)
+class Tongue:
+    """A language, with what tests of it need."""
+
+    name: str
+    language: Language
+    given: Callable[..., Given]
+    """The monitor that fretc writes for some rules."""
+    comments: tuple[str, str]
+    """Those that are free, and one of them."""
+    start: str
+    """Here begins the part that is changed."""
+    end: str
+    """Here it ends."""
+    edits: Sequence[tuple[str, str]]
+    """Mistakes, as what is found and what takes its place."""
+    told: Callable[[Path, Given, Formalized, Rows], list[list[c_monitors.Outcome]]]
+    """What the text tells at each tick, by another program than that of the verification."""
+
+    @property
+    def is_missing(self) -> bool:
+        return self.language.tool() is None
+
+    def faults(self, text: str) -> Iterator[str]:
+        """The text with each mistake at each place, one at a time."""
+        start, end = text.index(self.start), text.index(self.end)
+        for old, new in self.edits:
+            for match in re.finditer(old, text[start:end]):
+                place = start + match.start()
+                yield text[:place] + match.expand(new) + text[place + len(match[0]) :]
+
+
+_SHARED = (
+    (r"&&", "||"), (r"\|\|", "&&"), (r">=", ">"), (r"<=", "<"), (r"(?<= )< ", "<= "),
+    (r"\bis_", "not_"), (r"\bnot_", "is_"), (r"true", "false"), (r"false", "true"),
+    (r"(?<= )[1-9]\d*(?=\)|;|\)| })", "9"), (r"\+ 1", "+ 2"), (r"(?<= )0;", "1;"),
+    (r"-1;", "0;"), (r"since_1", "since_2"), (r"since_2", "since_1"),
+)  # fmt: skip
+_BITWISE = ((r"(?<!word) & (?!bit|~)", " | "), (r" \| (?!bit)", " & "))
+"""Not of rings, which are as fretc writes them."""
+
+
+def given_c(*rules: Formalized) -> Given:
+    """What `--emit c` writes for them."""
+    source = Source.of(*rules)
+    header = source.source.removesuffix(".c") + ".h"
+    return Given(source.source, source.texts[source.source], header, source.texts[header])
+
+
+def _told_by_c(
+    folder: Path, monitor: Given, rule: Formalized, rows: Rows
+) -> list[list[c_monitors.Outcome]]:
+    source = replace(Source.of(rule), texts=monitor.texts)
+    program = c_monitors.compiled(folder, "gcc", source, flags=["-std=c99"])
+    return program.run((0, rows))[1][0]
+
+
+def given_rust(*rules: Formalized) -> Given:
+    """What `--emit rust` writes for them."""
+    return Given("lib.rs", rust_monitors.library(rust_monitors.crate(*rules)))
+
+
+def _told_by_rust(
+    folder: Path, monitor: Given, rule: Formalized, rows: Rows
+) -> list[list[c_monitors.Outcome]]:
+    return rust_monitors.outcomes(
+        folder, [monitor.text], [(0, rows)], lints=["--cap-lints", "warn"]
+    )[0]
+
+
+def given_javascript(*rules: Formalized) -> Given:
+    """What `--emit js` writes for them."""
+    return Given("monitor.mjs", in_javascript(*rules))
+
+
+def _told_by_javascript(
+    folder: Path, monitor: Given, rule: Formalized, rows: Rows
+) -> list[list[c_monitors.Outcome]]:
+    (told,) = node.outcomes(folder, [monitor.text], [(0, rows)], "judge")
+    return [[_outcome(tick, each) for each in row] for tick, row in enumerate(told)]
+
+
+def _outcome(tick: int, told: dict[str, Any]) -> c_monitors.Outcome:
+    certain, possible = (_reading(tick, told[rail]) for rail in ("certain", "possible"))
+    # Only both together tell whether it was broken, or fails now.
+    failed = {False: (True, True), True: (False, False), None: (False, True)}[told["finite"]]
+    return c_monitors.Outcome(
+        certain._replace(failed=failed[0]),
+        possible._replace(failed=failed[1]),
+        told["verdict"],
+        told["finite"],
+        told["owed"],
+    )
+
+
+def _reading(tick: int, told: dict[str, Any]) -> Reading:
+    left = -1 if told["deadline"] is None else max(-1, told["deadline"] - tick)
+    trigger, breach, is_open, settled, answer = (
+        told[name] for name in ("trigger", "breach", "owed", "settled", "answer")
+    )
+    violated = told["firstViolation"] is not None
+    return Reading(left, violated, False, trigger, breach, is_open, settled, answer)
+
+
+C = Tongue(
+    "c", c, given_c, (r"/\*.*?\*/", "/* mine\n */"), "_clear(", "_judge(&",
+    (*_SHARED, *_BITWISE, (r"!= FRETC", "== FRETC"), (r"\.certain;", ".possible;"),
+     (r"(?m)^    +(rail|reading)->\w+ = .*;$", ";")),
+    _told_by_c,
+)  # fmt: skip
+RUST = Tongue(
+    "rust", rust, given_rust, (r"(?<!/)// .*", "// mine\n//"), "impl Rail {", "impl Default",
+    (*_SHARED, *_BITWISE, (r"!= Some", "== Some"), (r"\(certain\[", "(possible["),
+     (r": (\d+|-1),", ": 7,"), (r"(?m)^ +self\.\w+ = .*;$", "")),
+    _told_by_rust,
+)  # fmt: skip
+JAVASCRIPT = Tongue(
+    "javascript", javascript, given_javascript, (r"// .*", "// mine\n/* too */"),
+    "function rail(", "/** The truth of",
+    (*_SHARED, (r"null \?", "true ?"), (r": (\d+|-1),", ": 7,"),
+     (r"(?m)^  rail\.\w+ = .*;$", "")),
+    _told_by_javascript,
+)  # fmt: skip
+TONGUES = {each.name: each for each in (C, RUST, JAVASCRIPT)}

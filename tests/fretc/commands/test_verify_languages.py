@@ -1,0 +1,136 @@
+"""`fretc verify --file` of monitors in C, Rust and JavaScript."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from fretc.verification.c.build import FLAGS as C_FLAGS
+from fretc.verification.javascript.node import FLAGS as NODE_FLAGS
+from fretc.verification.rust.build import FLAGS as RUST_FLAGS
+from tests.command import Fretc, write
+from tests.compiled_monitors import TONGUES
+
+R1 = "whenever p the sw shall within 2 ticks satisfy q"
+
+
+@dataclass(frozen=True)
+class Made:
+    """A language, and a monitor that was made in it."""
+
+    name: str
+    emit: str
+    file: str
+    artefacts: tuple[str, ...]
+    flags: tuple[str, ...]
+    bound: tuple[str, str]
+    """A statement, and a wrong one."""
+    strange: tuple[str, str]
+    """A statement, and what fretc would not write beside it."""
+    missing: str
+
+
+MADE = {
+    each.name: each
+    for each in (
+        Made(
+            "C", "c", "r1_monitor.c", ("r1_monitor.c", "r1_monitor.h", "r1_monitor.so"), C_FLAGS,
+            ("rail->oldest_1 >= 2", "rail->oldest_1 >= 1"),
+            ("    fretc_reading *reading;", "abort();"),
+            "a monitor in C is compiled for its proof, and there is none of `gcc`, `clang`, `cc`",
+        ),
+        Made(
+            "Rust", "rust", "r1_monitor/src/lib.rs", ("lib.rs", "lib.so"), RUST_FLAGS,
+            ("self.oldest_1 >= 2", "self.oldest_1 >= 1"),
+            ("        // r1: what is remembered", "\nabort();"),
+            "a monitor in Rust is compiled for its proof, and there is no `rustc`",
+        ),
+        Made(
+            "JavaScript", "js", "r1_monitor.mjs", ("r1_monitor.mjs",), NODE_FLAGS,
+            ("rail.oldest_1 >= 2", "rail.oldest_1 >= 1"),
+            ("  rail.signals = [", "\nabort();"),
+            "a monitor in JavaScript is run for its proof, and there is no `node`",
+        ),
+    )
+}  # fmt: skip
+
+
+@pytest.fixture(params=MADE)
+def made(fretc: Fretc, request: pytest.FixtureRequest) -> Made:
+    """The monitor in one language that was made of `r1.fret`."""
+    found: Made = MADE[request.param]
+    if TONGUES[found.name.lower()].is_missing:
+        pytest.skip(f"what {found.name} needs is not installed")
+    write("r1.fret", R1)
+    assert fretc("r1.fret", "--emit", found.emit, "-o", ".").status == 0
+    return found
+
+
+def edited(path: str, old: str, new: str) -> None:
+    text = Path(path).read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    write(path, text.replace(old, new))
+
+
+@pytest.mark.slow
+@pytest.mark.confined
+def test_it_is_proved_as_what_it_is(fretc: Fretc, made: Made) -> None:
+    run = fretc("verify", "--file", made.file, "r1.fret")
+    assert run.status == 0, run
+    assert run.out.startswith("✔ r1  monitor  proved under (1): the monitor means")
+    (proof,) = json.loads(Path("build/verification.json").read_text())["evidence"]
+    assert tuple(proof["artefacts"]) == made.artefacts
+    (assumption,) = proof["assumptions"]
+    assert all(flag in assumption for flag in made.flags)
+    edited(made.file, *made.bound)
+    run = fretc("verify", "--file", made.file, "r1.fret", "--traces", "runs")
+    assert run.status == 1
+    assert Path("runs/r1_monitor_1.csv").exists()
+
+
+def test_a_text_that_fretc_would_not_write_is_not_run(fretc: Fretc, made: Made) -> None:
+    before, strange = made.strange
+    edited(made.file, before, f"{strange} {before}")
+    run = fretc("verify", "--file", made.file, "r1.fret")
+    assert run.status == 3
+    text = Path(made.file).read_text(encoding="utf-8")
+    line = text[: text.index("abort")].count("\n") + 1
+    assert f"; line {line} is not laid out as fretc writes it: `abort ( )" in run.out
+
+
+def test_without_its_tool_it_says_what_to_install(
+    fretc: Fretc, made: Made, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("PATH", "")
+    run = fretc("verify", "--file", made.file, "r1.fret")
+    assert (run.status, run.out) == (2, "")
+    assert run.err.startswith(f"F908 {made.missing}")
+
+
+def test_a_loop_takes_it_not(fretc: Fretc, made: Made) -> None:
+    run = fretc("verify", "--layer", "loop", "--file", made.file, "r1.fret")
+    assert (run.status, run.out) == (2, "")
+    assert run.err.startswith("F907 `--layer loop` takes a monitor in Python")
+
+
+def test_a_text_of_another_kind_is_not_run(fretc: Fretc, made: Made) -> None:
+    name = f"other{Path(made.file).suffix}"
+    write(name, '#include "other.h"\nabort();\n')
+    write("other.h", "")
+    run = fretc("verify", "--file", name, "r1.fret")
+    assert (run.status, run.out) == (2, "")
+    assert run.err.startswith(f"F602 `{name}` is no generated monitor: it names no requirement")
+    assert run.err.endswith(f"help: name a file that `--emit {made.emit}` wrote\n")
+
+
+@pytest.mark.skipif(TONGUES["c"].is_missing, reason="no C compiler is installed")
+def test_a_monitor_in_c_needs_its_header(fretc: Fretc) -> None:
+    write("r1.fret", R1)
+    assert fretc("r1.fret", "--emit", "c", "-o", ".").status == 0
+    Path("r1_monitor.h").unlink()
+    assert fretc("verify", "--file", "r1_monitor.c", "r1.fret").err.startswith("F901")
+    write("other.c", "int x;\n")
+    run = fretc("verify", "--file", "other.c", "r1.fret")
+    assert run.status == 2
+    assert run.err.startswith("F602 `other.c` is no generated monitor: it includes no header")

@@ -1,0 +1,55 @@
+"""The page within a report: opened at a requirement, judged there, and alone as ever."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from tests.command import Fretc
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
+
+WITHIN = "whenever near the robot shall within 2 ticks satisfy stopped"
+PROBABLE = "whenever near the robot shall with probability > 0.9 within 2 ticks satisfy stopped"
+
+
+@pytest.mark.slow
+def test_a_report_opens_the_page_at_a_requirement(fretc: Fretc, browser: Browser) -> None:
+    Path("requirements").mkdir()
+    for name, sentence in (
+        ("a", WITHIN),
+        ("b", "the robot shall always satisfy q"),
+        ("c", PROBABLE),
+    ):
+        Path(f"requirements/{name}.fret").write_text(sentence, encoding="utf-8")
+    fretc("report", "-o", "without.html")
+    fretc("report", "--play", "-o", "report.html")
+    assert 'id="inset"' not in Path("without.html").read_text("utf-8")
+    messages: list[str] = []
+    asked: list[str] = []
+    context = browser.new_context(offline=True)
+    page = context.new_page()
+    page.on("console", lambda message: messages.append(message.text))
+    page.on("pageerror", lambda error: messages.append(str(error)))
+    page.on("request", lambda request: asked.append(request.url))
+    page.goto(Path("report.html").absolute().as_uri())
+    buttons = page.locator("button.inset")
+    assert buttons.count() == 2
+    buttons.nth(1).click()
+    inset = page.frame_locator("iframe.inset")
+    inset.locator("#which").wait_for()
+    assert inset.locator("#which").input_value() == "1"
+    assert "b, satisfied" in inset.locator("#status").inner_text()
+    first = inset.locator("td[aria-label^='q at tick 0']")
+    first.click()
+    verdict = inset.locator("td[aria-label^='b at this tick at tick 0']")
+    assert verdict.get_attribute("aria-label") == "b at this tick at tick 0: violated"
+    with page.expect_download() as download:
+        inset.get_by_role("button", name="Save CSV").click()
+    assert download.value.suggested_filename == "b.csv"
+    context.close()
+    assert messages == []
+    assert not [url for url in asked if not url.startswith(("file:", "blob:", "about:"))]

@@ -1,0 +1,185 @@
+"""Monitors in each language are proved; a fault in one is refuted, refused, or of no effect."""
+
+import random
+import re
+from collections import Counter
+from dataclasses import replace
+from pathlib import Path
+from tempfile import mkdtemp
+
+import pytest
+
+from compiler.logic.claims import Result
+from compiler.targets.python.monitor import text
+from fretc.verification.compiled.readings import PythonRail
+from fretc.verification.compiled.verifying import explored, verified
+from fretc.verification.engines.sandbox import Limits
+from monitors.kernel.verdicts import Truth
+from monitors.loading import load
+from tests import meaning
+from tests.c_monitors import of_python
+from tests.compiled_monitors import (
+    FOR,
+    KINDS,
+    REFUTED,
+    RING,
+    SAME,
+    SENTENCES,
+    TONGUES,
+    WITHIN,
+    Checker,
+    Tongue,
+)
+from tests.each import each
+from tests.effort import FULL
+from tests.monitoring import rule
+from tests.strategies import templates
+
+LIMITS = Limits(seconds=20)
+
+
+@pytest.fixture(params=TONGUES)
+def tongue(request: pytest.FixtureRequest) -> Tongue:
+    found = TONGUES[request.param]
+    if found.is_missing:
+        pytest.skip(f"what {found.name} needs is not installed")
+    return found
+
+
+@pytest.fixture
+def checker(tongue: Tongue, tmp_path: Path) -> Checker:
+    return Checker(tongue.language, tmp_path)
+
+
+# What is right --------------------------------------------------------------------------------
+
+
+def test_each_requirement_of_one_text_is_proved(tongue: Tongue, checker: Checker) -> None:
+    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(SENTENCES)]
+    for one, outcome in zip(rules, checker.outcomes(tongue.given(*rules), rules), strict=True):
+        assert outcome.result is Result.PROVED, one.sentence
+
+
+@pytest.mark.slow
+def test_a_dozen_templates_are_proved(tongue: Tongue, checker: Checker) -> None:
+    drawn = random.Random(tongue.name).sample([*templates((0, 3))], 12)
+    rules = [rule(each.sentence, f"R{i}") for i, each in enumerate(drawn)]
+    for one, outcome in zip(rules, checker.outcomes(tongue.given(*rules), rules), strict=True):
+        assert outcome.result is Result.PROVED, one.sentence
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not FULL, reason="minutes: HYPOTHESIS_PROFILE=full")
+@each("scope", meaning.SCOPES)
+def test_every_template_is_proved(scope: str, tongue: Tongue, checker: Checker) -> None:
+    sentences = [each.sentence for each in templates((0, 1, 2, 3)) if each.scope == scope]
+    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
+    for one, outcome in zip(rules, checker.outcomes(tongue.given(*rules), rules), strict=True):
+        assert outcome.result is Result.PROVED, one.sentence
+
+
+@pytest.mark.slow
+def test_a_long_bound_is_proved_as_it_is(tongue: Tongue, checker: Checker) -> None:
+    one = rule("whenever p the sw shall within 1000 ticks satisfy q")
+    outcome = checker.outcome(tongue.given(one), one)
+    assert outcome.result is Result.PROVED
+    assert "1002 states" in outcome.detail
+
+
+@pytest.mark.slow
+@pytest.mark.confined
+def test_what_takes_too_long_is_not_proved(tongue: Tongue) -> None:
+    one = rule("whenever p the sw shall within 100000 ticks satisfy q")
+    program = tongue.language.tool()
+    assert program is not None
+    monitor = tongue.given(one)
+    (found,) = verified([one], monitor, tongue.language, program, Limits(seconds=1))
+    assert found.outcome.result is Result.NOT_CHECKED
+    assert found.outcome.detail.startswith("out of time")
+
+
+def test_too_many_states_are_not_proved(tongue: Tongue, checker: Checker) -> None:
+    one = rule("whenever p the sw shall within 100 ticks satisfy q")
+    checked, executable = checker.prepared(tongue.given(one), one)
+    outcome = explored(one, executable, checked.plan(one), 150)
+    assert outcome.result is Result.NOT_CHECKED
+
+
+def test_comments_and_layout_are_free(tongue: Tongue, checker: Checker) -> None:
+    one = rule(WITHIN)
+    monitor = tongue.given(one)
+    loose = re.sub(*tongue.comments, monitor.text).replace("    ", "\t")
+    assert loose != monitor.text
+    assert checker.outcome(replace(monitor, text=loose), one).result is Result.PROVED
+
+
+@pytest.mark.slow
+def test_what_is_made_of_a_text_is_the_same_each_time(tongue: Tongue, tmp_path: Path) -> None:
+    one = rule(WITHIN)
+    monitor, program = tongue.given(one), tongue.language.tool()
+    assert program is not None
+    checked = tongue.language.checked(monitor, [one])
+    first, second = (
+        tongue.language.prepared(program, monitor, checked, tmp_path) for _ in range(2)
+    )
+    assert (first.artefacts, first.engine) == (second.artefacts, second.engine)
+
+
+@each("sentence", SENTENCES)
+def test_the_reference_tells_what_the_monitor_in_python_tells(sentence: str) -> None:
+    """Saved and loaded at each tick, on both rails."""
+    one = rule(sentence)
+    choose = random.Random(sentence)
+    machine, reference = load("r1", text(one)), load("r1", text(one))
+    atoms = (*machine.PROPOSITIONS,)
+    rows: list[tuple[Truth, ...]] = [
+        tuple(choose.choice([False, True, True, None]) for _ in atoms) for _ in range(60)
+    ]
+    rails = [PythonRail(reference, one, atoms, doubt=doubt) for doubt in (False, True)]
+    states = [rail.save() for rail in rails]
+    for row, (outcome,) in zip(rows, of_python(machine, rows), strict=True):
+        for i, expected in enumerate((outcome.certain, outcome.possible)):
+            assert rails[i].step(states[i], row)[:-1] == tuple(expected)
+            states[i] = rails[i].save()
+
+
+# What is wrong --------------------------------------------------------------------------------
+
+
+def test_drawn_faults_are_refuted_or_refused(tongue: Tongue, checker: Checker) -> None:
+    """A few of those below, in this process: what crashes a library is not among them."""
+    one = rule(WITHIN)
+    monitor = tongue.given(one)
+    texts = [*dict.fromkeys(tongue.faults(monitor.text))]
+    drawn = random.Random(tongue.name).sample(texts, 6)
+    kinds = [checker.kind(replace(monitor, text=wrong), one) for wrong in drawn]
+    assert kinds.count(REFUTED) >= 1
+    assert kinds.count(SAME) <= 2
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not FULL, reason="minutes: HYPOTHESIS_PROFILE=full")
+@each("sentence", [WITHIN, FOR, RING])
+def test_faults_are_refuted_or_refused_or_of_no_effect(
+    sentence: str, tongue: Tongue, tmp_path: Path
+) -> None:
+    """What is proved tells the same as the monitor in Python on traces, run by another program."""
+    one, choose = rule(sentence), random.Random(sentence)
+    monitor, found = tongue.given(one), Counter[str]()
+    texts = [*dict.fromkeys(tongue.faults(monitor.text))]
+    drawn = choose.sample(texts, min(40, len(texts)))
+    program = tongue.language.tool()
+    assert program is not None
+    for wrong in drawn:
+        faulty = replace(monitor, text=wrong)
+        (examined,) = verified([one], faulty, tongue.language, program, LIMITS)
+        kind = KINDS[examined.outcome.result]
+        found[kind] += 1
+        if kind == SAME:
+            folder = Path(mkdtemp(dir=tmp_path))
+            machine = load("r1", text(one))
+            rows = [[choose.choice([False, True, None]) for _ in "mpq"] for _ in range(2000)]
+            assert tongue.told(folder, faulty, one, rows) == [*of_python(machine, rows)], wrong
+    print(tongue.name, sentence, found)
+    assert found[REFUTED] >= 8, found
+    assert found[SAME] <= 15, found
