@@ -26,17 +26,8 @@ from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors.loading import executed
 from tests.fretc.logs.logs import declare
-from tests.fretc.watch.test_session import (
-    LATE_FIRST,
-    MS,
-    SENTENCES,
-    START,
-    Sent,
-    Setting,
-    audited_rows,
-    plan_of,
-    recorded,
-)
+from tests.fretc.watch.sent import MS, SENTENCES, START, Sent, Setting, plan_of
+from tests.fretc.watch.test_session import audited_rows, recorded
 from tests.signal_policies import KINDS, audited_sample, signals
 
 settings_ = st.builds(
@@ -100,7 +91,9 @@ def judging(setting: Setting, some: Sequence[Sent], idle: int) -> tuple[Any, lis
 
 
 @given(settings_, messages, st.sampled_from([0, 3, 40]))
-@example(Setting(slow="z < 5 for 25 ms", lateness=0), LATE_FIRST, 3)
+@example(
+    Setting(slow="z < 5 for 25 ms", lateness=0), [Sent("/x", 1.0, 0, 60), Sent("/x", 1.0, 40)], 3
+)
 def test_every_tick_is_that_of_the_audit(setting: Setting, some: list[Sent], idle: int) -> None:
     node, _ = judging(setting, some, idle)
     session, _, recording = recorded(plan_of(setting), some, idle)
