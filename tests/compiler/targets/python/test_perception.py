@@ -28,7 +28,7 @@ from monitors.loading import executed
 from tests.fretc.logs.logs import declare
 from tests.fretc.watch.sent import MS, SENTENCES, START, Sent, Setting, plan_of
 from tests.fretc.watch.test_session import audited_rows, recorded
-from tests.signal_policies import KINDS, audited_sample, signals
+from tests.signal_policies import KINDS, Message, audited_sample, signals
 
 settings_ = st.builds(
     Setting,
@@ -132,7 +132,7 @@ def test_a_sample_is_that_of_the_audit(data: st.DataObject) -> None:
     field = np.array(each, np.asarray(each).dtype) if isinstance(each, list) else each
     if isinstance(each, list):
         field = np.array(each, {"float": np.float32, "double": np.float64}.get(kind, kind))
-    expected = audited_sample(signal, field, beside)[0]
+    expected = audited_sample(signal, Message(field, **beside, at=0))[0]
     try:
         printed = perception._policy(policy(signal))
     except ValueError:
