@@ -52,6 +52,13 @@ def interceptor() -> Runtime:
     return _joined(_ROOM, ("interceptor",))
 
 
+@cache
+def perception() -> Runtime:
+    """What a live node needs beside its monitor: messages → rows → what is owed."""
+    needed = ("kernel/verdicts", "kernel/readings", "samples", "courses", "ticking", "perception")
+    return _joined(_ROOM, needed)
+
+
 def _joined(folder: Path, modules: Sequence[str]) -> Runtime:
     imports: dict[str, set[str]] = {}
     texts: list[str] = []

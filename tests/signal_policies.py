@@ -8,26 +8,40 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from types import SimpleNamespace
 from typing import Any, assert_never
 
 import numpy as np
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from compiler.formalization.formalized import Formalized
 from compiler.signals import numbers as n
+from compiler.signals.policies import meaning
 from fretc.logs.signals.measures import Scope
 from fretc.logs.signals.propositions import truth, truth_values
 from fretc.logs.signals.samples import EXACT, Values
 from fretc.logs.signals.signals import is_chosen, sample
 from fretish import expressions as e
-from fretish.bindings.declarations import Invalid, Reading, Reduce, Signal, path
+from fretish.bindings.declarations import (
+    Declarations,
+    Invalid,
+    Proposition,
+    Reading,
+    Reduce,
+    Signal,
+    path,
+)
+from fretish.clock import Clock
+from fretish.diagnostics.source import Source
 from fretish.units import unit
 from monitors.kernel import readings
 from monitors.kernel.verdicts import Truth
+from tests.emitting import rule
 
 SIGNS = ("<", "<=", ">", ">=", "=", "!=")
-EDGES = (0, 1, 2, 3, 2**52 - 1, 2**52 + 1, 2**53 - 1, 2**53, 2**53 + 1, 2**63 - 1, 2**63, 2**64 - 1)
+EDGES = (0, 1, 2, 3, *(2**k + i for k in (52, 53, 63) for i in (-1, 0, 1)), 2**64 - 1)
 DIGITS = (
     "0",
     "0.1",
@@ -168,10 +182,106 @@ def signals(draw: st.DrawFn, name: str) -> Signal:
     )
 
 
-def audited_sample(signal: Signal, field: Any, fields: Mapping[str, Any]) -> Values:
+@dataclass(frozen=True)
+class Message:
+    """A message of a signal: its field, the fields that `valid` reads, and its time."""
+
+    field: Any
+    least: float
+    most: float
+    at: int
+    """-1: none has come."""
+
+
+NOW = 2 * 10**8
+"""The instant of every row, in nanoseconds."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A proposition over two signals, and messages of both."""
+
+    signals: tuple[Signal, Signal]
+    tree: e.Expression
+    rows: tuple[tuple[Message, Message], ...]
+
+    def expected(self) -> list[tuple[Truth, tuple[Values, Values]]]:
+        """What the audit says of each row: the truth, and the samples."""
+        found = []
+        for row in self.rows:
+            pairs = zip(self.signals, row, strict=True)
+            a, b = (audited_sample(signal, message) for signal, message in pairs)
+            values = {}
+            for signal, message, value in zip(self.signals, row, (a, b), strict=True):
+                age = NOW - message.at
+                lost = message.at < 0 or (signal.max_age is not None and age > signal.max_age)
+                values[signal.name] = np.array([np.nan]) if lost else value
+            given = {signal.name: signal for signal in self.signals}
+            found.append((audited_truth(self.tree, given, values), (a, b)))
+        return found
+
+
+@st.composite
+def messages(draw: st.DrawFn, signal: Signal) -> Message:
+    """A message that a signal may have."""
+    kind = draw(st.sampled_from([*KINDS]))
+    field = draw(KINDS[kind])
+    if signal.path.each:
+        items = draw(st.lists(KINDS[kind], max_size=4))
+        field = np.array(items, field.dtype)
+    ends = st.one_of(doubles, singles).map(float)
+    at = draw(st.sampled_from([-1, 0, NOW - 10**8 - 1, NOW - 10**8, NOW, NOW, NOW]))
+    return Message(field, draw(ends), draw(ends), at)
+
+
+@st.composite
+def cases(draw: st.DrawFn) -> Case:
+    """Bindings with messages."""
+    a, b = (draw(signals(name)) for name in ("a", "b"))
+    tree = draw(truths_of(("a", "b")))
+    rows = draw(st.lists(st.tuples(messages(a), messages(b)), min_size=3, max_size=10))
+    return Case((a, b), tree, tuple(rows))
+
+
+def collected(count: int) -> list[Case]:
+    """So many cases that the lowering takes: what a compiler is asked of at once."""
+    found: list[Case] = []
+
+    @settings(max_examples=count, database=None, suppress_health_check=[*HealthCheck])
+    @given(cases())
+    def collect(case: Case) -> None:
+        try:
+            meaning(Proposition("p", case.tree), case.signals)
+        except ValueError:  # a power that is too large, which the reader of bindings refuses
+            return
+        found.append(case)
+
+    collect()
+    return found
+
+
+def numbered(case: Case, number: int) -> Formalized:
+    """A rule that watches the case's proposition, over signals that no other case has."""
+    names = {signal.name: f"{signal.name}{number}" for signal in case.signals}
+
+    def renamed(tree: e.Expression) -> e.Expression:
+        if isinstance(tree, e.Name):
+            return e.Name(names[tree.id])
+        return e.with_children(tree, [*map(renamed, e.children(tree))])
+
+    given = {names[s.name]: replace(s, name=names[s.name]) for s in case.signals}
+    all_read = (e.Or((e.Name(signal.name), e.Truth(True))) for signal in case.signals)
+    tree = renamed(e.And((case.tree, *all_read)))
+    declared = {f"p{number}": Proposition(f"p{number}", tree)}
+    declarations = Declarations(Source("bindings.toml", ""), Clock(10**8), given, declared)
+    subject = rule(f"the sw shall always satisfy p{number}", f"R{number}")
+    return replace(subject, declarations=declarations)
+
+
+def audited_sample(signal: Signal, message: Message) -> Values:
     """The number of a message with this field, as a log's series of one sample has it."""
-    single = getattr(field, "dtype", None) == np.float32
-    value = sample(signal, SimpleNamespace(field=field, **fields), single=single)
+    single = message.field.dtype == np.float32
+    value = sample(signal, message, single=single)
     if isinstance(value, int):
         return np.array([value], EXACT)
     return np.array([value], np.float32 if single and is_chosen(signal) else np.float64)

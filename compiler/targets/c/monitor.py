@@ -20,6 +20,7 @@ from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.program.program import Counter
 from compiler.program.rails import Reading, Ring, rail
+from compiler.targets.c import signals
 from compiler.targets.c.printer import Printer
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
@@ -125,10 +126,13 @@ def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact,
         bytes=2 * printer.bytes,
         operations=_operations(source, len(rules)),
     )
-    return tuple(
+    monitor = tuple(
         Artifact(PurePosixPath(f"{name}.{ending}"), text)
         for ending, text in (("c", source), ("h", header))
     )
+    read = {n for rule in rules if rule.declarations for n in rule.declarations.signals}
+    reserved = _RESERVED | {*filter(_TAKEN.fullmatch, read)}
+    return (*monitor, *signals.files(name, base, rules, printer.names, reserved))
 
 
 def printed(name: str, rules: Sequence[Formalized]) -> Printer:

@@ -50,7 +50,7 @@ def judged(certain: Reading, possible: Reading) -> tuple[str, Truth, Truth]:
         verdict = "satisfied" if settled else "pending"
     finite: Truth = False if certain.failed == 1 else None if possible.failed == 1 else True
     is_owed, may_be = (1 in (each.trigger, each.open) for each in (certain, possible))
-    return verdict, finite, True if is_owed else None if may_be else False
+    return verdict, finite, False if not may_be else True if is_owed else None
 
 
 class PythonRail:

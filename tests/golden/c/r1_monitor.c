@@ -50,7 +50,7 @@ static void r1_judge(fretc_outcome *outcome)
     }
     /* FRETC_FALSE is 0, FRETC_TRUE 1 and FRETC_UNKNOWN 2: a jump would be guessed wrong each time that it changes. */
     outcome->finite = (fretc_truth)((outcome->certain.failed ? 0u : 1u) << (outcome->possible.failed ? 1u : 0u));
-    outcome->owed = (fretc_truth)((certain ? 1u : 0u) | ((possible & !certain) ? 2u : 0u));
+    outcome->owed = (fretc_truth)((possible ? 2u : 0u) >> (certain ? 1u : 0u));
 }
 
 void r1_step(r1_state *state, const r1_inputs *inputs, r1_outcomes *outcomes)

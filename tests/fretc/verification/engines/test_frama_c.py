@@ -89,13 +89,13 @@ def test_no_input_and_long_bounds_are_proved(sentences: tuple[str, ...]) -> None
 
 BEGIN = "    fretc_reading *reading;\n"
 FAULTS = (
-    (WITHIN, r"\(rail->oldest_1 < 3\) \? (\(rail->oldest_1 \+ 1\)) : 3;", r"\1;", "oldest_1 ≤ 3` after a tick"),
-    (WITHIN, r"(rail->oldest_1 \+ 1\)) : 3;", r"\1 : 4;", "user assertion"),
+    (WITHIN, r"\(rail->oldest_1 < 4\) \? (\(rail->oldest_1 \+ 1\)) : 4;", r"\1;", "oldest_1 ≤ 4` after a tick"),
+    (WITHIN, r"(rail->oldest_1 \+ 1\)) : 4;", r"\1 : 5;", "user assertion"),
     (WITHIN, r"rail->oldest_1 = 0;", "rail->oldest_1 = -2;", "user assertion"),
-    (WITHIN, r"\(3 - rail->r1_age\)", "(4 - rail->r1_age)", "user assertion"),
-    (WITHIN, r"    rail->r1_age = -1;\n    rail->r1_broken", "    rail->r1_broken", "initialization"),
+    (WITHIN, r"\(3 - rail->oldest_1\)", "(4 - rail->oldest_1)", "user assertion"),
+    (WITHIN, r"    rail->oldest_1 = -1;\n    rail->r1_broken", "    rail->r1_broken", "initialization"),
     (WITHIN, r"    rail->r1_broken = false;\n", "", "initialization"),
-    (WITHIN, r"    reading->open = .*;\n", "", "user assertion"),
+    (WITHIN, r"    reading->open = .*;\n", "", "initialization"),
     (WITHIN, r"    reading->left = .*;\n", "", "user assertion"),
     (WITHIN, r"(reading->open = )", r"\1 3 / rail->oldest_1 > 0 ||", "division_by_zero"),
     (WITHIN, r"(reading->open = )", r"\1 (1 << (rail->oldest_1 + 1 + 29)) > 0 ||", "shift"),

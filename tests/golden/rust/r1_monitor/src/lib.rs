@@ -75,12 +75,12 @@ impl Outcome {
         } else {
             Some(true)
         };
-        let owed = if certain.trigger || certain.open {
-            Some(true)
-        } else if possible.trigger || possible.open {
-            None
-        } else {
+        let owed = if !possible.trigger && !possible.open {
             Some(false)
+        } else if certain.trigger || certain.open {
+            Some(true)
+        } else {
+            None
         };
         Outcome { verdict, finite, owed, certain, possible }
     }

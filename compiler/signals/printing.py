@@ -1,0 +1,130 @@
+"""Numbers and truths as text: calls of the functions that a language has beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import reduce
+from math import ceil, floor, nan
+from typing import NamedTuple, assert_never
+
+from compiler.signals import numbers as n
+from monitors.kernel.readings import DOUBLES_END, Single, exact
+
+_HALVES_END = 2**52
+"""From here on 64-bit floats hold whole numbers only."""
+_WHOLE_END = 2**64
+"""From here on no whole number is recorded."""
+
+
+class Suited(NamedTuple):
+    """A constant as the number of each kind that it may meet; NaN: none is equal to it."""
+
+    single: float
+    is_single: bool
+    """Whether the number beside 32-bit floats is one of them; it may be too large."""
+    double: float
+    exact: float
+    magnitude: int
+    """Of the exact number, if it is whole and from 2^53 on; else 0."""
+
+
+def suited(value: Fraction, sign: str = "") -> Suited:
+    """The numbers for which `x sign number` says of each `x` of their kind what the fraction says.
+
+    It is what an audit compares samples with; without a sign they are the nearest ones.
+    """
+    found = exact(str(value))
+    double, wide, magnitude = found.double, found.double, 0
+    if sign and _HALVES_END <= abs(value) < _WHOLE_END:
+        if value.denominator != 1 and sign in ("=", "!="):
+            wide = nan
+        else:
+            whole = (ceil if sign in ("<", ">=") else floor)(value)
+            wide = float(whole)
+            magnitude = abs(whole) if DOUBLES_END <= abs(whole) < _WHOLE_END else 0
+        double = wide if abs(value) < DOUBLES_END else double
+    is_single = isinstance(found.single, Single)
+    return Suited(float(found.single), is_single, double, wide, magnitude)
+
+
+class Fixing(NamedTuple):
+    """How a language writes what has a constant in it."""
+
+    arithmetic: Callable[[Fraction], str]
+    """A constant in arithmetic."""
+    chosen: Callable[[str, str, Fraction], str]
+    """A function, a number, and a constant: the less or the greater of both."""
+    compared: Callable[[str, str, Fraction], str]
+    """A number, a sign and a constant."""
+
+
+@dataclass(frozen=True, slots=True)
+class Printer:
+    """A language's words; `given` and `held` are what names and durations are called."""
+
+    prefix: str
+    """Of each function."""
+    given: Mapping[str, str]
+    held: tuple[str, ...]
+    fixing: Fixing
+    truths: Mapping[bool | None, str]
+    signs: Mapping[str, str]
+    scale: Callable[[Fraction], str]
+    """The factor to base units, as one or two arguments."""
+
+    def truth(self, tree: n.Truth) -> str:
+        """The text of a truth."""
+        match tree:
+            case n.Known(value):
+                return self.truths[value]
+            case n.Flag(name):
+                return self._call("flag", self.given[name])
+            case n.Compared(sign, left, n.Fixed(value)):
+                return self.fixing.compared(self.number(left), sign, value)
+            case n.Compared(sign, left, right):
+                return self._call(
+                    "compared", self.number(left), self.signs[sign], self.number(right)
+                )
+            case n.Held(place):
+                return self.held[place]
+            case n.Not(arg):
+                return self._call("negated", self.truth(arg))
+            case n.All(args):
+                return reduce(lambda x, y: self._call("both", x, y), map(self.truth, args))
+            case n.Some(args):
+                return reduce(lambda x, y: self._call("either", x, y), map(self.truth, args))
+            case n.Same(left, right):
+                return self._call("same", self.truth(left), self.truth(right))
+            case _:
+                assert_never(tree)
+
+    def number(self, tree: n.Number) -> str:
+        """The text of a number."""
+        match tree:
+            case n.Given(name):
+                return self.given[name]
+            case n.Fixed(value):
+                return self.fixing.arithmetic(value)
+            case n.Applied(function, arg):
+                return self._call(function, self.number(arg))
+            case n.Chosen(function, left, n.Fixed(value)):
+                return self.fixing.chosen(function, self.number(left), value)
+            case n.Computed(function, left, right) | n.Chosen(function, left, right):
+                return self._call(function, self.number(left), self.number(right))
+            case n.Power(base, times):
+                return self._call("power", self.number(base), str(times))
+            case n.InBase(arg, scale):
+                return self._call("in_base", self.number(arg), self.scale(scale))
+            case _:
+                assert_never(tree)
+
+    def _call(self, function: str, *args: str) -> str:
+        return f"{self.prefix}{function}({', '.join(args)})"
+
+
+def parts(value: Fraction) -> tuple[float, float]:
+    """Numerator and denominator of a factor as the nearest 64-bit floats."""
+    top, bottom = (exact(str(part)).double for part in value.as_integer_ratio())
+    return top, bottom

@@ -1,0 +1,262 @@
+"""Bindings → the Python text of what a live node makes of messages, beside its monitor.
+
+The text of `monitors/perception.py` and of what it needs is copied in; below it stands one table,
+`SETTING`: a policy for each signal and a meaning for each proposition, whose expressions call the
+functions of `monitors.kernel.readings`, as `compiler.signals` has them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import assert_never
+
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.signals import numbers as n
+from compiler.signals.policies import Meaning, Policy, instant
+from fretish.bindings.declarations import Declarations, Reduce
+from fretish.clock import TimeSource
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from monitors.source_text import perception as runtime
+
+
+def refuse(rule: Formalized) -> Diagnostic | None:
+    """F601: what a live node cannot compute, or not as an audit does."""
+    reason = next(_reasons(rule), None)
+    if reason is None:
+        return None
+    what, mend = reason
+    return Diagnostic(
+        Code.NOT_EXPRESSIBLE,
+        f"a live node cannot judge {rule.id}: {what}",
+        rule.requirement.wording,
+        help=mend,
+    )
+
+
+def _reasons(rule: Formalized) -> Iterator[tuple[str, str]]:
+    declared = rule.declarations
+    if declared is None:
+        yield "there are no bindings", "say in bindings.toml what its propositions are"
+        return
+    unbound = [name for name in rule.watched if name not in declared.propositions]
+    if unbound:
+        yield f"nothing binds `{unbound[0]}`", f"add `[proposition.{unbound[0]}]` to the bindings"
+    yield from _of_clock(declared)
+    if unbound:
+        return
+    found = instant([rule])
+    if found is None or found.left_out:
+        yield (
+            "it looks back by ticks within a proposition",
+            "state it in the sentence, or by `for 200 ms`",
+        )
+        return
+    for policy in found.policies:
+        if policy.signal.reduce is Reduce.MEAN:
+            yield (
+                f"`{policy.signal.name}` is a mean, whose last digits differ from those of an "
+                "audit",
+                "reduce it by `min` or `max`, or publish the mean as a field",
+            )
+
+
+def _of_clock(declared: Declarations) -> Iterator[tuple[str, str]]:
+    clock = declared.clock
+    if clock.period is None:
+        yield (
+            f"its clock is {clock}" if clock.declared else "no clock says what a tick is",
+            'declare `[clock]` with `tick = "100 ms"`',
+        )
+    if clock.time is TimeSource.PUBLISH_TIME:
+        yield (
+            "its clock is the time of publication, which a subscriber is not given",
+            'write `time = "log_time"` or `time = "header.stamp"`',
+        )
+    if clock.patience is None:
+        yield (
+            "nothing says how long a tick waits for its messages",
+            'add `lateness = "50 ms"` to `[clock]`',
+        )
+
+
+def text(rules: Sequence[Formalized]) -> str:
+    """The file: `SETTING`, and above it all that it needs of the standard library.
+
+    Args:
+        rules: none of which was refused, of one project.
+    """
+    joined = runtime()
+    return render(
+        "ros/perception.py.j2",
+        version=__version__,
+        imports=joined.imports,
+        core=joined.text,
+        setting=setting(rules),
+    )
+
+
+def setting(rules: Sequence[Formalized]) -> Setting:
+    """The table of some rules that were not refused."""
+    found = instant(rules)
+    declared = rules[0].declarations
+    assert found is not None, "it is refused"
+    assert declared is not None, "it is refused"
+    assert declared.clock.period is not None, "it is refused"
+    return Setting(
+        tuple(map(_policy, found.policies)),
+        tuple(map(_meaning, found.meanings)),
+        declared.clock.period,
+        declared.clock.phase,
+        declared.clock.patience or 0,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """The texts of the table."""
+
+    policies: tuple[str, ...]
+    meanings: tuple[str, ...]
+    period: int
+    phase: int
+    lateness: int
+
+
+def _policy(policy: Policy) -> str:
+    signal = policy.signal
+    invalid = signal.invalid
+    kinds = (invalid.nan, invalid.positive_infinity, invalid.negative_infinity, invalid.other)
+    parts: dict[str, object] = {
+        "place": signal.path.index,
+        "each": signal.path.each,
+        "reduce": "" if signal.reduce is None else str(signal.reduce),
+        "invalid": tuple(map(str, kinds)),
+        "beside": policy.fields,
+        "max_age": signal.max_age,
+        "words": signal.values,
+        "numbers": signal.numbers,
+    }
+    if signal.reduce is Reduce.OUTLINE:
+        parts |= {"scale": str(signal.unit.factor), "sensor": signal.sensor}
+        parts["footprint"] = signal.footprint
+    texts = {name: repr(part) for name, part in parts.items() if part not in (None, False, (), "")}
+    if policy.valid is not None:
+        texts["valid"] = f"lambda row: {_truth(policy.valid)}"
+    head = [repr(signal.name), repr(signal.path.topic), repr(signal.path.fields)]
+    return f"Policy({', '.join([*head, *_named(texts)])})"
+
+
+def _meaning(meaning: Meaning) -> str:
+    asked = [_truth(part) for part, _ in meaning.held]
+    held = "".join(
+        f"(lambda row, held: {text}, {duration}), "
+        for text, (_, duration) in zip(asked, meaning.held, strict=True)
+    )
+    parts: dict[str, object] = {
+        "outer": tuple(_places(meaning.truth)),
+        "lookback": _lookback(meaning.truth, meaning),
+        "on_unknown": meaning.on_unknown,
+    }
+    texts = {name: repr(part) for name, part in parts.items() if part not in (None, (), 0)}
+    if meaning.on_unknown is False:
+        texts["on_unknown"] = "False"
+    if held:
+        texts["held"] = f"({held.strip()})"
+    texts["aggregate"] = repr(str(meaning.aggregate))
+    signals = tuple(dict.fromkeys(_signals(meaning)))
+    head = [repr(meaning.name), repr(signals), f"lambda row, held: {_truth(meaning.truth)}"]
+    return f"Meaning({', '.join([*head, *_named(texts)])})"
+
+
+def _named(texts: dict[str, str]) -> Iterator[str]:
+    return (f"{name}={text}" for name, text in texts.items())
+
+
+def _lookback(tree: n.Truth, meaning: Meaning) -> int:
+    """The durations within each other, added up."""
+    return max(
+        (
+            meaning.held[place][1] + _lookback(meaning.held[place][0], meaning)
+            for place in _places(tree)
+        ),
+        default=0,
+    )
+
+
+def _signals(meaning: Meaning) -> Iterator[str]:
+    for tree in (meaning.truth, *(part for part, _ in meaning.held)):
+        for part in _parts(tree):
+            if isinstance(part, n.Flag | n.Given):
+                yield part.name
+
+
+def _places(tree: n.Truth) -> list[int]:
+    return [part.place for part in _parts(tree) if isinstance(part, n.Held)]
+
+
+def _parts(tree: n.Truth | n.Number) -> Iterator[n.Truth | n.Number]:
+    yield tree
+    for part in _children(tree):
+        yield from _parts(part)
+
+
+def _children(tree: n.Truth | n.Number) -> Iterable[n.Truth | n.Number]:
+    match tree:
+        case n.Known() | n.Flag() | n.Held() | n.Given() | n.Fixed():
+            return ()
+        case n.Not(arg) | n.Applied(_, arg) | n.InBase(arg, _) | n.Power(arg, _):
+            return (arg,)
+        case n.All(args) | n.Some(args):
+            return args
+        case (
+            n.Same(left, right)
+            | n.Compared(_, left, right)
+            | n.Computed(_, left, right)
+            | n.Chosen(_, left, right)
+        ):
+            return (left, right)
+        case _:
+            assert_never(tree)
+
+
+def _truth(tree: n.Truth) -> str:
+    match tree:
+        case n.Known(value):
+            return repr(value)
+        case n.Flag(name):
+            return f"flag(row[{name!r}])"
+        case n.Compared(sign, left, right):
+            return f"compared({_number(left)}, {sign!r}, {_number(right)})"
+        case n.Held(place):
+            return f"held[{place}]"
+        case n.Not(arg):
+            return f"negation({_truth(arg)})"
+        case n.All(args):
+            return f"every({', '.join(map(_truth, args))})"
+        case n.Some(args):
+            return f"some({', '.join(map(_truth, args))})"
+        case n.Same(left, right):
+            return f"same({_truth(left)}, {_truth(right)})"
+        case _:
+            assert_never(tree)
+
+
+def _number(tree: n.Number) -> str:
+    match tree:
+        case n.Given(name):
+            return f"row[{name!r}]"
+        case n.Fixed(value):
+            return f"exact({str(value)!r})"
+        case n.Applied(function, arg):
+            return f"{function}({_number(arg)})"
+        case n.Computed(function, left, right) | n.Chosen(function, left, right):
+            return f"{function}({_number(left)}, {_number(right)})"
+        case n.Power(base, times):
+            return f"power({_number(base)}, {times})"
+        case n.InBase(arg, scale):
+            return f"in_base({_number(arg)}, exact({str(scale)!r}))"
+        case _:
+            assert_never(tree)

@@ -1,0 +1,202 @@
+"""From samples to the truth of a proposition, step by step, and to what a tick sees of it.
+
+Times are whole nanoseconds. Steps, ages and durations are those of an audit
+(`fretc.logs.signals.propositions`, `fretc.logs.signals.traces`). The text of this module is copied
+into emitted nodes: it needs the standard library only.
+"""
+
+from bisect import bisect_left, bisect_right
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from monitors.kernel.readings import Reading
+from monitors.kernel.verdicts import Truth
+
+
+class Meaning(NamedTuple):
+    """A proposition: its truth at an instant, and what a tick sees of several instants."""
+
+    name: str
+    signals: tuple[str, ...]
+    truth: Callable[[Mapping[str, Reading], Sequence[Truth]], Truth]
+    """Of the numbers of its signals, and of what has held for a duration."""
+    held: tuple[tuple[Callable[[Mapping[str, Reading], Sequence[Truth]], Truth], int], ...] = ()
+    """What has to hold, for how many nanoseconds; each may ask for those before it."""
+    outer: tuple[int, ...] = ()
+    """The places of those that `truth` asks for."""
+    lookback: int = 0
+    """How far its truth depends on the past."""
+    aggregate: str = "last"
+    """`any`, `all` or `last`."""
+    on_unknown: Truth = None
+
+
+class Series:
+    """The samples of a signal in order of time; equal times in the order of arrival."""
+
+    def __init__(self, max_age: int | None = None) -> None:
+        self.max_age = max_age
+        self.times: list[int] = []
+        self.values: list[Reading] = []
+
+    def put(self, time: int, value: Reading) -> None:
+        """One sample."""
+        place = bisect_right(self.times, time)
+        self.times.insert(place, time)
+        self.values.insert(place, value)
+
+    def forget(self, start: int) -> None:
+        """Drop what is before the sample in force at `start`."""
+        count = max(0, bisect_left(self.times, start) - 1)
+        del self.times[:count], self.values[:count]
+
+    def next(self, done: int) -> int | None:
+        """The next time after `done` at which its value may change."""
+        place = bisect_right(self.times, done)
+        following = self.times[place] if place < len(self.times) else None
+        if place and self.max_age is not None:
+            expiry = self.times[place - 1] + self.max_age + 1
+            if expiry > done and (following is None or expiry < following):
+                return expiry
+        return following
+
+    def span(self, time: int) -> tuple[int, int]:
+        """The places of the samples at a time, from the first one to behind the last one."""
+        return bisect_left(self.times, time), bisect_right(self.times, time)
+
+    def at(self, place: int, time: int) -> Reading:
+        """The value of a sample as it counts at a time."""
+        if place < 0 or (self.max_age is not None and time - self.times[place] > self.max_age):
+            return None
+        return self.values[place]
+
+
+class _Persistence:
+    """Whether a truth has held for a duration, event by event."""
+
+    __slots__ = ("current", "duration", "ends", "state")
+
+    def __init__(self, duration: int) -> None:
+        self.duration = duration
+        self.ends: dict[Truth, int] = {}
+        """When the truth was last false, and unknown, before it changed; at first it is unknown."""
+        self.current: Truth = None
+        self.state: Truth = None
+
+    def copy(self) -> "_Persistence":
+        other = _Persistence(self.duration)
+        other.ends, other.current, other.state = dict(self.ends), self.current, self.state
+        return other
+
+    def take(self, time: int, truth: Truth) -> None:
+        self.ends[self.current] = time
+        self.current = truth
+
+    def next(self, done: int) -> int | None:
+        over = [self.ends[each] + self.duration for each in (False, None) if each in self.ends]
+        return min((time for time in over if time > done), default=None)
+
+    def settle(self, time: int) -> None:
+        """Its state at a time, once all that happens then was taken."""
+        self.state = None if self._within(None, time) else True
+        if self._within(False, time):
+            self.state = False
+
+    def _within(self, truth: Truth, time: int) -> bool:
+        if self.current is truth:
+            return True
+        return truth in self.ends and time < self.ends[truth] + self.duration
+
+
+class Course:
+    """The truth of a proposition, step by step."""
+
+    def __init__(self, meaning: Meaning, series: Mapping[str, Series], start: int) -> None:
+        """Nothing has passed; the first step is at `start`."""
+        self._meaning = meaning
+        self._series = {name: series[name] for name in meaning.signals}
+        self._start, self._done = start, start - 1
+        self._held = [_Persistence(duration) for _, duration in meaning.held]
+        self._truth: Truth = None
+
+    def copy(self) -> "Course":
+        """Another one, which goes on from here by itself."""
+        other = Course(self._meaning, self._series, self._start)
+        other._done, other._truth = self._done, self._truth
+        other._held = [each.copy() for each in self._held]
+        return other
+
+    def steps(self, until: int) -> list[tuple[int, Truth]]:
+        """Let time pass up to and including `until`: the steps that are new."""
+        found: list[tuple[int, Truth]] = []
+        while (time := self._next()) is not None and time <= until:
+            found += ((time, truth) for truth in self._at(time))
+            self._done = time
+        self._done = max(self._done, until)
+        return found
+
+    def sight(self, tick: int, first: tuple[int, int | None] | None = None) -> Truth:
+        """What a tick sees, which is later than those before it.
+
+        `first` is for the first tick of all: when the log began, and from when on all of its
+        signals have begun (None: not yet). An unknown before that does not count.
+        """
+        before = self._truth
+        steps = self.steps(tick)
+        if first is not None and steps:
+            told = [
+                place
+                for place, (time, truth) in enumerate(steps)
+                if truth is not None or (first[1] is not None and time >= first[1])
+            ]
+            steps = steps[told[0] if told else -1 :]
+        seen = self._combined([truth for _, truth in steps], before)
+        return self._meaning.on_unknown if seen is None else seen
+
+    def _combined(self, truths: Sequence[Truth], before: Truth) -> Truth:
+        if not truths:
+            return before
+        if self._meaning.aggregate == "last":
+            return truths[-1]
+        decisive = self._meaning.aggregate == "any"
+        if decisive in truths:
+            return decisive
+        return None if None in truths else not decisive
+
+    def _next(self) -> int | None:
+        if self._done < self._start:
+            return self._start
+        sources: list[Series | _Persistence] = [*self._series.values(), *self._held]
+        times = [source.next(self._done) for source in sources]
+        return min((time for time in times if time is not None), default=None)
+
+    def _at(self, time: int) -> list[Truth]:
+        """The truths at one time, of the first samples together, then of the second ones."""
+        spans = {name: series.span(time) for name, series in self._series.items()}
+        ranks = max([1, *(end - begin for begin, end in spans.values())])
+        rows = [
+            {
+                name: series.at(min(spans[name][0] + rank, spans[name][1] - 1), time)
+                for name, series in self._series.items()
+            }
+            for rank in range(ranks)
+        ]
+        before = [each.state for each in self._held]
+        states: list[Truth] = []
+        for (truth, _), held in zip(self._meaning.held, self._held, strict=True):
+            for row in rows:
+                held.take(time, truth(row, states))
+            held.settle(time)
+            states.append(held.state)
+        changed = any(states[place] is not before[place] for place in self._meaning.outer)
+        if not (changed or time == self._start or self._is_event(time, spans)):
+            return []
+        truths = [self._meaning.truth(row, states) for row in rows]
+        self._truth = truths[-1]
+        return truths
+
+    def _is_event(self, time: int, spans: Mapping[str, tuple[int, int]]) -> bool:
+        return any(
+            begin < end or series.next(time - 1) == time
+            for (begin, end), series in zip(spans.values(), self._series.values(), strict=True)
+        )

@@ -1,0 +1,246 @@
+"""Messages that arrive → the truth of propositions at each tick → what a robot owes.
+
+It says of a live robot what an audit says of the recording, tick by tick; which message counts at
+which tick is said by `monitors/ticking.py`. Times are whole nanoseconds.
+
+The text of this module is copied into emitted nodes: it needs the standard library only.
+"""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from monitors.courses import Course, Meaning, Series
+from monitors.kernel.readings import Reading
+from monitors.kernel.verdicts import Truth
+from monitors.samples import Policy, sample
+from monitors.ticking import Ledger, Ticking, is_jump, late
+
+MOST_TICKS = 10_000
+"""More ticks than this at once mean that a clock was set forward."""
+
+
+class Setting(NamedTuple):
+    """What the bindings say of a robot."""
+
+    policies: tuple[Policy, ...]
+    meanings: tuple[Meaning, ...]
+    period: int
+    phase: int = 0
+    lateness: int = 0
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """All that are read."""
+        return tuple(dict.fromkeys(policy.topic for policy in self.policies))
+
+
+class Perception:
+    """What each tick of one run sees."""
+
+    def __init__(self, setting: Setting) -> None:
+        """Nothing has come yet."""
+        self._setting = setting
+        self._series = {each.name: Series(each.max_age) for each in setting.policies}
+        self._topic = {each.name: each.topic for each in setting.policies}
+        self._ticking = Ticking(setting.topics, setting.period, setting.phase)
+        self._courses: dict[str, Course] = {}
+        self._late: dict[str, list[tuple[int, int]]] = {}
+        self._start: int | None = None
+        """The earliest time of all messages, late ones too."""
+        self._stale: set[str] = set()
+        """Propositions for which the past has changed."""
+
+    @property
+    def origin(self) -> int | None:
+        """Where the grid of ticks begins, once it is placed."""
+        return self._ticking.origin
+
+    def arrive(
+        self, topic: str, time: int, arrival: int, values: Mapping[str, Reading]
+    ) -> tuple[int, int, tuple[str, ...]] | None:
+        """One message: a sample of each signal of its topic.
+
+        Returns:
+            The first and the last judged tick that it was late for, and the propositions that are
+            unknown there.
+        """
+        for name, value in values.items():
+            self._series[name].put(time, value)
+        if self._start is None or time < self._start:
+            self._start = time
+            self._stale.update(self._courses)
+        last = self._ticking.last
+        judged = last is not None and time <= last
+        span = late(time, arrival, self._setting.lateness)
+        if span is not None:
+            self._late.setdefault(topic, []).append(span)
+        if not judged or last is None:
+            self._ticking.arrive(topic, time)
+            return None
+        readers = tuple(each.name for each in self._setting.meanings if self._reads(each, topic))
+        self._stale.update(readers)
+        return time, last, readers
+
+    def _reads(self, meaning: Meaning, topic: str) -> bool:
+        return any(self._topic[name] == topic for name in meaning.signals)
+
+    def until(self, passed: int) -> list[tuple[int, Mapping[str, Truth]]] | None:
+        """Everything before `passed` has come: the ticks that are judged now.
+
+        Returns:
+            None where a clock was set forward.
+        """
+        due, first = self._ticking.due(passed), self._ticking.last is None
+        if len(due) > MOST_TICKS:
+            return None
+        courses = self._live() if due else {}
+        ticks = self._ticking.until(passed)
+        if not ticks:
+            return []
+        rows = self._rows(ticks, courses, first)
+        for series in self._series.values():
+            series.forget(ticks[-1] - self._lookback - 1)
+        for spans in self._late.values():
+            spans[:] = [span for span in spans if span[1] > ticks[-1]]
+        return rows
+
+    def glance(self, time: int) -> list[tuple[int, Mapping[str, Truth]]]:
+        """What would be seen if there were a tick now, and the ticks before it not yet judged."""
+        last, due = self._ticking.last, self._ticking.due(time)
+        if last is None and not due:
+            return []
+        ticks = [*due, max(time, (-1 if last is None else last) + 1)]
+        if len(ticks) > MOST_TICKS:
+            return []
+        courses = {name: course.copy() for name, course in self._live().items()}
+        return self._rows(ticks, courses, last is None)
+
+    @property
+    def _lookback(self) -> int:
+        return max((each.lookback for each in self._setting.meanings), default=0)
+
+    def _live(self) -> Mapping[str, Course]:
+        """The courses, up to the last tick."""
+        start, last = self._start, self._ticking.last
+        assert start is not None, "a tick comes of a message"
+        for meaning in self._setting.meanings:
+            if last is None:  # the start may still have moved
+                self._courses[meaning.name] = Course(meaning, self._series, start)
+            elif meaning.name in self._stale:
+                begin = max(start, last - meaning.lookback - 1)
+                course = self._courses[meaning.name] = Course(meaning, self._series, begin)
+                course.steps(last)
+        self._stale.clear()
+        return self._courses
+
+    def _rows(
+        self, ticks: Sequence[int], courses: Mapping[str, Course], first: bool
+    ) -> list[tuple[int, Mapping[str, Truth]]]:
+        rows: list[tuple[int, Mapping[str, Truth]]] = []
+        for tick in ticks:
+            row: dict[str, Truth] = {}
+            for meaning in self._setting.meanings:
+                begun = self._beginning(meaning) if first else None
+                truth = courses[meaning.name].sight(tick, begun)
+                row[meaning.name] = None if self._is_late(meaning, tick) else truth
+            rows.append((tick, row))
+            first = False
+        return rows
+
+    def _beginning(self, meaning: Meaning) -> tuple[int, int | None]:
+        start = self._start or 0
+        series = [self._series[name].times for name in meaning.signals]
+        if not all(series):
+            return start, None
+        return start, max((times[0] for times in series), default=start)
+
+    def _is_late(self, meaning: Meaning, tick: int) -> bool:
+        topics = {self._topic[name] for name in meaning.signals}
+        return any(a <= tick <= b for topic in topics for a, b in self._late.get(topic, ()))
+
+
+# From rows to what is owed -----------------------------------------------------------------------
+
+KEPT = 1000
+"""So many of the last ticks become unknown where a message comes late."""
+
+
+class Judging:
+    """A monitor of one or several requirements, stepped by what arrives.
+
+    The rule of who drives: stop unless `owed` is False.
+    """
+
+    def __init__(self, monitor: Callable[[], Any], setting: Setting) -> None:
+        """Nothing has come yet.
+
+        Args:
+            monitor: makes one; its propositions are all in the setting.
+            setting: what the bindings say.
+        """
+        self._make, self._setting = monitor, setting
+        self.resets = 0
+        """How often a clock was set: what followed was another run."""
+        self._begin()
+
+    def _begin(self) -> None:
+        self.perception = Perception(self._setting)
+        self.monitor = self._make()
+        self.ledger = Ledger((self.monitor,), KEPT)
+        self._latest: dict[str, int] = {}
+        self._received = 0
+
+    def arrive(
+        self, topic: str, time: int, arrival: int, message: Any, singles: Collection[str] = ()
+    ) -> None:
+        """One message.
+
+        Args:
+            topic: on which it came.
+            time: of the message, on the declared clock.
+            arrival: when it was received, on the clock of arrivals.
+            message: with its fields as attributes.
+            singles: the signals whose fields are of 32-bit floats.
+
+        Raises:
+            AttributeError, TypeError: it does not have the fields that the bindings name.
+        """
+        if is_jump(self._latest.get(topic), time) or is_jump(self._received, arrival):
+            self.resets += 1
+            self._begin()
+        self.pass_to(arrival)
+        values = {
+            policy.name: sample(policy, message, policy.name in singles)
+            for policy in self._setting.policies
+            if policy.topic == topic
+        }
+        self._latest[topic] = max(time, self._latest.get(topic, time))
+        found = self.perception.arrive(topic, time, self._received, values)
+        if found is not None:
+            self.ledger.withdraw(*found)
+
+    def pass_to(self, now: int) -> None:
+        """Everything that was received before `now` has been given."""
+        self._received = max(self._received, now)
+        rows = self.perception.until(self._received - self._setting.lateness)
+        if rows is None:
+            self.resets += 1
+            self._begin()
+            self._received = now
+            return
+        for time, row in rows:
+            self.ledger.advance(time, row)
+
+    def owed(self) -> tuple[Truth, ...]:
+        """Of each requirement whether the robot must act now; None: unknown, or nothing is known.
+
+        It counts what has come since the last tick, as if there were a tick now.
+        """
+        now = max(self._received - self._setting.lateness, *self._latest.values(), 0)
+        rows = [row for _, row in self.perception.glance(now)]
+        if not rows:
+            return (None,) * len(self.monitor.REQUIREMENTS)
+        ahead = self._make()
+        ahead.restore(self.monitor.state())
+        ahead.advance(rows)
+        return tuple(standing.owed for standing in ahead.standings())
