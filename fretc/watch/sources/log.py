@@ -15,6 +15,7 @@ from mcap.opcode import Opcode
 from mcap.records import Channel as McapChannel
 from mcap.records import Chunk, Message, Schema
 
+from compiler.files.text_files import regular
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.container import HEAD, LARGEST, MAGIC, BrokenError, frames, parse, unpacked
 from fretc.logs.storage import storage_diagnostics
@@ -51,7 +52,7 @@ class Log:
         self._wanted = frozenset(topics)
         place = Text(self.name, "").span()
         try:
-            with open(self.name, "rb") as stream:
+            with regular(self.name) as stream:
                 yield Opened(self.name)
                 yield from self._read(stream, place)
         except FileNotFoundError:
