@@ -171,7 +171,8 @@ def test(
     elif output == "-" or form == "json":
         click.echo(text, nl=False)
     else:
-        click.echo(coloured([*_lines(suite, rules, show)]), nl=False)
+        all_lines = [(visible(text), colour) for text, colour in _lines(suite, rules, show)]
+        click.echo(coloured(all_lines), nl=False)
     outputs: dict[Path, str] = {} if saved or output == "-" else {Path(output): text}
     if emitted is not None and on_stage is None:
         outputs |= _files(suite, rules, emitted, emit_to, languages)

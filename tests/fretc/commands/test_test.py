@@ -167,3 +167,18 @@ def test_tests_of_a_file_are_written_again_as_they_are(fretc: Fretc, folder: Pat
     wrong = fretc("test", str(folder), "--suite", "kept.json", "--emit", "csv", "--emit-to", "new")
     assert (wrong.status, Path("new").exists()) == (2, False)
     assert "expects what the monitor does not say: violated" in wrong.err
+
+
+@pytest.mark.parametrize("option", [(), ("--show", "R1")])
+def test_texts_of_a_file_are_not_for_the_terminal(
+    fretc: Fretc, folder: Path, option: tuple[str, ...]
+) -> None:
+    document = json.loads(fretc("test", str(folder), "-o", "-").out)
+    for each in (*document["tests"], *document["obligations"]):
+        each["words"] = "\x1b]0;title\x07 \u202e"
+    for each in document["requirements"]:
+        each["sentence"] = each["doubt"] = "\x1b]0;title\x07 \u202e"
+    Path("hostile.json").write_text(json.dumps(document))
+    run = fretc("test", str(folder), "--suite", "hostile.json", *option)
+    assert run.status == 0
+    assert not {"\x1b", "\x07", "\u202e"} & {*run.out, *run.err}
