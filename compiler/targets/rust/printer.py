@@ -3,23 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import NamedTuple, assert_never
 
-from compiler.program.instructions import Advance, Assign, Choose, Count, Shift
 from compiler.program.program import Counter, Flag
-from compiler.program.rails import Cell, Deadline, Delay, Rail, Ring, Stage, Step
-from compiler.program.values import (
-    Age,
-    And,
-    Comparison,
-    Constant,
-    Literal,
-    Not,
-    Or,
-    Value,
-    Variable,
-)
+from compiler.program.rails import Deadline, Ring
+from compiler.program.statements import Statements
+from compiler.program.values import Age, Comparison, Not, Value
 
 
 class Field(NamedTuple):
@@ -31,20 +21,11 @@ class Field(NamedTuple):
     comment: str
 
 
-@dataclass(frozen=True, slots=True)
-class Printer:
+class Printer(Statements):
     """Rust's words for a rail: its cells are fields of `self`, its literals those of `now`."""
 
-    rail: Rail
-    names: Mapping[str, str]
-    """An identifier for each proposition."""
-    cells: Mapping[str, Cell]
-    """Of the rail, by their names."""
-
-    @classmethod
-    def of(cls, rail: Rail, names: Mapping[str, str]) -> Printer:
-        """Of a rail, with an identifier for each proposition."""
-        return cls(rail, names, {cell.name: cell for cell in rail.cells})
+    __slots__ = ()
+    CELLS, LITERALS, LOCAL, IF = "self.", "now.", "let", ("", "")
 
     def fields(self) -> Iterator[Field]:
         """Those of all cells."""
@@ -61,100 +42,38 @@ class Printer:
                 case _:
                     assert_never(cell)
 
-    def literals(self) -> Iterator[tuple[str, str, bool]]:
-        """The name of each literal, the field of the inputs that it reads, and its sign."""
-        for literal in self.rail.literals:
-            yield self._literal(literal), self.names[literal.proposition], literal.positive
+    def negated(self, value: Value) -> str:
+        """A comparison is turned round: clippy asks for that."""
+        if isinstance(value, Age):
+            return self.value(replace(value, comparison=_OPPOSITES[value.comparison]))
+        return f"!{self.grouped(value)}"
 
-    def _literal(self, literal: Literal) -> str:
-        return f"{'is' if literal.positive else 'not'}_{self.names[literal.proposition]}"
+    def joins(self, value: Value) -> bool:
+        """Whether its expression joins or compares others; a negated comparison is one, too."""
+        is_turned = isinstance(value, Not) and isinstance(value.value, Age)
+        return is_turned or Statements.joins(self, value)
 
-    def value(self, value: Value) -> str:
-        """An expression of type `bool`."""
-        match value:
-            case Constant(truth):
-                return str(truth).lower()
-            case Literal():
-                return f"now.{self._literal(value)}"
-            case Variable(name):
-                return self._place(name)
-            case Age(counter, comparison, number):
-                return f"self.{counter} {comparison.value} {number}"
-            case Not(Age(counter, comparison, number)):
-                return self.value(Age(counter, _OPPOSITES[comparison], number))
-            case Not(negated):
-                return f"!{self._grouped(negated)}"
-            case And(values):
-                return " & ".join(map(self._grouped, values))
-            case Or(values):
-                return " | ".join(map(self._grouped, values))
-            case _:
-                assert_never(value)
+    def capped(self, counter: str, most: int) -> str:
+        """A counter one tick later, where it stays at the most."""
+        return f"if {counter} < {most} {{ {counter} + 1 }} else {{ {most} }}"
 
-    def _grouped(self, value: Value) -> str:
-        """In parentheses, if it joins or compares others."""
-        joined = isinstance(value, And | Or | Age) or isinstance(getattr(value, "value", None), Age)
-        return f"({self.value(value)})" if joined else self.value(value)
-
-    def _place(self, name: str) -> str:
-        return f"self.{name}" if name in self.cells else name
-
-    def lines(self, stage: Stage) -> Iterator[str]:
-        """The statements of a stage."""
-        for step in stage.steps:
-            yield from self._statement(step)
-
-    def _statement(self, step: Step) -> Iterator[str]:
-        match step:
-            case Assign(name, value):
-                yield self._assigned(name, self.value(value))
-            case Shift(name, cell, value):
-                yield self._assigned(name, f"self.{cell}")
-                yield f"self.{cell} = {self.value(value)};"
-            case Count(counter, number):
-                yield f"self.{counter} = {number};"
-            case Advance(counter, most):
-                grown = f"if self.{counter} < {most} {{ self.{counter} + 1 }} else {{ {most} }}"
-                yield f"self.{counter} = {grown};"
-            case Delay(name, ring, value):
-                yield from self._delay(name, ring, self.value(value))
-            case Choose(branches, otherwise):
-                word = "if"
-                for condition, then in branches:
-                    yield f"{word} {self.value(condition)} {{"
-                    yield from self._inner(then)
-                    word = "} else if"
-                yield "} else {"
-                yield from self._inner(otherwise)
-                yield "}"
-            case _:
-                assert_never(step)
-
-    def _inner(self, step: Step) -> Iterator[str]:
-        return (f"    {line}" for line in self._statement(step))
-
-    def _assigned(self, name: str, value: str) -> str:
-        place = self._place(name)
-        return f"{place} = {value};" if place != name else f"let {name} = {value};"
-
-    def _delay(self, name: str, ring: str, value: str) -> Iterator[str]:
-        """One bit is read and written; its place goes round."""
-        cell, at = self.cells[ring], f"self.{ring}_at"
-        assert isinstance(cell, Ring)
-        word, bit = f"self.{ring}[{at} / 32]", f"1 << ({at} % 32)"
+    def delay(self, name: str, ring: Ring, value: str) -> Iterator[str]:
+        """One bit of a ring is read and written; its place goes round."""
+        at = f"self.{ring.name}_at"
+        word, bit = f"self.{ring.name}[{at} / 32]", f"1 << ({at} % 32)"
         yield f"let {name} = {word} & ({bit}) != 0;"
         yield f"if {value} {{"
         yield f"    {word} |= {bit};"
         yield "} else {"
         yield f"    {word} &= !({bit});"
         yield "}"
-        yield f"{at} = if {at} == {cell.length - 1} {{ 0 }} else {{ {at} + 1 }};"
+        yield f"{at} = if {at} == {ring.length - 1} {{ 0 }} else {{ {at} + 1 }};"
 
     def left(self, deadline: Deadline | None, is_open: Value) -> str:
         """The ticks to a deadline, if there is one ahead."""
         if deadline is None:
             return "None"
-        condition = f"{self._grouped(is_open)} & (self.{deadline.counter} >= 0)"
+        condition = f"{self.grouped(is_open)} & (self.{deadline.counter} >= 0)"
         ticks = f"u32::try_from({deadline.horizon} - self.{deadline.counter}).ok()"
         return f"if {condition} {{ {ticks} }} else {{ None }}"
 
