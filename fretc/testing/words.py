@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import groupby
+from typing import TypeVar
 
 from compiler.explanation.reasons import why
 from compiler.formalization import reference
@@ -24,6 +25,8 @@ from fretish import syntax as s
 from monitors.kernel import Column, Monitor
 from monitors.kernel.columns import truths
 from monitors.kernel.verdicts import PENDING, Truth, Verdict
+
+Row = TypeVar("Row")
 
 
 @dataclass(frozen=True)
@@ -208,10 +211,18 @@ def undecided(rule: Formalized, monitor: Monitor, word: Word, atom: str) -> Expe
 
 
 def _monitored(monitor: Monitor, word: Word, because: str) -> Expected:
+    rows = (_row(monitor, word, tick) for tick in range(word.ticks))
+    return outcome(monitor, monitor.advance, rows, because)
+
+
+def outcome(
+    monitor: Monitor, step: Callable[[Sequence[Row]], None], rows: Iterable[Row], because: str = ""
+) -> Expected:
+    """What a monitor of one requirement says of rows that its method steps, from the first tick."""
     decided = None
     monitor.reset()
-    for tick in range(word.ticks):
-        monitor.advance([_row(monitor, word, tick)])
+    for tick, row in enumerate(rows):
+        step([row])
         if decided is None and monitor.verdicts()[0] != PENDING:
             decided = tick
     (standing,) = monitor.standings()

@@ -17,8 +17,8 @@ from compiler.targets.python import monitor as emitted
 from compiler.targets.python.comparisons import NUMBER, TRUTH, Input, front
 from fretc.testing.exports.tables import Table, table, truths
 from fretc.testing.suite import Suite, Test
+from fretc.testing.words import outcome
 from monitors.kernel import Monitor
-from monitors.kernel.verdicts import PENDING
 from monitors.loading import load
 
 MOST = 1_000_000
@@ -117,17 +117,9 @@ def _is_value(value: object, kind: Input) -> bool:
 
 def _outcome(monitor: Monitor, read: Table) -> tuple[object, ...]:
     """The verdict where the run ends, FRET's, and the ticks of the decision and the violation."""
-    monitor.reset()
-    decided = None
-    for now, row in enumerate(_ticks(read)):
-        if read.of_truths or not hasattr(monitor, "take"):
-            monitor.advance([row])
-        else:
-            monitor.take([row])
-        if decided is None and monitor.verdicts()[0] != PENDING:
-            decided = now
-    (standing,) = monitor.standings()
-    return standing.verdict, standing.finite, decided, standing.first_violation
+    step = monitor.advance if read.of_truths else getattr(monitor, "take", monitor.advance)
+    said = outcome(monitor, step, _ticks(read))
+    return said.verdict, said.finite, said.decided, said.first_violation
 
 
 def _ticks(read: Table) -> Iterator[Mapping[str, Any]]:
