@@ -75,25 +75,23 @@ def play(
     """
     from compiler.formalization.formalize import clashes
     from compiler.project.paths import companions
-    from compiler.targets.javascript.monitor import refuse
-    from fretc.commands.analyze import in_force, project_of
+    from fretc.commands.analyze import project_of
     from fretc.play.page import html
     from fretc.play.starts import of_examples
     from fretc.play.versions import Versions, side_by_side, versions
 
     project, _ = project_of(files, requirements, bindings)
-    rules = in_force(project, None)
-    refused = {rule.id: said for rule in rules if (said := refuse(rule)) is not None}
-    known = tuple(rule for rule in rules if rule.id not in refused)
+    now, refusals = _side(project)
+    known = now.rules
     if not known:
-        stop(*refused.values())
+        stop(*refusals)
     earlier = project_of((against,), requirements, bindings)[0] if against is not None else None
-    changes = versions(_side(project), _side(earlier), _SECONDS) if earlier else Versions()
+    changes = versions(now, _side(earlier)[0], _SECONDS) if earlier else Versions()
     shown = [*side_by_side(changes, known)]
     clashing = [*clashes(shown)]
     if clashing:
         stop(*clashing)
-    say([*refused.values()])
+    say(refusals)
     recorded = [*_recorded(project, known, logs)]
     starts = [
         *(start for run in recorded for start in run.starts),
@@ -104,25 +102,25 @@ def play(
     notes = [*(pair.note for pair in changes.pairs), *changes.notes]
     notes += [note for run in recorded for note in run.notes]
     before = {pair.new.id: pair.old.id for pair in changes.pairs}
-    left_out = [(id, said.message) for id, said in refused.items()]
-    page = html(shown, left_out, starts, before, notes)
+    page = html(shown, [*now.refused.items()], starts, before, notes)
     wordings = [*project.requirements, *(earlier.requirements if earlier else ())]
     sources = [requirement.wording.source.name for requirement in wordings]
     inputs = filter(None, [bindings, tests, analysis, *logs])
     deliver({Path(output): page}, [*sources, *companions(sources), *inputs])
-    raise SystemExit(BAD if refused else SHOWN)
+    raise SystemExit(BAD if refusals else SHOWN)
 
 
-def _side(project: Project) -> Side:
-    """One of two versions."""
+def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
+    """One version of a project, and why some of its requirements are on no page."""
     from compiler.targets.javascript.monitor import refuse
     from fretc.commands.analyze import in_force
     from fretc.play.versions import Side
 
     rules = in_force(project, None)
-    refused = {rule.id: said.message for rule in rules if (said := refuse(rule)) is not None}
+    refused = {rule.id: why for rule in rules if (why := refuse(rule)) is not None}
     known = [rule for rule in rules if rule.id not in refused]
-    return Side(known, refused, project.declarations)
+    reasons = {id: why.message for id, why in refused.items()}
+    return Side(known, reasons, project.declarations), [*refused.values()]
 
 
 def _recorded(

@@ -10,6 +10,7 @@ from math import floor, isfinite, log10
 from typing import Any
 
 from compiler.files.edition import __version__
+from compiler.files.records import plain
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import TRAITS, Trait, Uninterpreted, boolean, obligation
@@ -20,7 +21,7 @@ from compiler.targets.target import stem
 from fretc.play.starts import MOST, Start
 from fretc.report.model.phrases import visible
 from fretc.report.page.html import Inset, hash_source
-from fretc.testing.suite import SCHEMA
+from fretc.testing.suite import SCHEMA, Tested
 from fretish.diagnostics import signs
 from fretish.printer import expression
 from fretish.printer import sentence as printed
@@ -173,12 +174,7 @@ def _requirement(
     return {
         "label": visible(rule.id),
         "file": stem(rule),
-        "tested": {
-            "id": rule.id,
-            "sentence": printed(rule.written),
-            "fingerprint": rule.fingerprint,
-            "kept": [],
-        },
+        "tested": plain(Tested(rule.id, printed(rule.written), rule.fingerprint, ())),
         "sentence": visible(printed(rule.written)),
         "response": visible(expression(rule.written.response)),
         "formula": _tree(formula, propositions) if known else None,
