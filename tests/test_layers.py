@@ -18,7 +18,7 @@ fretish.diagnostics  fretish.reading  fretish.mistakes  fretish  fretish.binding
 compiler.files  compiler.logic.ordering  compiler.logic  compiler.formalization
 compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals
 compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
-compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
+compiler.targets.ros  compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit
