@@ -15,6 +15,7 @@ ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
 fretish.diagnostics  fretish.reading  fretish.mistakes  fretish  fretish.bindings
+fretish.bindings.tables
 compiler.files  compiler.logic.ordering  compiler.logic  compiler.formalization
 compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals
 compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
