@@ -33,7 +33,7 @@ BINDINGS = """
 [clock]
 tick = "100 ms"
 time = "{time}"
-lateness = "50 ms"
+lateness = "100 ms"
 [signal.clearance]
 path = "/scan.ranges[:]"
 type = "sensor_msgs/LaserScan"
@@ -73,7 +73,7 @@ def package(folder: Path, kind: str, count: int, time: str) -> Path:
     texts: dict[Path, str | bytes] = {
         project_folder / f"R{i}.fret": "whenever near the robot shall immediately satisfy stands"
         if i == 0
-        else f"when near the robot shall for {i} ticks satisfy !near"
+        else f"whenever near the robot shall within {i} ticks satisfy near"
         for i in range(count)
     }
     texts[project_folder / "bindings.toml"] = BINDINGS.format(time=time, **KINDS[kind])
@@ -143,10 +143,8 @@ def main() -> None:
     parser.add_argument("--scans", type=int, default=800)
     scans = parser.parse_args().scans
     assert not missing(), missing()
-    print(
-        "| node | stop: p50 | p99 | max ms | zero: p50 | p99 | max ms | no answer | node | interceptor |"
-    )
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    head = "node | stop: p50 | p99 | max | zero: p50 | p99 | max | no answer | node | interceptor"
+    print(f"| {head} |\n{'|---' * 10}|")
     for kind in KINDS:
         for time in ("header.stamp", "log_time"):
             for count in (0, 1, 20):

@@ -267,8 +267,6 @@ class Judging:
         if not rows:
             return (None,) * len(self.monitor.REQUIREMENTS)
         if self._ahead is None or self._ahead[0] != rows:  # most messages change nothing
-            ahead = self._make()
-            ahead.restore(self.monitor.state())
-            ahead.advance(rows)
-            self._ahead = rows, tuple(standing.owed for standing in ahead.standings())
+            standings = self.monitor.standings_after(rows)
+            self._ahead = rows, tuple(standing.owed for standing in standings)
         return self._ahead[1]
