@@ -143,12 +143,13 @@ def test_what_stands_at_an_edge_is_the_same() -> None:
     choose, values, y = random.Random("edges"), edges(), e.Name("y")
     speeds = {"x": ("km/h", Fraction(5, 18)), "y": ("m/s", Fraction(1))}
     calls = [e.Call(name, (X, y)) for name in ("min", "max")]
+    calls += [e.Call("max", (e.Call("min", (X, e.Name("z"))), y))]
     drawn: list[tuple[e.Comparison, Units, dict[str, Any]]] = []
     for _ in range(100 * MANY // 4):
         fixed: e.Expression = e.Number(choose.choice(TEXTS))
         fixed = choose.choice([fixed, e.Negation(fixed)])
         some: tuple[e.Expression, ...] = (X, e.Call("abs", (X,)), e.Call("min", (X, fixed)), *calls)
-        op, row = choose.choice([*e.COMPARE]), {name: choose.choice(values) for name in "xy"}
+        op, row = choose.choice([*e.COMPARE]), {name: choose.choice(values) for name in NAMES}
         near = float(choose.choice(TEXTS))  # where a bit more or less counts
         speed = choose.randrange(1, 1000) / 100
         with np.errstate(all="ignore"):
