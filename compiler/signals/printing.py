@@ -130,3 +130,11 @@ def parts(value: Fraction) -> tuple[float, float]:
     """Numerator and denominator of a factor as the nearest 64-bit floats."""
     top, bottom = (exact(str(part)).double for part in value.as_integer_ratio())
     return top, bottom
+
+
+def letters(word: str, escape: str) -> str:
+    """The bytes of a word for a literal: letters and digits as they are, others by `escape`."""
+    return "".join(
+        chr(byte) if chr(byte).isascii() and chr(byte).isalnum() else escape.format(byte)
+        for byte in word.encode()
+    )

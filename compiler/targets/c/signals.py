@@ -14,7 +14,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.signals.functions import file_name, functions
-from compiler.signals.printing import Language, parts, suited
+from compiler.signals.printing import Language, letters, parts, suited
 
 _SIGNS = {"<": "LT", "<=": "LE", ">": "GT", ">=": "GE", "=": "EQ", "!=": "NE"}
 
@@ -40,7 +40,7 @@ def files(
         return ()
     file = file_name(name)
     common = {"functions": found, "base": base, "header": f"{file}.h"}
-    source = render("c/signals.c.j2", **common, double=_double, letters=_letters)
+    source = render("c/signals.c.j2", **common, double=_double, letters=letters)
     header = render(
         "c/signals.h.j2",
         **common,
@@ -51,14 +51,6 @@ def files(
     return tuple(
         Artifact(PurePosixPath(f"{file}.{ending}"), text)
         for ending, text in (("c", source), ("h", header))
-    )
-
-
-def _letters(word: str) -> str:
-    """The bytes of a word for a string of C: letters and digits as they are."""
-    return "".join(
-        chr(byte) if chr(byte).isascii() and chr(byte).isalnum() else f"\\{byte:03o}"
-        for byte in word.encode()
     )
 
 

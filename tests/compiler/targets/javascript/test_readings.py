@@ -16,8 +16,16 @@ from hypothesis import strategies as st
 
 from compiler.files.templating import render
 from compiler.formalization.formalize import formalize
-from compiler.targets.javascript.monitor import Constants, text
-from compiler.targets.python.comparisons import NUMBER, Compared, Input, NotCompiledError, Writer
+from compiler.targets.javascript.constants import Constants, scale, truth
+from compiler.targets.javascript.monitor import text
+from compiler.targets.python.comparisons import (
+    NUMBER,
+    Compared,
+    Input,
+    NotCompiledError,
+    Spelling,
+    Writer,
+)
 from compiler.targets.python.monitor import text as in_python
 from fretish import expressions as e
 from fretish.bindings.reader import read_bindings
@@ -79,7 +87,7 @@ def by_node(cases: Sequence[tuple[e.Comparison, Units, Mapping[str, Any]]]) -> l
         names = {name.id for name in e.names(tree)}
         inputs = {name: Input(NUMBER) for name in sorted(names)}
         kept = {name: unit for name, unit in units.items() if name in names}
-        writer = Writer({name: name for name in names}, constants.spelling)
+        writer = Writer({name: name for name in names}, Spelling(constants.name, scale, truth))
         texts.append(f"(x, y, z) => {writer.comparison(Compared(inputs, tree, kept))}")
     values = [[plain(row.get(name)) for name in NAMES] for _, _, row in cases]
     parts = (
