@@ -27,17 +27,17 @@ from fretish.diagnostics.source import Source
 from fretish.units import ONE
 from monitors.kernel.verdicts import Truth
 from tests.emitting import rule
-from tests.signal_policies import Case, audited_truth, collected, numbered
+from tests.signal_policies import Case, audited_truth, collected, edge_cases, numbered
 from tests.signal_programs import LANGUAGES, Language, c, packed
 
 TRUTHS: tuple[Truth, ...] = (False, True, None)
-MANY = 40 * max(1, settings().max_examples // 500)
+MANY = 20 * max(1, settings().max_examples // 500)
 
 
 @cache
 def audited() -> list[tuple[Case, list[tuple[Truth, tuple[Values, Values]]]]]:
     """Cases, and what an audit says of each row."""
-    return [(case, case.expected()) for case in collected(MANY)]
+    return [(case, case.expected()) for case in (*edge_cases(), *collected(MANY))]
 
 
 def same(audited: Values, value: float, magnitude: int, kind: int) -> bool:

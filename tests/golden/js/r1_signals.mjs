@@ -248,7 +248,7 @@ function meant(x, meaning) {
   if (meaning === "measured") return x;
   if (meaning !== "far" && meaning !== "near") return null;
   const end = meaning === "far" ? Infinity : -Infinity;
-  return isSingle(x) ? float32(end) : isWide(x) ? { wide: end } : end;
+  return isSingle(x) ? float32(end) : end;
 }
 
 /** What was chosen of an array, as it is recorded. */

@@ -69,15 +69,6 @@ impl Number {
     fn widened(self) -> Self {
         if self.is_wide() { self } else { Number::Wide(self.value()) }
     }
-
-    /// Another number of this kind, which every kind has.
-    fn alike(self, value: f64) -> Self {
-        match self {
-            Number::Single(_) => Number::Single(value as f32),
-            Number::Double(_) => Number::Double(value),
-            Number::Whole(_) | Number::Wide(_) => Number::Wide(value),
-        }
-    }
 }
 
 fn known(x: Option<Number>) -> Option<Number> {
@@ -272,9 +263,17 @@ fn meaning(x: Number, valid: impl Fn(Option<Number>) -> Truth, invalid: Invalid)
 fn meant(x: Number, meaning: Meaning) -> Option<Number> {
     match meaning {
         Meaning::Measured => Some(x),
-        Meaning::Far => Some(x.alike(f64::INFINITY)),
-        Meaning::Near => Some(x.alike(f64::NEG_INFINITY)),
+        Meaning::Far => Some(endless(x, f32::INFINITY)),
+        Meaning::Near => Some(endless(x, f32::NEG_INFINITY)),
         Meaning::Drop | Meaning::Unknown => None,
+    }
+}
+
+/// Infinity as it is recorded beside a number.
+fn endless(x: Number, end: f32) -> Number {
+    match x {
+        Number::Single(_) => Number::Single(end),
+        _ => Number::Double(f64::from(end)),
     }
 }
 
