@@ -307,6 +307,7 @@ _FORMS: tuple[e.Expression, ...] = (
     _A,
     e.Call("min", (_A, _B)),
     e.Call("min", (_A, _SEVEN)),
+    e.Call("max", (_A, _SEVEN)),
     e.Call("max", (e.Call("min", (_A, _B)), e.Call("abs", (_B,)))),
     e.Call("min", (e.Call("max", (_A, _B)), _SEVEN)),
 )
