@@ -19,7 +19,7 @@ from compiler.targets.python import interceptor, monitor, perception
 from compiler.targets.target import Options, stem
 from compiler.targets.words import words
 from fretish.bindings.declarations import Interception, Signal, short_type
-from fretish.bindings.interceptor import TABLE
+from fretish.bindings.tables.interceptor import TABLE
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
