@@ -20,8 +20,10 @@ FORWARD = 0.4
 
 def write(requirements: Path, folder: Path) -> Path:
     """The package of a folder of requirements; its folder."""
-    project = load(listed([str(requirements)]))
-    assert project.diagnostics == (), project.diagnostics
+    paths = listed([str(requirements)])
+    assert isinstance(paths, list)
+    project = load(paths)
+    assert len(project.rules) == len(paths), project.diagnostics
     assert [refusal for rule in project.rules if (refusal := TARGET.refuse(rule))] == []
     artifacts = TARGET.emit(project.rules, Options(declarations=project.declarations))
     for artifact in artifacts:

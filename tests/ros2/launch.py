@@ -9,7 +9,7 @@ handler was not registered is lost.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import ModuleType, SimpleNamespace
 from typing import Any
@@ -49,7 +49,7 @@ def _maker(kind: str, *known: str) -> Callable[..., Action]:
 _PROCESS = (
     "package executable name namespace output respawn respawn_delay parameters remappings".split()
 )
-_CONTENT = {
+_CONTENT: Mapping[str, Mapping[str, Sequence[str]]] = {
     "launch": {"LaunchDescription": ()},
     "launch.actions": {
         "DeclareLaunchArgument": ("default_value", "description"),

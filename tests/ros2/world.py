@@ -125,8 +125,9 @@ class _Due:
 class World:
     """Processes, topics between them, and the time."""
 
-    def __init__(self) -> None:
-        self.steady = 0
+    def __init__(self, start: int = SYSTEM_START) -> None:
+        """Nothing is there yet; the system time at the start is given."""
+        self.steady, self._start = 0, start
         self.processes: list[Process] = []
         self.sent: dict[str, list[tuple[int, Any]]] = defaultdict(list)
         """Of each topic all messages, each with the steady time of its publication."""
@@ -135,7 +136,7 @@ class World:
 
     @property
     def system(self) -> int:
-        return SYSTEM_START + self.steady
+        return self._start + self.steady
 
     def process(self, *arguments: str) -> Process:
         process = Process(self, arguments)

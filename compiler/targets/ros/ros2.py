@@ -112,4 +112,5 @@ TARGET = Target(
     monitor.remark,
     remarks=shared.remarks,
     per_rule=False,
+    together=True,
 )
