@@ -74,8 +74,7 @@ class Guard:
         unknown = sorted(set(deciding) - set(self._ids))
         if unknown:
             raise ValueError(f"there is no requirement {unknown[0]}: {', '.join(self._ids)}")
-        if not 0 <= source_timeout <= LONGEST:
-            raise ValueError(f"source_timeout is from 0 to {LONGEST} s, not {source_timeout}")
+        bounded("source_timeout", source_timeout, 0.0, LONGEST)
         self._judging = Judging(monitor, setting)
         self._setting, self._timeout = setting, source_timeout
         self._deciding = [i for i, id in enumerate(self._ids) if not deciding or id in deciding]
@@ -130,6 +129,11 @@ class Guard:
             self._owed = self._judging.owed()
 
     # What follows
+
+    @property
+    def ticks(self) -> int:
+        """How many were judged since the clock was set."""
+        return len(self._judging.ledger)
 
     def stop(self, steady: float) -> bool:
         """Whether the robot must stop now."""
@@ -186,7 +190,7 @@ class Guard:
         judging = self._judging
         values = {f"messages of {topic}": count for topic, count in self._counts.items()}
         values |= {
-            "ticks": len(judging.ledger),
+            "ticks": self.ticks,
             "ticks that became unknown": judging.ledger.late,
             "clock was set": judging.resets,
         }
@@ -212,6 +216,18 @@ class Guard:
 
 LONGEST = 3600.0
 """Seconds that a topic may be silent at most."""
+
+
+def bounded(name: str, value: float, least: float, most: float) -> float:
+    """The value of a parameter, in seconds.
+
+    Raises:
+        ValueError: it is no number, or out of bounds.
+    """
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not is_number or not least <= value <= most:
+        raise ValueError(f"{name} is from {least:g} to {most:g} s, not {value!r}")
+    return float(value)
 
 
 def _status(level: int, name: str, message: str, values: Mapping[str, object]) -> Status:
@@ -244,10 +260,13 @@ def single_signals(
     Raises:
         ValueError: the message has no such field.
     """
+    own = [policy for policy in setting.policies if policy.topic == topic]
+    for policy in own:
+        angles = ("angle_min", "angle_increment") if policy.reduce == "outline" else ()
+        for name in (*policy.beside, *angles):
+            _type(message, (name,), topic, types)
     return tuple(
-        policy.name
-        for policy in setting.policies
-        if policy.topic == topic and _SINGLE.match(_type(message, policy.fields, topic, types))
+        policy.name for policy in own if _SINGLE.match(_type(message, policy.fields, topic, types))
     )
 
 

@@ -55,7 +55,7 @@ def interceptor() -> Runtime:
 @cache
 def perception() -> Runtime:
     """What a live node needs beside its monitor: from messages to whether the robot must stop."""
-    needed = "kernel/verdicts kernel/readings samples courses ticking perception guard"
+    needed = "kernel/verdicts kernel/readings samples courses ticking perception guard voice"
     return _joined(_ROOM, needed.split())
 
 

@@ -1,6 +1,6 @@
 """Bindings → the Python text of what a live node makes of messages, beside its monitor.
 
-The text of `monitors/guard.py` and of what it needs is copied in; below it stands one table,
+The text of `monitors/voice.py` and of what it needs is copied in; below it stands one table,
 `SETTING`: a policy for each signal and a meaning for each proposition, whose expressions call the
 functions of `monitors.kernel.readings`, as `compiler.signals` has them.
 """

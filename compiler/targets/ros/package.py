@@ -24,6 +24,8 @@ from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
 from fretish.expressions import names
+from monitors.guard import LONGEST
+from monitors.voice import LONGEST_BEAT, SHORTEST
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,14 +229,14 @@ def _parameters(
         "seconds of silence of a topic with `max_age` after which the robot must stop; "
         "0: by the ages alone",
         0.0,
-        3600.0,
+        LONGEST,
     )
     yield Parameter(
         "heartbeat",
         max(min(often), 10**6) / 10**9,
         "seconds from one request, to stop or not to stop, to the next",
-        0.001,
-        10.0,
+        SHORTEST,
+        LONGEST_BEAT,
     )
     yield Parameter(
         "stop_for", _deciding(rules, options), "the requirements that stop the robot while owed"
