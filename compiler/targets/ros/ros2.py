@@ -113,4 +113,5 @@ TARGET = Target(
     remarks=shared.remarks,
     per_rule=False,
     together=True,
+    next_step="`colcon build` builds it; fill in the maintainer and the license of `{}`",
 )

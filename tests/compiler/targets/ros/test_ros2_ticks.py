@@ -117,6 +117,7 @@ def node(package: Path, some: Sequence[Posed], idle: int) -> Any:
     return found
 
 
+@pytest.mark.slow
 @given(st.sampled_from(SETTINGS), messages, st.sampled_from([0, 3, 40]))
 def test_every_tick_is_that_of_the_audit(
     subjects: dict[tuple[str, int], tuple[Path, Plan]],
@@ -127,7 +128,7 @@ def test_every_tick_is_that_of_the_audit(
     package, plan = subjects[setting]
     ordered = sorted(some, key=lambda each: each.arrival.log_time)
     posed = [Posed(**vars(each), rank=rank) for rank, each in enumerate(ordered)]
-    ledger = node(package, posed, idle)._guard._judging.ledger
+    ledger = node(package, posed, idle)._voice._guard._judging.ledger
     _, _, recording = recorded(plan, posed, idle)
     rows = audited_rows(plan, recording)
     live = [(ledger.time(i), dict(ledger.row(i))) for i in range(len(ledger))]

@@ -3,12 +3,10 @@
 """
 Messages in; requests to stop, verdicts and diagnostics out.
 
-The node decides nothing: the Guard of perception.py says whether the robot must stop, by the
-monitor of monitor.py. Only an active node lets the robot go. Where it is deactivated, or ends, the
-last that it says is that the robot must stop.
+The node decides nothing: perception.py says what is published, by the monitor of monitor.py. Only
+an active node lets the robot go: the last that it publishes, however it ends, is a stop.
 """
 
-import json
 import signal
 import sys
 import time
@@ -26,7 +24,7 @@ import sensor_msgs.msg
 from std_msgs.msg import Bool, String
 
 from .monitor import MONITOR
-from .perception import Guard, SETTING, single_signals, STALE, Status
+from .perception import Channels, Guard, SETTING, single_signals, STALE, Status, Voice
 
 NAME = "r1_monitor"
 STOP = "/gwendolen_control"
@@ -65,6 +63,7 @@ FIXED = (
     ("lateness", SETTING.lateness / 1e9),
 )
 """What is shown as parameters and cannot be set: the audit would judge by other values."""
+INACTIVE = Status(STALE, "node", "not active: nothing is judged", ())
 FLUSH = 0.1
 """Seconds for the last request to leave this process."""
 KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -72,7 +71,7 @@ KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class MonitorNode(LifecycleNode):
-    """Gives messages to the guard, and publishes what it says."""
+    """Brings messages to the guard while it is active, and publishes what follows."""
 
     def __init__(self):
         """Declare the parameters; nothing is heard or said yet."""
@@ -83,44 +82,45 @@ class MonitorNode(LifecycleNode):
             text = "of the bindings, from which monitor.py and perception.py were made"
             self.declare_parameter(name, value, described(text), ignore_override=True)
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
-        self._guard = None
-        self._singles = {}
+        self._voice = None
+        """There while the node is active."""
         self._stops = self._verdicts = self._diagnostics = None
-        self._created = []
-        """What destroys the subscriptions and timers of the present state."""
-        self._stop = None
-        """What was requested last."""
+        self._destructions = []
+        """What takes back the subscriptions and the timer of an active node."""
 
     # The states of a managed node
 
     def on_configure(self, state):
-        """Create the publishers; refuse what can only fail later."""
+        """Create the publishers; refuse what could only fail later."""
         try:
-            self._new_guard()
-            self._singles = {topic: single_fields(topic, kind) for topic, kind, _ in SOURCES}
+            self._new_voice()
+            for topic, kind, _ in SOURCES:
+                singles(topic, kind)
         except ValueError as error:
             self.get_logger().error(str(error))
             return TransitionCallbackReturn.FAILURE
         self._stops = self.create_lifecycle_publisher(Bool, STOP, KEPT)
         self._verdicts = self.create_lifecycle_publisher(String, VERDICTS, 100)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        self._every(1.0, self._diagnose)
+        self._report([INACTIVE])
         return super().on_configure(state)
 
     def on_activate(self, state):
-        """Begin a run: with a monitor that knows nothing, and so with a request to stop."""
+        """Begin a run, with a monitor that knows nothing: the robot stands until it does."""
         result = super().on_activate(state)
-        self._guard = self._new_guard()
+        self._voice = self._new_voice()
+        self._voice.beat()
         for source in SOURCES:
             self._subscribe(*source)
-        self._every(self.get_parameter("heartbeat").value, self._beat)
-        self._request(True)
+        # A steady clock: simulated or corrected time must not stop a watchdog.
+        timer = self.create_timer(self._voice.heartbeat, self._voice.beat, clock=self._steady)
+        self._destructions.append(lambda: self.destroy_timer(timer))
         return result
 
     def on_deactivate(self, state):
         """Stop the robot, and judge nothing any more."""
         self._stand_down()
-        self._every(1.0, self._diagnose)
+        self._report([INACTIVE])
         return super().on_deactivate(state)
 
     def on_cleanup(self, state):
@@ -136,99 +136,65 @@ class MonitorNode(LifecycleNode):
 
     def on_error(self, state):
         """Stop the robot; the node can be configured again."""
-        self.on_shutdown(state)
-        return TransitionCallbackReturn.SUCCESS
+        self.get_logger().error("a transition has failed: the node has to be configured again")
+        return self.on_shutdown(state)
 
     def close(self):
         """Say the last that is said, before the process ends."""
-        if self._stand_down():
+        if self._voice is not None:
+            self._stand_down()
             time.sleep(FLUSH)
 
-    def _new_guard(self):
-        deciding = self.get_parameter("stop_for").value
-        return Guard(MONITOR, SETTING, deciding, self.get_parameter("source_timeout").value)
-
     def _stand_down(self):
-        if self._guard is None:
-            return False
-        self._request(True)
-        self._guard = None
-        self._destroy()
-        return True
-
-    def _destroy(self):
-        for destroy, entity in self._created:
-            destroy(entity)
-        self._created = []
+        if self._voice is not None:
+            self._voice.close()
+        self._voice = None
+        while self._destructions:
+            self._destructions.pop()()
 
     def _take_back(self):
-        self._destroy()
-        for publisher in (self._stops, self._verdicts):
-            if publisher is not None:
-                self.destroy_lifecycle_publisher(publisher)
+        for publisher in filter(None, (self._stops, self._verdicts)):
+            self.destroy_lifecycle_publisher(publisher)
         if self._diagnostics is not None:
             self.destroy_publisher(self._diagnostics)
         self._stops = self._verdicts = self._diagnostics = None
 
-    def _every(self, seconds, call):
-        # A steady clock: simulated or corrected time must not stop a watchdog.
-        timer = self.create_timer(seconds, call, clock=self._steady)
-        self._created.append((self.destroy_timer, timer))
+    # What comes, and what is published
 
-    def _subscribe(self, topic, kind, qos):
-        subscription = self.create_subscription(
-            kind, topic, lambda message: self._arrive(topic, message), qos
+    def _new_voice(self):
+        channels = Channels(
+            stop=lambda stop: self._stops.publish(Bool(data=stop)),
+            verdict=lambda line: self._verdicts.publish(String(data=line)),
+            statuses=self._report,
+            now=lambda: self.get_clock().now().nanoseconds,
         )
-        self._created.append((self.destroy_subscription, subscription))
-
-    # What comes, and what follows
-
-    def _now(self):
-        return self.get_clock().now().nanoseconds
+        given = {name: self.get_parameter(name).value for name, *_ in PARAMETERS}
+        guard = Guard(MONITOR, SETTING, given["stop_for"], given["source_timeout"])
+        return Voice(guard, channels, given["heartbeat"], self._seconds)
 
     def _seconds(self):
         return self._steady.now().nanoseconds / 1e9
 
-    def _arrive(self, topic, message):
-        now = self._now()
-        if now:  # Simulated time is 0 until it begins: the message has no arrival.
-            self._guard.arrive(topic, message, now, self._seconds(), self._singles[topic])
-            self._say()
+    def _subscribe(self, topic, kind, qos):
+        hear, known = self._voice.hear, singles(topic, kind)
+        subscription = self.create_subscription(
+            kind, topic, lambda message: hear(topic, message, known), qos
+        )
+        self._destructions.append(lambda: self.destroy_subscription(subscription))
 
-    def _beat(self):
-        now = self._now()
-        if now:
-            self._guard.pass_to(now)
-        self._stop = None
-        self._say()
-
-    def _say(self):
-        """Say at once what has changed; a demand does not wait for its tick."""
-        stop = self._guard.stop(self._seconds())
-        if stop != self._stop:
-            self._request(stop)
-        for line in self._guard.news():
-            self._verdicts.publish(String(data=json.dumps(line)))
-
-    def _request(self, stop):
-        self._stop = stop
-        self._stops.publish(Bool(data=stop))
-
-    def _diagnose(self):
-        inactive = Status(STALE, "node", "not active: nothing is judged", ())
-        found = self._guard.statuses(self._seconds()) if self._guard else [inactive]
+    def _report(self, statuses):
         message = DiagnosticArray()
         message.header.stamp = self.get_clock().now().to_msg()
-        message.status = [self._status(each) for each in found]
+        message.status = [
+            DiagnosticStatus(
+                level=bytes([status.level]),
+                name=f"{self.get_name()}: {status.name}",
+                message=status.message,
+                values=[KeyValue(key=key, value=value) for key, value in status.values],
+            )
+            for status in statuses
+        ]
         self._diagnostics.publish(message)
-
-    def _status(self, status):
-        return DiagnosticStatus(
-            level=bytes([status.level]),
-            name=f"{self.get_name()}: {status.name}",
-            message=status.message,
-            values=[KeyValue(key=key, value=value) for key, value in status.values],
-        )
 
 
 def described(text, least=None, most=None):
@@ -237,7 +203,7 @@ def described(text, least=None, most=None):
     return ParameterDescriptor(description=text, read_only=True, floating_point_range=bounds)
 
 
-def single_fields(topic, kind):
+def singles(topic, kind):
     """Return the signals of a topic that are read from 32-bit floats."""
     return single_signals(SETTING, topic, kind(), lambda m: m.get_fields_and_field_types())
 
