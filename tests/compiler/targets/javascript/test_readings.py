@@ -20,7 +20,7 @@ from compiler.targets.javascript.monitor import Constants, text
 from compiler.targets.python.comparisons import NUMBER, Compared, Input, NotCompiledError, Writer
 from compiler.targets.python.monitor import text as in_python
 from fretish import expressions as e
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors.loading import load
