@@ -28,7 +28,7 @@ from compiler.targets.python.comparisons import (
 )
 from compiler.targets.python.monitor import text as in_python
 from fretish import expressions as e
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors.loading import load
