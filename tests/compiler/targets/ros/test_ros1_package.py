@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 
 import pytest
 import yaml
-from catkin_pkg.package import parse_package_string  # type: ignore[import-untyped]
+from catkin_pkg.package import parse_package_string
 
 from compiler.emit import TARGETS
 from compiler.files.text_files import write as deliver
