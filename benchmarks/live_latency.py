@@ -100,7 +100,11 @@ def measured(made: Path, kind: str, scans: int) -> str:
         here.start(str(made / "scripts/interceptor.py"))
         node = here.start(str(made / "scripts/monitor_node.py"))
         by_hand = here.start(PYTHON, str(HERE / "live_robot.py"), "by-hand", kind)
-        until("they listen", lambda: {"/scan", "/stop"} <= set((here.state() or [{}, {}])[1]))
+        here.start(PYTHON, str(HERE / "live_robot.py"), "listener")
+        until(
+            "they listen",
+            lambda: {"/scan", "/stop", "/by_hand"} <= set((here.state() or [{}, {}])[1]),
+        )
         words = (PYTHON, str(HERE / "live_robot.py"), "lidar", str(scans))
         lidar = here.start(*words, stdout=subprocess.PIPE)
         assert lidar.stdout is not None

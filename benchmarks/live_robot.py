@@ -47,14 +47,15 @@ def lidar(scans: int) -> None:
     for k in range(-WARM, scans):
         time.sleep(max(0.0, due - time.monotonic()))
         due += PERIOD
-        moves.header.stamp = scan.header.stamp = rospy.get_rostime()
+        scan.header.stamp = rospy.get_rostime()
         scan.ranges = ranges[k % 2 == 1]
         if k == 0:
             print("begun", flush=True)
         if k % 2 == 0:
-            odometry.publish(moves)
             publisher.publish(scan)
             time.sleep(0.012)
+            moves.header.stamp = rospy.get_rostime()
+            odometry.publish(moves)
             commands.publish(drive)  # the robot may move, and does
             continue
         for kind, at in [*seen.items()]:
@@ -105,5 +106,9 @@ def by_hand(kind: str) -> None:
 if __name__ == "__main__":
     if sys.argv[1] == "lidar":
         lidar(int(sys.argv[2]))
-    else:
+    elif sys.argv[1] == "by-hand":
         by_hand(sys.argv[2])
+    else:
+        rospy.init_node("listener")
+        rospy.Subscriber("/by_hand", Bool, lambda _: None)
+        rospy.spin()
