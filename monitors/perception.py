@@ -27,6 +27,10 @@ class Setting(NamedTuple):
     period: int
     phase: int = 0
     lateness: int = 0
+    stamped: bool = False
+    """Whether messages with a header are placed by its stamp."""
+    reads: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    """The topics of each requirement."""
 
     @property
     def topics(self) -> tuple[str, ...]:
@@ -205,10 +209,13 @@ class Judging:
         Raises:
             AttributeError, TypeError: it does not have the fields that the bindings name.
         """
-        if is_jump(self._latest.get(topic), time) or is_jump(self._received, arrival):
+        is_back = is_jump(self._received, arrival)
+        if not is_back:
+            self.pass_to(arrival)  # what is due is judged before another run begins
+        if is_back or is_jump(self._latest.get(topic), time):
             self.resets += 1
             self._begin()
-        self.pass_to(arrival)
+            self.pass_to(arrival)
         values = {
             policy.name: sample(policy, message, policy.name in singles)
             for policy in self._setting.policies

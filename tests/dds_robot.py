@@ -1,9 +1,9 @@
 """A robot on DDS: plays a recorded mission as if it went on now, by ROS 2's names and types.
 
-    python -m tests.dds_robot LOG FIRST LAST SPEED READERS TOPIC...
+    python -m tests.dds_robot LOG FIRST LAST READERS TOPIC...
 
-plays the seconds of the log from FIRST to LAST, SPEED times as fast, as soon as each of the topics
-has so many readers. Stamps are moved to the present. It ends when all that can be has been
+plays the seconds of the log from FIRST to LAST, as soon as each of the topics has so many readers.
+Stamps are moved to the present. It ends when all that can be has been
 received, and prints how many messages there were of each topic.
 """
 
@@ -64,7 +64,7 @@ def messages(log: Path, first: float, last: float) -> Iterator[tuple[int, str, b
                         yield at, channel.topic, stamped[channel.schema_id], record.data
 
 
-def main(log: str, first: float, last: float, speed: float, readers: int, *topics: str) -> None:
+def main(log: str, first: float, last: float, readers: int, *topics: str) -> None:
     """Play it."""
     domain = join()
     assert isinstance(domain, Domain), domain
@@ -74,7 +74,7 @@ def main(log: str, first: float, last: float, speed: float, readers: int, *topic
     counts = dict.fromkeys(out, 0)
     start, clock, moved = time.time_ns(), time.monotonic_ns(), None
     for at, topic, stamped, payload in messages(Path(log), first, last):
-        time.sleep(max(0, clock + at / speed - time.monotonic_ns()) / _SECOND)
+        time.sleep(max(0, clock + at - time.monotonic_ns()) / _SECOND)
         data = bytearray(payload)
         if stamped:
             sec, nanosec = _STAMP.unpack_from(data, 4)
@@ -90,5 +90,5 @@ def main(log: str, first: float, last: float, speed: float, readers: int, *topic
 
 
 if __name__ == "__main__":
-    log_, first_, last_, speed_, readers_, *topics_ = sys.argv[1:]
-    main(log_, float(first_), float(last_), float(speed_), int(readers_), *topics_)
+    log_, first_, last_, readers_, *topics_ = sys.argv[1:]
+    main(log_, float(first_), float(last_), int(readers_), *topics_)

@@ -1,6 +1,6 @@
 """Bindings → the Python text of what a live node makes of messages, beside its monitor.
 
-The text of `monitors/perception.py` and of what it needs is copied in; below it stands one table,
+The text of `monitors/voice.py` and of what it needs is copied in; below it stands one table,
 `SETTING`: a policy for each signal and a meaning for each proposition, whose expressions call the
 functions of `monitors.kernel.readings`, as `compiler.signals` has them.
 """
@@ -111,6 +111,8 @@ def setting(rules: Sequence[Formalized]) -> Setting:
         declared.clock.period,
         declared.clock.phase,
         declared.clock.patience or 0,
+        declared.clock.time is TimeSource.HEADER_STAMP,
+        tuple(f"({rule.id!r}, {_topics(rule)!r})" for rule in rules),
     )
 
 
@@ -123,6 +125,14 @@ class Setting:
     period: int
     phase: int
     lateness: int
+    stamped: bool
+    reads: tuple[str, ...]
+
+
+def _topics(rule: Formalized) -> tuple[str, ...]:
+    found = instant([rule])
+    assert found is not None, "it is refused"
+    return tuple(dict.fromkeys(policy.signal.path.topic for policy in found.policies))
 
 
 def _policy(policy: Policy) -> str:

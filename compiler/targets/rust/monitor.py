@@ -21,8 +21,8 @@ from compiler.targets.c.monitor import too_large
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
 from compiler.targets.rust.printer import Printer
-from compiler.targets.rust.words import words
 from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.words import words
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import deep
 

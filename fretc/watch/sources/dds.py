@@ -7,24 +7,14 @@ send. Times of arrival are when the message has reached this thread.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from threading import Event as Flag
-from threading import Thread
 
 from fretc.logs.messages import ros2_types
 from fretc.watch.sources.dds_domain import Domain, Publisher, Reader, join
 from fretc.watch.sources.dds_types import Offer, UnreadableError
 from fretc.watch.sources.mailbox import WAIT, Mailbox
-from fretc.watch.sources.source import (
-    Arrival,
-    Channel,
-    Event,
-    Idle,
-    Opened,
-    Problem,
-    Reconnected,
-)
+from fretc.watch.sources.middleware import Middleware, simulated_time
+from fretc.watch.sources.source import Channel, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 MOST_KINDS = 20
@@ -36,47 +26,30 @@ _SOON = 3 * 10**9
 _CLOCK = "/clock"
 
 
-class Dds:
+class Dds(Middleware):
     """The domain that `ROS_DOMAIN_ID` names."""
-
-    name = "dds"
 
     def __init__(self) -> None:
         """Nothing is opened yet."""
-        self._mailbox = Mailbox()
-        self._closed = Flag()
+        super().__init__("dds")
 
-    def close(self) -> None:
-        """Leave the domain."""
-        self._closed.set()
-
-    def arrivals(self, topics: Collection[str]) -> Iterator[Arrival | Event | Idle]:
+    def _listen(self, topics: list[str]) -> bool:
         """What comes of the topics; one that begins with no slash is a topic of DDS."""
-        thread = Thread(target=self._run, args=(frozenset(topics),), daemon=True)
-        thread.start()
+        domain = join()
+        if isinstance(domain, Diagnostic):
+            self._lost(domain)
+            return False
         try:
-            while (item := self._mailbox.take()) is not None:
-                yield item
+            self._opened(f"domain {domain.number} of DDS")
+            listening = _Listening(domain, frozenset(topics), self._mailbox)
+            while not self._closed.is_set():
+                domain.wait(WAIT)
+                listening.look()
+        except Exception as error:  # what Cyclone DDS raises of what strangers send, it may be
+            self._lost(_broken(error))
         finally:
-            self.close()
-            thread.join()
-
-    def _run(self, topics: frozenset[str]) -> None:
-        try:
-            domain = join()
-            if isinstance(domain, Diagnostic):
-                self._mailbox.tell(Problem(domain))
-                return
-            try:
-                self._mailbox.tell(Opened(f"domain {domain.number} of DDS"))
-                listening = _Listening(domain, topics, self._mailbox)
-                while not self._closed.is_set():
-                    domain.wait(WAIT)
-                    listening.look()
-            finally:
-                domain.close()
-        finally:
-            self._mailbox.close()
+            domain.close()
+        return True
 
 
 @dataclass(slots=True)
@@ -143,12 +116,12 @@ class _Listening:
             elif publisher.topic in self._topics:
                 self._greet(publisher, publisher.offer)
             elif publisher.topic == _CLOCK:
-                self._tell_once(_CLOCK, _simulated_time())
+                self._tell_once(_CLOCK, simulated_time())
 
     def _greet(self, publisher: Publisher, offer: Offer) -> None:
         now, topic = self._mailbox.now, publisher.topic
         if topic == _CLOCK:
-            self._tell_once(topic, _simulated_time())
+            self._tell_once(topic, simulated_time())
         while len(self._peers) >= _MOST_PUBLISHERS:
             del self._peers[next(iter(self._peers))]
         self._peers[publisher.handle] = _Peer(publisher.id, topic, offer, now)
@@ -259,11 +232,9 @@ def _several_publishers(topic: str, number: int) -> Diagnostic:
     )
 
 
-def _simulated_time() -> Diagnostic:
+def _broken(error: Exception) -> Diagnostic:
     return Diagnostic(
-        Code.SIMULATED_TIME,
-        "somebody publishes `/clock`: where the robot goes by it, its time is simulated, and the "
-        "times of arrival are those of this machine",
-        help='set `time = "header.stamp"` under `[clock]`, unless the simulation runs in real time',
-        severity=Severity.WARNING,
+        Code.ROBOT_NOT_REACHED,
+        f"Cyclone DDS fails: {type(error).__name__}: {error}",
+        help="the domain is joined once more",
     )

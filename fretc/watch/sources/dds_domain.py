@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from fretc.logs.messages.ros2_types import definitions
 from fretc.watch.sources.dds_types import (
     Offer,
     UnreadableError,
@@ -68,7 +69,8 @@ def join() -> Domain | Diagnostic:
     """A part of the domain that `ROS_DOMAIN_ID` names, as `CYCLONEDDS_URI` configures it."""
     try:
         import cyclonedds.domain  # noqa: F401
-        import rosbags  # noqa: F401
+
+        definitions("std_msgs/msg/Header")
     except Exception as error:  # beside the absent package, its C library may not be found
         return Diagnostic(
             Code.MISSING_EXTRA,

@@ -25,8 +25,11 @@ from tests.fretc.watch.watched import ROOT, Watched, audited
 from tests.ros1 import until
 from tests.simulation import missions
 
-LATENESS = 'lateness = "500 ms"'
+LATENESS = 'lateness = "2 s"'
+"""What a machine takes at most that is busy with other tests."""
 TOPICS = ("/odom", "/scan")
+FIRST, LAST = 8.0, 32.0
+"""Seconds of a mission that are played: a first obstacle, or somebody who walks into the path."""
 
 pytestmark = [
     pytest.mark.slow,
@@ -67,7 +70,7 @@ def by_stamps(folder: Path) -> Plan:
     return plan
 
 
-def played(log: Path, folder: Path, first: float, last: float, speed: float) -> tuple[Watched, Any]:
+def played(log: Path, folder: Path, first: float, last: float) -> tuple[Watched, Any]:
     """Robot, watch and node, each a process; the watch, and what the node says."""
     with domain() as number:
         here = environment(number)
@@ -75,7 +78,7 @@ def played(log: Path, folder: Path, first: float, last: float, speed: float) -> 
             here, folder, "dds", "--requirements", "requirements",
             "--record", "run.mcap", "--evidence", "live.json",
         )  # fmt: skip
-        words = str(log), str(first), str(last), str(speed), "2", *TOPICS
+        words = str(log), str(first), str(last), "2", *TOPICS
         node = process(here, "tests.dds_node", str(folder / "requirements"), "clearance")
         try:
             with node as core, process(here, "tests.dds_robot", *words) as robot:
@@ -92,10 +95,10 @@ def played(log: Path, folder: Path, first: float, last: float, speed: float) -> 
     return run, said
 
 
-def agreed(log: Path, folder: Path, first: float, last: float, speed: float) -> dict[str, int]:
+def agreed(log: Path, folder: Path, first: float, last: float) -> dict[str, int]:
     """A mission is played; all say the same of it. How often R1 is triggered, and over how much."""
     plan = by_stamps(folder / "requirements")
-    run, node = played(log, folder, first, last, speed)
+    run, node = played(log, folder, first, last)
     (folder / "node.json").write_text(json.dumps(node))
     again = audited(folder, "run.mcap", "--requirements", "requirements", "-o", "audit.json")
     assert again.returncode in (0, 1, 3), again.stderr
@@ -114,13 +117,14 @@ def agreed(log: Path, folder: Path, first: float, last: float, speed: float) -> 
 
 
 def test_robot_watch_and_node_agree_with_the_audit_in_real_time(tmp_path: Path) -> None:
-    found = agreed(ROOT / "traces" / "mission-seed15.mcap", tmp_path, 4.0, 9.5, 1)
+    found = agreed(ROOT / "traces" / "mission-seed15.mcap", tmp_path, 4.0, 9.5)
     assert found["triggers"] > 0
     assert found["ticks"] > 50
 
 
 @pytest.mark.parametrize("name", scenarios.names() if FULL else [])
 def test_they_agree_in_every_scenario(name: str, tmp_path: Path) -> None:
-    missions.record(tmp_path / "mission.mcap", scenarios.load(name))
-    found = agreed(tmp_path / "mission.mcap", tmp_path, 0, 200, 4)
-    print(name, found)
+    missions.record(tmp_path / "mission.mcap", scenarios.load(name), max_seconds=LAST)
+    found = agreed(tmp_path / "mission.mcap", tmp_path, FIRST, LAST)
+    print(name, found)  # shown by `-rP`
+    assert found["ticks"] > 50
