@@ -78,7 +78,7 @@ def owed(folder: Path) -> float:
 
 def main() -> None:
     log = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "traces" / "mission-seed15.mcap")
-    print(f"{'':32}{'messages':>9}{'audit':>12}{'session':>12}{'watch':>12}{'owed':>9}")
+    print(f"{'':40}{'messages':>9}{'audit':>12}{'session':>12}{'watch':>12}{'owed':>10}")
     for name in ("requirements", "requirements/mission"):
         for clock in ('time = "log_time"', 'time = "header.stamp"\nlateness = "200 ms"'):
             with requirements(ROOT / name, clock) as folder:
