@@ -22,6 +22,7 @@ _MODULES: Mapping[str, str] = {
     "ajpf-bundle": "ajpf.bundle",
     "interceptor": "python.interceptor",
     "ros2-package": "ros.ros2",
+    "ros2-cpp-package": "ros.ros2cpp",
     "dafny": "dafny",
     "smv": "automata.smv",
     "hoa": "automata.hoa",

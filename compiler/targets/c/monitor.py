@@ -20,6 +20,7 @@ from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.program.program import Counter
 from compiler.program.rails import Reading, Ring, rail
+from compiler.signals.policies import Instant
 from compiler.targets.c import signals
 from compiler.targets.c.printer import Printer
 from compiler.targets.comparison_names import comparison_names, in_words
@@ -130,9 +131,33 @@ def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact,
         Artifact(PurePosixPath(f"{name}.{ending}"), text)
         for ending, text in (("c", source), ("h", header))
     )
+    return (*monitor, *signals.files(name, base, rules, printer.names, _reserved_by(rules)))
+
+
+def _reserved_by(rules: Sequence[Formalized]) -> frozenset[str]:
+    """What no name of a signal may be."""
     read = {n for rule in rules if rule.declarations for n in rule.declarations.signals}
-    reserved = _RESERVED | {*filter(_TAKEN.fullmatch, read)}
-    return (*monitor, *signals.files(name, base, rules, printer.names, reserved))
+    return _RESERVED | {*filter(_TAKEN.fullmatch, read)}
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """What a caller of one monitor for all rules names; all names begin with `monitors`."""
+
+    inputs: Mapping[str, str]
+    """Proposition → the member of the inputs."""
+    outcomes: tuple[str, ...]
+    """The member of each rule."""
+    signals: Mapping[str, Any]
+    """As `signals.described` has it."""
+
+
+@deep
+def joined(rules: Sequence[Formalized], found: Instant) -> Joined:
+    """Of `emit` with `one_file`, for what is read of messages."""
+    printer = printed("monitors", rules)
+    described = signals.described(found, printer.names, _reserved_by(rules))
+    return Joined(printer.names, tuple(each.prefix for each in printer.rail.readings), described)
 
 
 def printed(name: str, rules: Sequence[Formalized]) -> Printer:

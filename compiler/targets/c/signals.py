@@ -50,7 +50,7 @@ def files(
     if found is None:
         return ()
     file = f"{name.removesuffix('_monitor')}_signals"
-    values = _values(found, names, reserved)
+    values = described(found, names, reserved)
     common = {"base": base, "header": f"{file}.h", "title": ", ".join(rule.id for rule in rules)}
     source = render("c/signals.c.j2", **values, **common)
     header = render(
@@ -69,8 +69,16 @@ def files(
     )
 
 
-def _values(found: Instant, names: Mapping[str, str], reserved: Collection[str]) -> dict[str, Any]:
-    """What both templates place."""
+def described(
+    found: Instant, names: Mapping[str, str], reserved: Collection[str]
+) -> dict[str, Any]:
+    """What both templates place, in the order of the policies and of the meanings.
+
+    Args:
+        found: the policies and meanings.
+        names: the monitor's input of each proposition.
+        reserved: what no name may be.
+    """
     signals = legal_names((each.signal.name for each in found.policies), reserved)
     given = {name: f"s_{legal}" for name, legal in signals.items()}
     durations = {
