@@ -79,6 +79,7 @@ def _values(package: Package) -> dict[str, Any]:
     lines = sorted((*_NODE.items(), *messages.items()))
     return {
         "package": package,
+        "apart": False,
         "version": __version__,
         "dependencies": sorted({*_NEEDED, *package.dependencies}),
         "imports": [

@@ -1,6 +1,7 @@
 """`--emit ros2-cpp-package`: a package of ROS 2 around the monitor in C (`ament_cmake`, rclcpp).
 
-It watches beside the package in Python, or in its place: by another text, in another language.
+It watches beside the package in Python, by other texts: its requests to stop are on a topic of its
+own, until somebody remaps it.
 """
 
 from __future__ import annotations
@@ -40,7 +41,6 @@ _TEMPLATES = {
     "src/setting.hpp": "setting.hpp.j2",
     "src/node.cpp": "node.cpp.j2",
     "test/test_monitors.cpp": "test_monitors.cpp.j2",
-    "launch/{name}.launch.py": "launch.py.j2",
     "README.md": "README.md.j2",
 }
 
@@ -58,7 +58,7 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
     """
     whole = shared.package(rules, options)
     package = replace(whole, name=f"{whole.name}_cpp", interception=None)
-    values = _values(package) | {"stop": whole.stop}
+    values = _values(package) | {"whole": whole}
     files = {
         place.format(name=package.name): render(f"ros2cpp/{template}", **values)
         for place, template in _TEMPLATES.items()
@@ -66,6 +66,7 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
     documents = shared.documents(package, 2)
     files |= {name: documents[name] for name in ("LICENSE", "CHANGELOG.rst")}
     files[f"config/{package.name}.yaml"] = render("ros2/config.yaml.j2", **values)
+    files[f"launch/{package.name}.launch.py"] = render("ros2/launch.py.j2", **values)
     for artifact in monitor.emit(rules, Options(one_file=True)):
         files[f"src/{artifact.path}"] = artifact.text
     folder = PurePosixPath(package.name)
@@ -85,11 +86,12 @@ def _values(package: Package) -> dict[str, Any]:
     order = {meaning.name: place for place, meaning in enumerate(found.meanings)}
     return {
         "package": package,
+        "apart": True,
         "version": __version__,
         "stamped": package.time is TimeSource.HEADER_STAMP,
         "messages": sorted({"rcl_interfaces", *package.dependencies}),
         "headers": sorted(
-            {f"{each.package}/msg/{_snake(each.message)}.hpp" for each in package.topics}
+            {f"{each.package}/msg/{snake(each.message)}.hpp" for each in package.topics}
             - {"std_msgs/msg/bool.hpp", "std_msgs/msg/string.hpp"}
         ),
         "topics": [
@@ -191,7 +193,7 @@ def _literal(value: float | Sequence[str]) -> str:
     return repr(value) if isinstance(value, float) else json.dumps(list(value))
 
 
-def _snake(name: str) -> str:
+def snake(name: str) -> str:
     """`LaserScan` → `laser_scan`, as rosidl names headers."""
     text = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
     return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", text).lower()

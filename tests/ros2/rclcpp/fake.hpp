@@ -3,7 +3,7 @@
 // The contract stands at each call: what rclcpp and rclcpp_lifecycle document of it (Humble to
 // Jazzy). What is published goes to standard output, a line each: topic, tab, what the message's
 // `tell` says. `spin_once` makes one step of the script on standard input: a transition; `now NS`,
-// the node's clock; `beat`, all wall timers; a topic and numbers, a message; `signal`, `shutdown`.
+// the node's clock; `beat`, all wall timers; a topic and numbers, a message; `signal`; `end`, of the context; `fail`.
 #ifndef FAKE_RCLCPP_HPP
 #define FAKE_RCLCPP_HPP
 
@@ -333,7 +333,7 @@ public:
       }
     } else if (word == "signal") {
       std::raise(SIGINT);
-    } else if (word == "shutdown") {
+    } else if (word == "end") {
       rclcpp::shutdown();
     } else if (word == "fail") {
       throw std::runtime_error("the middleware is gone");
