@@ -128,6 +128,7 @@ DOORS = {
     "zlib_ng": {"fretc/logs/mcap/container.py"},
     "lz4": {"fretc/logs/mcap/container.py"},
     "wcwidth": {"fretc/terminal/screen.py"},
+    "websockets": {"fretc/watch/sources/foxglove.py"},
     "click": CLICK,
 }
 """Each library, and the modules that import it."""

@@ -241,6 +241,8 @@ class Code(Enum):
     ROBOT_NOT_REACHED = ("F955", "the robot that is to be watched cannot be reached")
     SEVERAL_PUBLISHERS = ("F956", "several nodes publish a topic that is watched")
     SIMULATED_TIME = ("F957", "a robot that is watched has a simulated clock")
+    SERVER_STATUS = ("F960", "the server of a robot says that something is wrong")
+    CHANNEL_REFUSED = ("F961", "a channel of a server is not watched")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property
