@@ -73,7 +73,7 @@ def _type(described: Any, known: dict[str, str]) -> str:
     kind, inner = int(described[0]), described[1]
     if kind == _NAME:
         _define(inner, known)
-        return inner.replace("/", "::")
+        return str(inner).replace("/", "::")
     if kind == _BASE:
         base = inner[0]
         return _BASES.get(base, base if base == "bool" else f"{base}_t")
