@@ -37,7 +37,7 @@ fretc.report.sections  fretc.report.front
 fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
 simulation.world  simulation.nodes  simulation
 fretc.play  fretc.terminal  fretc.campaigns  fretc.testing.staging
-fretc.watch.sources  fretc.watch  fretc.api  fretc.commands  fretc
+fretc.watch.sources  fretc.watch  fretc.watch.publishing  fretc.api  fretc.commands  fretc
 """.split()
 ROOMS = {package.partition(".")[0] for package in ORDER}
 NOT = {  # what stands above, and is still not to be known
@@ -129,6 +129,7 @@ DOORS = {
     "lz4": {"fretc/logs/mcap/container.py"},
     "wcwidth": {"fretc/terminal/screen.py"},
     "websockets": {"fretc/watch/sources/foxglove.py"},
+    "foxglove": {"fretc/watch/publishing/foxglove_server.py"},
     "click": CLICK,
 }
 """Each library, and the modules that import it."""

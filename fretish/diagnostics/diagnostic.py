@@ -243,6 +243,7 @@ class Code(Enum):
     SIMULATED_TIME = ("F957", "a robot that is watched has a simulated clock")
     SERVER_STATUS = ("F960", "the server of a robot says that something is wrong")
     CHANNEL_REFUSED = ("F961", "a channel of a server is not watched")
+    NOT_PUBLISHED = ("F962", "the verdicts of a watch cannot be published")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

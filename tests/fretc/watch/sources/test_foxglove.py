@@ -8,8 +8,7 @@ import ssl
 import subprocess
 import sys
 from base64 import b64encode
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from ipaddress import ip_address
 from pathlib import Path
@@ -30,8 +29,6 @@ from fretc.watch.sources.foxglove import Foxglove, address
 from fretc.watch.sources.source import (
     Arrival,
     Channel,
-    Event,
-    Idle,
     Interrupted,
     Opened,
     Problem,
@@ -40,7 +37,7 @@ from fretc.watch.sources.source import (
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.each import each
-from tests.foxglove import GREETING, advertisement, channel, hostile, server
+from tests.foxglove import GREETING, Listened, advertisement, channel, hostile, listened, server
 from tests.fretc.watch.sent import Setting, plan_of
 from tests.ros1 import until
 
@@ -52,47 +49,6 @@ LOG = ROOT / "traces/mission-seed15.mcap"
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(foxglove, "PATIENCE", 1.0)
     monkeypatch.setattr(foxglove, "_PING", 0.05)
-
-
-class Listened:
-    """A source, and what it has given."""
-
-    def __init__(self, url: str, *topics: str) -> None:
-        parts = address(url)
-        assert not isinstance(parts, Diagnostic), parts
-        self.source = Foxglove(parts)
-        self.items: list[Arrival | Event] = []
-        self.thread = Thread(target=self._listen, args=(topics or ("/x",),), daemon=True)
-        self.thread.start()
-
-    def _listen(self, topics: tuple[str, ...]) -> None:
-        for item in self.source.arrivals(topics):
-            if not isinstance(item, Idle):
-                self.items.append(item)
-
-    def of(self, kind: type) -> list[Any]:
-        return [item for item in tuple(self.items) if isinstance(item, kind)]
-
-    @property
-    def codes(self) -> list[Code]:
-        return [item.diagnostic.code for item in self.of(Problem)]
-
-    def wait(self, what: str, holds: Callable[[], object]) -> None:
-        try:
-            until(what, holds, 20)
-        except AssertionError as error:
-            raise AssertionError(f"{error}: {self.items[-3:]}") from None
-
-
-@contextmanager
-def listened(url: str, *topics: str) -> Iterator[Listened]:
-    found = Listened(url, *topics)
-    try:
-        yield found
-    finally:
-        found.source.close()
-        found.thread.join(10)
-        assert not found.thread.is_alive()
 
 
 def only_problem(url: str) -> Diagnostic:
