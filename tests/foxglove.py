@@ -19,7 +19,8 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.server import ServerConnection, serve
 from websockets.typing import Subprotocol
 
-from fretc.watch.sources.foxglove import Foxglove, address
+from fretc.watch.sources.foxglove import Foxglove
+from fretc.watch.sources.foxglove_protocol import address
 from fretc.watch.sources.source import Arrival, Event, Idle, Problem
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.ros1 import until

@@ -25,7 +25,8 @@ from fretc.commands.watch_output import Lines
 from fretc.watch.news import Found
 from fretc.watch.session import Session
 from fretc.watch.sources import foxglove
-from fretc.watch.sources.foxglove import Foxglove, address
+from fretc.watch.sources.foxglove import Foxglove
+from fretc.watch.sources.foxglove_protocol import address
 from fretc.watch.sources.source import (
     Arrival,
     Channel,
@@ -380,6 +381,30 @@ def test_a_channel_that_becomes_another_one_is_subscribed_anew() -> None:
     assert [request["op"] for request in requests] == ["subscribe", "unsubscribe", "subscribe"]
     assert requests[1]["subscriptionIds"] == [1]
     assert [each.channel.schema_name for each in found.of(Arrival)] == ["B"]
+
+
+def test_a_channel_that_the_server_does_not_know_yet_is_asked_for_again() -> None:
+    """The SDK advertises a channel a moment before it takes subscriptions to it."""
+    requests: list[dict[str, Any]] = []
+    unknown = json.dumps({"op": "status", "level": 2, "message": "Unknown channel ID: 44"})
+
+    def late(connection: ServerConnection) -> None:
+        connection.send(GREETING)
+        connection.send(advertisement(channel(44)))
+        for _ in range(3):
+            requests.append(json.loads(connection.recv()))
+            connection.send(unknown)
+        requests.append(json.loads(connection.recv()))
+        connection.send(SENT_TO_US)
+        connection.send(unknown)
+        silent(connection)
+
+    with hostile(late) as url, listened(url) as found:
+        found.wait("the message comes", lambda: found.of(Arrival))
+        found.wait("now it is told", lambda: found.codes)
+    assert len(requests) == 4
+    assert all(request == requests[0] for request in requests)
+    assert found.codes == [Code.SERVER_STATUS]
 
 
 @each("encoding", ["odd", "cdr", "protobuf", "ros1"])
