@@ -5,7 +5,6 @@ import os
 import signal
 import socket
 import ssl
-import subprocess
 import sys
 from base64 import b64encode
 from collections.abc import Callable
@@ -40,6 +39,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.each import each
 from tests.foxglove import GREETING, Listened, advertisement, channel, hostile, listened, server
 from tests.fretc.watch.sent import Setting, plan_of
+from tests.fretc.watch.watched import Watched, audited
 from tests.ros1 import until
 
 ROOT = Path(__file__).parents[4]
@@ -153,49 +153,6 @@ def test_a_server_that_answers_no_more_is_gone() -> None:
     assert "has not answered" in found.of(Interrupted)[0].problem.message
 
 
-class Watched:
-    """`fretc watch foxglove` as a process, and the lines that it has printed."""
-
-    def __init__(self, url: str, folder: Path, *words: str) -> None:
-        command = "from fretc.cli import main; main()"
-        run = [sys.executable, "-c", command, "watch", "foxglove", url, "--format", "jsonl", *words]
-        self.process: subprocess.Popen[str] = subprocess.Popen(
-            run,
-            cwd=folder,
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        self.lines: list[dict[str, Any]] = []
-        self._thread = Thread(target=self._read, daemon=True)
-        self._thread.start()
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            self.lines.append(json.loads(line))
-
-    def has(self, **wanted: object) -> bool:
-        return any(wanted.items() <= line.items() for line in tuple(self.lines))
-
-    def end(self) -> int:
-        """Ctrl-C."""
-        self.process.send_signal(signal.SIGINT)
-        status = self.process.wait(30)
-        self._thread.join(5)
-        return status
-
-    def close(self) -> None:
-        self.process.kill()
-        self.process.wait()
-        self._thread.join(5)
-        assert self.process.stdout is not None
-        assert self.process.stderr is not None
-        self.process.stdout.close()
-        self.process.stderr.close()
-
-
 @pytest.mark.slow
 def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
     tmp_path: Path,
@@ -203,31 +160,21 @@ def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
     """A part of a mission, in real time: a stop, and the robot that stands."""
     requirements = ["--requirements", str(ROOT / "requirements/r1.fret")]
     with server() as robot:
-        run = Watched(
-            robot.url, tmp_path, *requirements, "--record", "run.mcap", "--evidence", "live.json"
-        )
+        words = ("--record", "run.mcap", "--evidence", "live.json")
+        run = Watched(os.environ, tmp_path, "foxglove", robot.url, *requirements, *words)
         try:
-            until("it is opened", lambda: run.has(type="opened"), 30)
+            opened = {"type": "opened", "source": robot.url}
+            until("it is opened", lambda: opened in run.lines, 30)
             robot.ask("play", part=[str(LOG), 5.0, 6.5])
             until("it was triggered", lambda: any(line.get("triggered_ns") for line in run.lines))
             status = run.end()
         finally:
             run.close()
-    audit = [sys.executable, "-c", "from fretc.cli import main; main()", "audit", "run.mcap"]
-    done = subprocess.run(
-        [*audit, *requirements, "-o", "audit.json"],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        check=False,
-        capture_output=True,
-    )
-    assert done.returncode == status, (done.stderr, run.lines)
-    evidence = json.loads((tmp_path / "audit.json").read_text())
+    again = audited(tmp_path, "run.mcap", *requirements, "-o", "audit.json")
+    assert again.returncode == status, (again.stderr, run.lines)
     assert (tmp_path / "audit.json").read_bytes() == (tmp_path / "live.json").read_bytes()
-    (ended,) = [line for line in run.lines if line["type"] == "run"]
-    (result,) = evidence["results"]
-    assert ended["verdicts"] == {"R1": result["verdict"]}
-    assert ended["ticks"] > 10
+    (result,) = json.loads((tmp_path / "audit.json").read_text())["results"]
+    assert run.verdicts() == {"R1": result["verdict"]}
     assert result["triggers"]
 
 
