@@ -20,7 +20,7 @@ from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.program.program import Counter
 from compiler.program.rails import Reading, Ring, rail
-from compiler.signals.policies import Instant
+from compiler.signals.functions import Functions, functions
 from compiler.targets.c import signals
 from compiler.targets.c.printer import Printer
 from compiler.targets.comparison_names import comparison_names, in_words
@@ -148,16 +148,17 @@ class Joined:
     """Proposition → the member of the inputs."""
     outcomes: tuple[str, ...]
     """The member of each rule."""
-    signals: Mapping[str, Any]
-    """As `signals.described` has it."""
+    signals: Functions
+    """From samples to the inputs."""
 
 
 @deep
-def joined(rules: Sequence[Formalized], found: Instant) -> Joined:
-    """Of `emit` with `one_file`, for what is read of messages."""
+def joined(rules: Sequence[Formalized]) -> Joined:
+    """Of `emit` with `one_file`, for rules with bindings."""
     printer = printed("monitors", rules)
-    described = signals.described(found, printer.names, _reserved_by(rules))
-    return Joined(printer.names, tuple(each.prefix for each in printer.rail.readings), described)
+    found = functions(rules, printer.names, signals.LANGUAGE, _reserved_by(rules))
+    assert found is not None, "there are bindings"
+    return Joined(printer.names, tuple(each.prefix for each in printer.rail.readings), found)
 
 
 def printed(name: str, rules: Sequence[Formalized]) -> Printer:

@@ -18,6 +18,7 @@ from compiler.files.artifact import Artifact
 from compiler.files.edition import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
+from compiler.signals.functions import SignalFunction
 from compiler.signals.policies import Meaning, Policy, instant
 from compiler.signals.printing import parts
 from compiler.targets.c import monitor
@@ -29,7 +30,7 @@ from compiler.targets.ros.package import Package
 from compiler.targets.ros.ros2 import qos
 from compiler.targets.target import DEFAULT, Options, Target
 from compiler.targets.words import Ticks, words
-from fretish.bindings.declarations import Reduce
+from fretish.bindings.declarations import Reading, Reduce
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -76,12 +77,12 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
 def _values(package: Package) -> dict[str, Any]:
     found = instant(package.rules)
     assert found is not None, "it is refused"
-    names = joined(package.rules, found)
+    names = joined(package.rules)
     places = {policy.signal.name: place for place, policy in enumerate(found.policies)}
     topics = [topic.name for topic in package.topics]
     signals = [
         _signal(policy, each)
-        for policy, each in zip(found.policies, names.signals["signals"], strict=True)
+        for policy, each in zip(found.policies, names.signals.signals, strict=True)
     ]
     order = {meaning.name: place for place, meaning in enumerate(found.meanings)}
     return {
@@ -146,31 +147,44 @@ def _ticks(ticks: Ticks, order: Mapping[str, int]) -> dict[str, Any]:
     }
 
 
-def _signal(policy: Policy, names: Mapping[str, Any]) -> dict[str, Any]:
+def _signal(policy: Policy, function: SignalFunction) -> dict[str, Any]:
     signal = policy.signal
-    fields = zip(names["fields"], policy.fields, strict=True)
     return {
-        **names,
+        "name": function.name,
+        "form": function.form,
+        "fields": function.fields,
+        "parameters": "".join(f", double f_{each}" for each in function.fields),
+        "valid": function.valid,
+        "invalid": ", ".join(map(_MEANINGS.__getitem__, function.invalid)),
+        "numbers": function.numbers,
         "topic": signal.path.topic,
         "path": ".".join(signal.path.fields),
         "place": signal.path.index,
         "outline": signal.reduce is Reduce.OUTLINE,
-        "beside": [f", static_cast<double>(message.{field})" for _, field in fields],
+        "beside": [f", static_cast<double>(message.{field})" for field in policy.fields],
         "footprint": signal.footprint,
         "sensor": signal.sensor,
         "scale": ", ".join(float(part).hex() for part in parts(signal.unit.factor)),
     }
 
 
+_MEANINGS = {
+    Reading.DROP: "FRETC_DROP",
+    Reading.FAR: "FRETC_FAR",
+    Reading.NEAR: "FRETC_NEAR",
+    Reading.UNKNOWN: "FRETC_UNKNOWABLE",
+}
+
+
 def _meanings(
     meanings: Sequence[Meaning], names: Joined, places: Mapping[str, int]
 ) -> list[dict[str, Any]]:
-    held = iter(names.signals["held"])
+    held = iter(names.signals.held)
     return [
         {
             "name": names.inputs[meaning.name],
             "text": meaning.name,
-            "held": [next(held)["name"] for _ in meaning.held],
+            "held": [next(held).name for _ in meaning.held],
             "durations": [duration for _, duration in meaning.held],
             "signals": sorted({places[name] for name in perception.signals_of(meaning)}),
             "outer": sorted({*perception.places(meaning.truth)}),
