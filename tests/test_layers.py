@@ -85,6 +85,7 @@ DOORS = {
     "msgspec": {"compiler/files/records.py"},
     "rosbags": {
         "fretc/logs/messages/idl.py",
+        "fretc/logs/messages/ros2_types.py",
         "fretc/logs/storage/bags.py",
         "fretc/testing/staging/messages.py",
         "simulation/nodes/messages.py",
@@ -128,6 +129,7 @@ DOORS = {
     "zlib_ng": {"fretc/logs/mcap/container.py"},
     "lz4": {"fretc/logs/mcap/container.py"},
     "wcwidth": {"fretc/terminal/screen.py"},
+    "cyclonedds": {"fretc/watch/sources/dds_domain.py", "fretc/watch/sources/dds_types.py"},
     "websockets": {"fretc/watch/sources/foxglove.py"},
     "click": CLICK,
 }

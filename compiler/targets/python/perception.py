@@ -155,8 +155,45 @@ def _policy(policy: Policy) -> str:
     texts = {name: repr(part) for name, part in parts.items() if part not in (None, False, (), "")}
     if policy.valid is not None:
         texts["valid"] = f"lambda row: {_truth(policy.valid)}"
+    measured = _measured(policy)
+    if measured is not None:
+        names = "".join(f", {name}" for name in _besides(policy).values())
+        each = f"x if -inf < x < inf and {measured} else meant(x)"
+        texts["quick"] = f"lambda xs, meant{names}: [{each} for x in xs]"
     head = [repr(signal.name), repr(signal.path.topic), repr(signal.path.fields)]
     return f"Policy({', '.join([*head, *_named(texts)])})"
+
+
+def _besides(policy: Policy) -> dict[str, str]:
+    """The fields that `valid` reads, each with the name of a parameter."""
+    return {name: f"beside{i}" for i, name in enumerate(policy.fields)}
+
+
+def _measured(policy: Policy) -> str | None:
+    """`valid` in Python's own logic, where nothing in it can be unknown, or needs rounding."""
+    if not policy.signal.path.each:
+        return None
+    if policy.valid is None:
+        return "True"
+    names = {**_besides(policy), "x": "x"}
+    signs = {"=": "=="}
+
+    def text(tree: n.Truth) -> str | None:
+        match tree:
+            case n.Compared(sign, n.Given(left), n.Given(right)):
+                return f"({names[left]} {signs.get(sign, sign)} {names[right]})"
+            case n.Not(arg):
+                inner = text(arg)
+                return inner and f"(not {inner})"
+            case n.All(args) | n.Some(args) if args:
+                parts = [text(arg) for arg in args]
+                word = " and " if isinstance(tree, n.All) else " or "
+                known = [part for part in parts if part is not None]
+                return f"({word.join(known)})" if len(known) == len(parts) else None
+            case _:
+                return None
+
+    return text(policy.valid)
 
 
 def _meaning(meaning: Meaning) -> str:
