@@ -12,7 +12,7 @@ from compiler.logic.claims import Result
 from fretc.verification.c import language as c
 from fretc.verification.c.build import compiler
 from fretc.verification.compiled.text import StrangeTextError
-from fretc.verification.compiled.tools import ToolError
+from fretc.verification.compiled.tools import ToolError, compiled
 from fretc.verification.compiled.verifying import verified
 from fretc.verification.engines.sandbox import Limits
 from tests.compiled_monitors import (
@@ -160,6 +160,11 @@ def test_what_does_not_compile_is_refused(checker: Checker) -> None:
     one = rule(WITHIN)
     with pytest.raises(ToolError, match="does not compile it"):
         checker.prepared(edited(given_c(one), SINCE, "const bool since_1 = 3 3;"), one)
+
+
+def test_a_compiler_that_writes_nothing_is_none() -> None:
+    with pytest.raises(ToolError, match=r"compiles it, and writes no `text\.so`"):
+        compiled("/bin/true", (), {"text.c": ""}, [()], "text.so")
 
 
 @pytest.mark.slow
