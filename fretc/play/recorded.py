@@ -41,6 +41,8 @@ class Recorded:
     starts: tuple[Start, ...]
     notes: tuple[str, ...]
     """What is not, in words."""
+    findings: tuple[Diagnostic, ...] = ()
+    """What is wrong with the log."""
 
 
 def of_log(rules: Sequence[Formalized], plan: Plan, log: str) -> Recorded | Diagnostic:
@@ -60,14 +62,18 @@ def of_log(rules: Sequence[Formalized], plan: Plan, log: str) -> Recorded | Diag
     truths = trace(plan.declarations, recording, tuple(names))
     starts: list[Start] = []
     notes: list[str] = []
+    violations = 0
     for rule in chosen:
         columns = {name: truths.columns[name] for name in rule.watched}
         run = Run(rule, columns, truths.timeline, recording.name)
         starts += run.starts()
         notes += run.notes()
-    if not starts:
+        violations += run.violations
+    if not violations:
         notes.append(f"{recording.name}: no whole tick of it violates a requirement")
-    return Recorded(tuple(starts), tuple(notes))
+    if not recording.intact:
+        notes.append(f"{recording.name}: messages of it may be lost: what is not known is unknown")
+    return Recorded(tuple(starts), tuple(notes), recording.findings)
 
 
 class Run:
