@@ -61,6 +61,7 @@ class Spec:
 def _text(rule: Formalized) -> str:
     demanded = obligation(rule.sentence, rule.ticks or 0)
     plain = re.sub(r"\W", "_", stem(rule))
+    plain = f"r{plain}" if plain[:1].isdigit() else plain
     monitor_name = f"monitor_{plain}"
     instance = f"the_{monitor_name}"
     # Formulas may lack some propositions: `only after m` drops m where it demands nothing.

@@ -57,7 +57,7 @@ def files(
         "c/signals.h.j2",
         **values,
         **common,
-        guard=f"{file.upper()}_H",
+        guard=guard(file),
         monitor=f"{name}.h",
         version=__version__,
         kernel=render("c/numbers.h.j2"),
@@ -67,6 +67,11 @@ def files(
         Artifact(PurePosixPath(f"{file}.{ending}"), text)
         for ending, text in (("c", source), ("h", header))
     )
+
+
+def guard(file: str) -> str:
+    """The macro that a header of this name defines; a file may begin with a digit, as an id."""
+    return f"{'FRETC_' if file[:1].isdigit() else ''}{file.upper()}_H"
 
 
 def _values(found: Instant, names: Mapping[str, str], reserved: Collection[str]) -> dict[str, Any]:
