@@ -133,6 +133,10 @@ def test_a_text_of_another_kind_is_not_run(fretc: Fretc, made: Made) -> None:
 def test_a_monitor_in_c_needs_its_header(fretc: Fretc) -> None:
     write("r1.fret", R1)
     assert fretc("r1.fret", "--emit", "c", "-o", ".").status == 0
+    header = Path("r1_monitor.h").read_bytes()
+    run = fretc("verify", "--file", "r1_monitor.c", "r1.fret", "-o", "r1_monitor.h")
+    assert (run.status, Path("r1_monitor.h").read_bytes()) == (2, header)
+    assert "F905 `r1_monitor.h` cannot be written: it is `r1_monitor.h`, which is read" in run.err
     Path("r1_monitor.h").unlink()
     assert fretc("verify", "--file", "r1_monitor.c", "r1.fret").err.startswith("F901")
     write("other.c", "int x;\n")
