@@ -14,6 +14,7 @@ from compiler.targets.python.monitor import text as monitor_text
 from fretc.play.page import html
 from fretish.diagnostics.diagnostic import has_errors
 from monitors.loading import load
+from tests.effort import FULL
 from tests.monitoring import rule
 from tests.play_pages import Open, everything, expected_to, told
 
@@ -108,13 +109,13 @@ KEYS = (
 )
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(8 if FULL else 2))
 def test_a_chain_of_gestures_leaves_the_trace_that_they_say(opened: Open, seed: int) -> None:
     page = opened(*SENTENCES)
     choose, model = random.Random(seed), Model()
     lanes = len(everything(page))
     page.locator("#grid td").first.focus()
-    for step in range(300):
+    for step in range(150):
         key = choose.choice(KEYS)
         page.keyboard.press(key)
         model.press(key, lanes)
