@@ -37,7 +37,7 @@ from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 
 HERE = Path(__file__).parent / "job"

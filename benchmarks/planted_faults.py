@@ -22,7 +22,7 @@ from fretc.campaigns.experiment import SafetyFunction, interceptor_text, monitor
 from fretc.testing.assembly import jobs
 from fretc.testing.bench import Bench
 from fretc.testing.words import Naming, judged, word
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from monitors.interceptor import Options
 from monitors.kernel.verdicts import VIOLATED

@@ -21,6 +21,8 @@ _MODULES: Mapping[str, str] = {
     "ajpf": "ajpf.properties",
     "ajpf-bundle": "ajpf.bundle",
     "interceptor": "python.interceptor",
+    "ros1-package": "ros.ros1",
+    "ros2-package": "ros.ros2",
     "dafny": "dafny",
     "smv": "automata.smv",
     "hoa": "automata.hoa",

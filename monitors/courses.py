@@ -118,6 +118,8 @@ class Course:
         self._start, self._done = start, start - 1
         self._held = [_Persistence(duration) for _, duration in meaning.held]
         self._truth: Truth = None
+        self._ahead: tuple[Course, list[tuple[int, Truth]]] | None = None
+        """A copy that has gone on alone, and its steps; None: there is none, or it is wrong."""
 
     def copy(self) -> "Course":
         """Another one, which goes on from here by itself."""
@@ -128,6 +130,7 @@ class Course:
 
     def steps(self, until: int) -> list[tuple[int, Truth]]:
         """Let time pass up to and including `until`: the steps that are new."""
+        self._ahead = None
         found: list[tuple[int, Truth]] = []
         while (time := self._next()) is not None and time <= until:
             found += ((time, truth) for truth in self._at(time))
@@ -142,7 +145,7 @@ class Course:
         signals have begun (None: not yet). An unknown before that does not count.
         """
         before = self._truth
-        steps = self.steps(tick)
+        steps: Sequence[tuple[int, Truth]] = self.steps(tick)
         if first is not None and steps:
             told = [
                 place
@@ -150,6 +153,28 @@ class Course:
                 if truth is not None or (first[1] is not None and time >= first[1])
             ]
             steps = steps[told[0] if told else -1 :]
+        return self._seen(steps, before)
+
+    def glance(self, ticks: Sequence[int]) -> list[Truth]:
+        """What later ticks would see, if nothing else came; time does not pass."""
+        if self._ahead is None:
+            self._ahead = self.copy(), []
+        other, steps = self._ahead
+        steps += other.steps(ticks[-1])
+        begin, before, found = 0, self._truth, list[Truth]()
+        for tick in ticks:
+            end = bisect_right(steps, tick, key=_time)
+            found.append(self._seen(steps[begin:end], before))
+            before = steps[end - 1][1] if end else before
+            begin = end
+        return found
+
+    def notice(self, time: int) -> None:
+        """A sample of one of its signals has come: what was seen ahead from there on is wrong."""
+        if self._ahead is not None and time <= self._ahead[0]._done:
+            self._ahead = None
+
+    def _seen(self, steps: Sequence[tuple[int, Truth]], before: Truth) -> Truth:
         seen = self._combined([truth for _, truth in steps], before)
         return self._meaning.on_unknown if seen is None else seen
 
@@ -200,3 +225,7 @@ class Course:
             begin < end or series.next(time - 1) == time
             for (begin, end), series in zip(spans.values(), self._series.values(), strict=True)
         )
+
+
+def _time(step: tuple[int, Truth]) -> int:
+    return step[0]

@@ -27,6 +27,10 @@ class Setting(NamedTuple):
     period: int
     phase: int = 0
     lateness: int = 0
+    stamped: bool = False
+    """Whether messages with a header are placed by its stamp."""
+    reads: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    """The topics of each requirement."""
 
     @property
     def topics(self) -> tuple[str, ...]:
@@ -74,10 +78,12 @@ class Perception:
         span = late(time, arrival, self._setting.lateness)
         if span is not None:
             self._late.setdefault(topic, []).append(span)
+        readers = tuple(each.name for each in self._setting.meanings if self._reads(each, topic))
         if not judged or last is None:
             self._ticking.arrive(topic, time)
+            for name in self._courses.keys() & readers:
+                self._courses[name].notice(time)
             return None
-        readers = tuple(each.name for each in self._setting.meanings if self._reads(each, topic))
         self._stale.update(readers)
         return time, last, readers
 
@@ -112,8 +118,15 @@ class Perception:
         ticks = [*due, max(time, (-1 if last is None else last) + 1)]
         if len(ticks) > MOST_TICKS:
             return []
-        courses = {name: course.copy() for name, course in self._live().items()}
-        return self._rows(ticks, courses, last is None)
+        if last is None:
+            courses = {name: course.copy() for name, course in self._live().items()}
+            return self._rows(ticks, courses, True)
+        live = self._live()
+        sights = [live[each.name].glance(ticks) for each in self._setting.meanings]
+        return [
+            (tick, self._row(tick, [truths[place] for truths in sights]))
+            for place, tick in enumerate(ticks)
+        ]
 
     @property
     def _lookback(self) -> int:
@@ -138,14 +151,20 @@ class Perception:
     ) -> list[tuple[int, Mapping[str, Truth]]]:
         rows: list[tuple[int, Mapping[str, Truth]]] = []
         for tick in ticks:
-            row: dict[str, Truth] = {}
-            for meaning in self._setting.meanings:
-                begun = self._beginning(meaning) if first else None
-                truth = courses[meaning.name].sight(tick, begun)
-                row[meaning.name] = None if self._is_late(meaning, tick) else truth
-            rows.append((tick, row))
+            begun = [self._beginning(each) if first else None for each in self._setting.meanings]
+            sights = [
+                courses[each.name].sight(tick, start)
+                for each, start in zip(self._setting.meanings, begun, strict=True)
+            ]
+            rows.append((tick, self._row(tick, sights)))
             first = False
         return rows
+
+    def _row(self, tick: int, sights: Sequence[Truth]) -> Mapping[str, Truth]:
+        return {
+            each.name: None if self._is_late(each, tick) else truth
+            for each, truth in zip(self._setting.meanings, sights, strict=True)
+        }
 
     def _beginning(self, meaning: Meaning) -> tuple[int, int | None]:
         start = self._start or 0
@@ -189,6 +208,8 @@ class Judging:
         self.ledger = Ledger((self.monitor,), KEPT)
         self._latest: dict[str, int] = {}
         self._received = 0
+        self._ahead: tuple[list[Mapping[str, Truth]], tuple[Truth, ...]] | None = None
+        """The last rows that were looked at ahead of the ledger, and what is owed after them."""
 
     def arrive(
         self, topic: str, time: int, arrival: int, message: Any, singles: Collection[str] = ()
@@ -205,10 +226,13 @@ class Judging:
         Raises:
             AttributeError, TypeError: it does not have the fields that the bindings name.
         """
-        if is_jump(self._latest.get(topic), time) or is_jump(self._received, arrival):
+        is_back = is_jump(self._received, arrival)
+        if not is_back:
+            self.pass_to(arrival)  # what is due is judged before another run begins
+        if is_back or is_jump(self._latest.get(topic), time):
             self.resets += 1
             self._begin()
-        self.pass_to(arrival)
+            self.pass_to(arrival)
         values = {
             policy.name: sample(policy, message, policy.name in singles)
             for policy in self._setting.policies
@@ -218,6 +242,7 @@ class Judging:
         found = self.perception.arrive(topic, time, self._received, values)
         if found is not None:
             self.ledger.withdraw(*found)
+            self._ahead = None
 
     def pass_to(self, now: int) -> None:
         """Everything that was received before `now` has been given."""
@@ -230,6 +255,7 @@ class Judging:
             return
         for time, row in rows:
             self.ledger.advance(time, row)
+            self._ahead = None
 
     def owed(self) -> tuple[Truth, ...]:
         """Of each requirement whether the robot must act now; None: unknown, or nothing is known.
@@ -240,7 +266,7 @@ class Judging:
         rows = [row for _, row in self.perception.glance(now)]
         if not rows:
             return (None,) * len(self.monitor.REQUIREMENTS)
-        ahead = self._make()
-        ahead.restore(self.monitor.state())
-        ahead.advance(rows)
-        return tuple(standing.owed for standing in ahead.standings())
+        if self._ahead is None or self._ahead[0] != rows:  # most messages change nothing
+            standings = self.monitor.standings_after(rows)
+            self._ahead = rows, tuple(standing.owed for standing in standings)
+        return self._ahead[1]

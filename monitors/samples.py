@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import cos, hypot, inf, isfinite, isinf, isnan, sin
 from typing import Any, NamedTuple
 
-from monitors.kernel.readings import Reading, Single, exact, in_base, number
+from monitors.kernel.readings import Reading, Single, exact, number
 from monitors.kernel.verdicts import Truth
 
 DROP, FAR, NEAR, UNKNOWN = "drop", "far", "near", "unknown"
@@ -32,6 +32,9 @@ class Policy(NamedTuple):
     """What NaN, +inf, -inf and a finite number mean for which `valid` is not true."""
     valid: Callable[[Mapping[str, Reading]], Truth] | None = None
     """Of an element, `x`, and of the fields `beside` it."""
+    quick: Callable[..., list[Reading]] | None = None
+    """The same of a whole array of Python's floats, with a function for those that are no
+    measurement, and with the fields `beside` it, none of which is unknown."""
     beside: tuple[str, ...] = ()
     max_age: int | None = None
     words: tuple[str, ...] = ()
@@ -105,6 +108,11 @@ def _elements(
 ) -> list[Reading] | None:
     """Infinities for far and near, None where one is dropped; no list: all is unknown."""
     row: dict[str, Reading] = {name: _beside(message, name) for name in policy.beside}
+    if policy.quick and None not in row.values() and {*map(type, values)} <= {float}:
+        try:
+            return policy.quick(values, lambda x: _meant(policy, x), *row.values())
+        except _UnknownSampleError:
+            return None
     found: list[Reading] = []
     for value in values:
         x = Single(value) if single else number(+value, policy.name)
@@ -113,13 +121,25 @@ def _elements(
             if policy.valid is None or policy.valid(row):
                 found.append(x)
                 continue
-            meaning = policy.invalid[3]
-        else:
-            meaning = policy.invalid[0 if x is None or isnan(x) else 1 if x > 0 else 2]
-        if meaning == UNKNOWN:
+        try:
+            found.append(_meant(policy, x))
+        except _UnknownSampleError:
             return None
-        found.append({DROP: None, FAR: inf, NEAR: -inf}[meaning])
     return found
+
+
+class _UnknownSampleError(Exception):
+    """An element makes all of the sample unknown."""
+
+
+def _meant(policy: Policy, x: Reading) -> Reading:
+    """An element that is no measurement: infinity for far and near, None where it is dropped."""
+    finite = x is not None and isfinite(x)
+    kind = 3 if finite else 0 if x is None or isnan(x) else 1 if x > 0 else 2
+    meaning = policy.invalid[kind]
+    if meaning == UNKNOWN:
+        raise _UnknownSampleError
+    return {DROP: None, FAR: inf, NEAR: -inf}[meaning]
 
 
 def _clearance(policy: Policy, ranges: Sequence[Reading], start: float, step: float) -> float:
@@ -128,15 +148,18 @@ def _clearance(policy: Policy, ranges: Sequence[Reading], start: float, step: fl
         return 0.0
     x, y, yaw = policy.sensor
     reach = max(hypot(a - x, b - y) for a, b in policy.footprint)
-    scale = exact(policy.scale)
-    least = inf
+    top, bottom = (float(each) for each in exact(policy.scale).exact.as_integer_ratio())
+    least = limit = inf
     for i, value in enumerate(ranges):
-        length = in_base(value, scale)
-        # What is so far out cannot be nearer; a millimetre is more than any rounding.
-        if length is None or isinf(length) or length - reach - 1e-3 > least:
+        if value is None or value > limit or isinf(value):
             continue
+        length = value * top / bottom  # as `in_base`, without a call for each beam
         angle = start + step * i + yaw
-        least = min(least, _gap(x + length * cos(angle), y + length * sin(angle), policy.footprint))
+        gap = _gap(x + length * cos(angle), y + length * sin(angle), policy.footprint)
+        if gap < least:
+            least = gap
+            # What is farther out cannot be nearer; a millimetre is more than any rounding.
+            limit = (least + reach + 1e-3) * bottom / top
     return least
 
 

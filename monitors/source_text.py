@@ -13,7 +13,7 @@ _ROOM = Path(__file__).parent
 ALONE = """\
 import sys
 
-if __name__ == "__main__" and not sys.flags.safe_path:
+if __name__ == "__main__" and not getattr(sys.flags, "safe_path", False):
     del sys.path[0]  # what stands beside this file is no library
 """
 """The first statements of whatever can be run as a file. Python would look for the standard library
@@ -54,9 +54,9 @@ def interceptor() -> Runtime:
 
 @cache
 def perception() -> Runtime:
-    """What a live node needs beside its monitor: messages → rows → what is owed."""
-    needed = ("kernel/verdicts", "kernel/readings", "samples", "courses", "ticking", "perception")
-    return _joined(_ROOM, needed)
+    """What a live node needs beside its monitor: from messages to whether the robot must stop."""
+    needed = "kernel/verdicts kernel/readings samples courses ticking perception guard voice"
+    return _joined(_ROOM, needed.split())
 
 
 def _joined(folder: Path, modules: Sequence[str]) -> Runtime:

@@ -7,9 +7,11 @@ proposition.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import random
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from math import floor
 from typing import Any, assert_never
 
 import numpy as np
@@ -27,6 +29,7 @@ from fretish import expressions as e
 from fretish.bindings.declarations import (
     Declarations,
     Invalid,
+    Path,
     Proposition,
     Reading,
     Reduce,
@@ -35,7 +38,7 @@ from fretish.bindings.declarations import (
 )
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
-from fretish.units import unit
+from fretish.units import ONE, unit
 from monitors.kernel import readings
 from monitors.kernel.verdicts import Truth
 from tests.emitting import rule
@@ -55,10 +58,11 @@ DIGITS = (
     "3.5e38",
     "1e308",
 )
+BETWEEN = (f"{2**52}.5", f"{2**53 + 1}.5", f"{2**63 + 1}", f"{2**64 - 1}.5", f"{2**64}")
 digits = st.one_of(
     st.sampled_from(DIGITS),
     st.sampled_from(EDGES).map(str),
-    st.sampled_from([f"{2**52}.5", f"{2**53 + 1}.5", f"{2**63 + 1}", f"{2**64 - 1}.5", f"{2**64}"]),
+    st.sampled_from(BETWEEN),
     st.integers(0, 20).map(str),
     st.fractions(0, 4, max_denominator=8).map(lambda f: str(float(f))),
 )
@@ -73,7 +77,11 @@ def _around(kind: type[np.floating[Any]]) -> list[float]:
     return [float(sign * each) for each in around for sign in (1, -1)]
 
 
-SPECIAL = [math.nan, math.inf, -math.inf, 0.0, -0.0, 5e-324, 2.0**52, 2.0**53, 2.0**53 + 2, 2.0**64]
+LARGEST = float(np.finfo(np.float64).max)
+SPECIAL = [
+    *(math.nan, math.inf, -math.inf, LARGEST, -LARGEST, 0.0, -0.0, 5e-324),
+    *(2.0**52, 2.0**53, 2.0**53 + 2, 2.0**64),
+]
 doubles = st.one_of(
     st.floats(), st.sampled_from(SPECIAL), st.sampled_from(_around(np.float64)), st.integers(-9, 9)
 ).map(np.float64)
@@ -214,7 +222,8 @@ class Case:
             values = {}
             for signal, message, value in zip(self.signals, row, (a, b), strict=True):
                 age = NOW - message.at
-                lost = message.at < 0 or (signal.max_age is not None and age > signal.max_age)
+                is_old = signal.max_age is not None and age > signal.max_age
+                lost = message.at < 0 or age < 0 or is_old
                 values[signal.name] = np.array([np.nan]) if lost else value
             given = {signal.name: signal for signal in self.signals}
             found.append((audited_truth(self.tree, given, values), (a, b)))
@@ -230,7 +239,7 @@ def messages(draw: st.DrawFn, signal: Signal) -> Message:
         items = draw(st.lists(KINDS[kind], max_size=4))
         field = np.array(items, field.dtype)
     ends = st.one_of(doubles, singles).map(float)
-    at = draw(st.sampled_from([-1, 0, NOW - 10**8 - 1, NOW - 10**8, NOW, NOW, NOW]))
+    at = draw(st.sampled_from([-1, 0, NOW - 10**8 - 1, NOW - 10**8, NOW, NOW, NOW, NOW + 1]))
     return Message(field, draw(ends), draw(ends), at)
 
 
@@ -258,6 +267,82 @@ def collected(count: int) -> list[Case]:
 
     collect()
     return found
+
+
+def edge_cases() -> list[Case]:
+    """Numbers at and beside the constant that they meet, of each kind, in each form."""
+    choose, found = random.Random("edges"), list[Case]()
+    constants = (*DIGITS, *map(str, EDGES), *BETWEEN)
+    for place, text in enumerate(2 * (*constants, "3")):
+        sign: Any = SIGNS[place % len(SIGNS)]
+        fixed: e.Expression = e.Quantity(text, "m")
+        fixed = e.Negation(fixed) if place % 3 == 2 else fixed
+        value = Fraction(text) * (-1 if place % 3 == 2 else 1)
+        tree = e.And(
+            (
+                e.Comparison(sign, _FORMS[place % len(_FORMS)], fixed),
+                e.Comparison("<=", _REST, e.Number("0")),
+            )
+        )
+        most = e.Call("max", (e.Name("x"), e.Name("least")))
+        valid = e.Comparison("!=" if place % 4 else "=", most, fixed)
+        near = [*beside(value), *map(np.float64, choose.sample(SPECIAL, 2))]
+        each = place % 7 < 3
+        fields = _arrays(near, choose) if each else [np.array([x]) for x in near]
+        invalid = Invalid(*choose.choices([*Reading], k=4))
+        a, b = (_lengths(name, each, valid if each else None, invalid) for name in "ab")
+        rows = [
+            tuple(
+                Message(array if each else array[0], float(choose.choice(near)), 0.0, NOW + late)
+                for array, late in ((field, place % 5 == 4), (choose.choice(fields), 0))
+            )
+            for place, field in enumerate(fields)
+        ]
+        found.append(Case((a, b), tree, tuple((x, y) for x, y in rows)))
+    return found
+
+
+_A, _B, _SEVEN = e.Name("a"), e.Name("b"), e.Quantity("7", "m")
+_FORMS: tuple[e.Expression, ...] = (
+    _A,
+    e.Call("min", (_A, _B)),
+    e.Call("min", (_A, _SEVEN)),
+    e.Call("max", (_A, _SEVEN)),
+    e.Call("max", (e.Call("min", (_A, _B)), e.Call("abs", (_B,)))),
+    e.Call("min", (e.Call("max", (_A, _B)), _SEVEN)),
+)
+
+
+_REST = e.Arithmetic("mod", e.Call("abs", (_B,)), e.Negation(_SEVEN))
+"""It has the sign of the right side."""
+
+
+def _lengths(name: str, each: bool, valid: e.Expression | None, invalid: Invalid) -> Signal:
+    reduce, place = Reduce.MAX if each else None, Path(f"/{name}", ("field",), each=each)
+    return Signal(name, place, ONE, "m", reduce=reduce, valid=valid, invalid=invalid)
+
+
+def beside(value: Fraction) -> list[Any]:
+    """The numbers of each kind that are next to it, and it where it is one."""
+    found: list[Any] = []
+    for kind in (np.float32, np.float64):
+        with np.errstate(over="ignore"):
+            near = kind(float(value)) if abs(value) < 2**1024 else kind(math.inf)
+            found += [near, *(np.nextafter(near, kind(end)) for end in (-math.inf, math.inf))]
+    for whole in (floor(value) + step for step in (-1, 0, 1, 2)):
+        found += [np.int64(whole)] if -(2**63) <= whole < 2**63 else []
+        found += [np.uint64(whole)] if 0 <= whole < 2**64 else []
+    return found
+
+
+def _arrays(near: Sequence[Any], choose: random.Random) -> list[Any]:
+    """Arrays of one kind each."""
+    kinds = {x.dtype: [y for y in near if y.dtype == x.dtype] for x in near}
+    return [
+        np.array(choose.sample([*some, kind.type(7)], 2), kind)
+        for kind, some in kinds.items()
+        for _ in range(3)
+    ]
 
 
 def numbered(case: Case, number: int) -> Formalized:

@@ -15,10 +15,11 @@ ROOT = Path(__file__).parent.parent
 ORDER = """
 monitors.kernel  monitors
 fretish.diagnostics  fretish.reading  fretish.mistakes  fretish  fretish.bindings
+fretish.bindings.tables
 compiler.files  compiler.logic.ordering  compiler.logic  compiler.formalization
 compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals
 compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
-compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
+compiler.targets.ros  compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf
 compiler  compiler.explanation
 fretc.logs.signals  fretc.logs.mcap  fretc.logs.messages  fretc.logs.storage  fretc.logs
 fretc.audit.measurements  fretc.audit.phases  fretc.audit.evidence  fretc.audit.store  fretc.audit
@@ -84,6 +85,7 @@ DOORS = {
     "msgspec": {"compiler/files/records.py"},
     "rosbags": {
         "fretc/logs/messages/idl.py",
+        "fretc/logs/messages/ros2_types.py",
         "fretc/logs/storage/bags.py",
         "fretc/testing/staging/messages.py",
         "simulation/nodes/messages.py",
@@ -127,6 +129,8 @@ DOORS = {
     "zlib_ng": {"fretc/logs/mcap/container.py"},
     "lz4": {"fretc/logs/mcap/container.py"},
     "wcwidth": {"fretc/terminal/screen.py"},
+    "cyclonedds": {"fretc/watch/sources/dds_domain.py", "fretc/watch/sources/dds_types.py"},
+    "websockets": {"fretc/watch/sources/foxglove.py"},
     "click": CLICK,
 }
 """Each library, and the modules that import it."""

@@ -20,7 +20,7 @@ from compiler.project.hazards import hazards as read_hazards
 from compiler.project.paths import BINDINGS, HAZARDS, beside, beside_first, requirement_files
 from compiler.project.stated_numbers import disagreements
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.documents import Requirement, requirements
 

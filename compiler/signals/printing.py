@@ -49,10 +49,18 @@ def suited(value: Fraction, sign: str = "") -> Suited:
     return Suited(float(found.single), is_single, double, wide, magnitude)
 
 
-class Fixing(NamedTuple):
-    """How a language writes what has a constant in it."""
+class Language(NamedTuple):
+    """How a language writes numbers and truths."""
 
-    arithmetic: Callable[[Fraction], str]
+    prefix: str
+    """Of each function."""
+    truths: Mapping[bool | None, str]
+    signs: Mapping[str, str]
+    held: str
+    """The input `{}` that says what has held."""
+    scale: Callable[[Fraction], str]
+    """The factor to base units, as one or two arguments."""
+    fixed: Callable[[Fraction], str]
     """A constant in arithmetic."""
     chosen: Callable[[str, str, Fraction], str]
     """A function, a number, and a constant: the less or the greater of both."""
@@ -62,30 +70,24 @@ class Fixing(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Printer:
-    """A language's words; `given` and `held` are what names and durations are called."""
+    """The text of what is computed, over what names and durations are called."""
 
-    prefix: str
-    """Of each function."""
+    language: Language
     given: Mapping[str, str]
-    held: tuple[str, ...]
-    fixing: Fixing
-    truths: Mapping[bool | None, str]
-    signs: Mapping[str, str]
-    scale: Callable[[Fraction], str]
-    """The factor to base units, as one or two arguments."""
+    held: tuple[str, ...] = ()
 
     def truth(self, tree: n.Truth) -> str:
         """The text of a truth."""
         match tree:
             case n.Known(value):
-                return self.truths[value]
+                return self.language.truths[value]
             case n.Flag(name):
                 return self._call("flag", self.given[name])
             case n.Compared(sign, left, n.Fixed(value)):
-                return self.fixing.compared(self.number(left), sign, value)
+                return self.language.compared(self.number(left), sign, value)
             case n.Compared(sign, left, right):
                 return self._call(
-                    "compared", self.number(left), self.signs[sign], self.number(right)
+                    "compared", self.number(left), self.language.signs[sign], self.number(right)
                 )
             case n.Held(place):
                 return self.held[place]
@@ -106,25 +108,33 @@ class Printer:
             case n.Given(name):
                 return self.given[name]
             case n.Fixed(value):
-                return self.fixing.arithmetic(value)
+                return self.language.fixed(value)
             case n.Applied(function, arg):
                 return self._call(function, self.number(arg))
             case n.Chosen(function, left, n.Fixed(value)):
-                return self.fixing.chosen(function, self.number(left), value)
+                return self.language.chosen(function, self.number(left), value)
             case n.Computed(function, left, right) | n.Chosen(function, left, right):
                 return self._call(function, self.number(left), self.number(right))
             case n.Power(base, times):
                 return self._call("power", self.number(base), str(times))
             case n.InBase(arg, scale):
-                return self._call("in_base", self.number(arg), self.scale(scale))
+                return self._call("in_base", self.number(arg), self.language.scale(scale))
             case _:
                 assert_never(tree)
 
     def _call(self, function: str, *args: str) -> str:
-        return f"{self.prefix}{function}({', '.join(args)})"
+        return f"{self.language.prefix}{function}({', '.join(args)})"
 
 
 def parts(value: Fraction) -> tuple[float, float]:
     """Numerator and denominator of a factor as the nearest 64-bit floats."""
     top, bottom = (exact(str(part)).double for part in value.as_integer_ratio())
     return top, bottom
+
+
+def letters(word: str, escape: str) -> str:
+    """The bytes of a word for a literal: letters and digits as they are, others by `escape`."""
+    return "".join(
+        chr(byte) if chr(byte).isascii() and chr(byte).isalnum() else escape.format(byte)
+        for byte in word.encode()
+    )

@@ -66,6 +66,8 @@ class Target:
     """False where all rules go into one file, for exchange with another tool."""
     joins: bool = False
     """Whether `Options.one_file` puts all rules into one file."""
+    together: bool = False
+    """Whether all rules always become one monitor; `per_rule` is False then."""
     next_step: str = ""
     """A command for the first file, `{}`, and what it does; for whoever makes one anew."""
     weak: Target | None = None

@@ -12,7 +12,7 @@ from compiler.logic import printing
 from compiler.project.folder import Project, whole
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement

@@ -22,7 +22,7 @@ from fretc.logs.signals.propositions import TRUE, evaluate
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.signals import sample
 from fretish.bindings.declarations import Aggregate, Declarations, Proposition
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.source import Source
 from monitors.interceptor import Options

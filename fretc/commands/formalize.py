@@ -208,7 +208,7 @@ def _emitted(
     answers = [(rule, target.refuse(rule)) for rule in rules]
     wrong = [diagnostic for _, diagnostic in answers if diagnostic is not None]
     whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
-    one_file = options.one_file and target.joins
+    one_file = target.together or (options.one_file and target.joins)
     if one_file:
         whole += clashes(rules)
     if whole or (wrong and (one_file or not target.per_rule)):

@@ -97,7 +97,7 @@ def play(
         *(start for run in recorded for start in run.starts),
         *filter(None, [pair.start for pair in changes.pairs]),
         *of_examples(known),
-        *_of_files(project.rules, known, tests, analysis),
+        *of_files(project.rules, known, tests, analysis),
     ]
     notes = [*(pair.note for pair in changes.pairs), *changes.notes]
     notes += [note for run in recorded for note in run.notes]
@@ -142,7 +142,7 @@ def _recorded(
         yield found
 
 
-def _of_files(
+def of_files(
     rules: Sequence[Formalized],
     known: Sequence[Formalized],
     tests: str | None,

@@ -28,6 +28,7 @@ from fretish.diagnostics.diagnostic import Diagnostic, Severity, has_errors
 
 if TYPE_CHECKING:
     from compiler.project.folder import Project
+    from fretc.audit.evidence.briefs import EvidenceSource
     from fretc.report.model.views import Report
     from fretc.report.page.html import Inset
 
@@ -158,7 +159,7 @@ def report(
     say_briefly([*project.diagnostics, *outcome.diagnostics], requirements)
     if outcome.report is None or outcome.details is None:
         raise SystemExit(BAD)
-    inset = _inset(project) if play else None
+    inset = _inset(project, outcome.details.evidence, analysis) if play else None
     subject = Subject(outcome.report, project, outcome.details, outcome.diagnostics, inset)
     others = (bindings, hazards, verification, analysis, lock, waivers, signers)
     inputs = filter(None, (*others, *ajpf_results))
@@ -169,18 +170,30 @@ def report(
     raise SystemExit(_status(outcome.report) if strict else SHOWN)
 
 
-def _inset(project: Project) -> Inset | None:
+def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | None) -> Inset | None:
     """The page to play with traces; None: no requirement can be on it."""
     from compiler.formalization.formalize import clashes
     from compiler.targets.javascript.monitor import refuse
+    from fretc.audit.plan import Plan, planned
+    from fretc.commands.play import of_files
     from fretc.play.page import inset
+    from fretc.play.recorded import Recorded, of_evidence
     from fretc.play.starts import of_examples
 
     refused = {rule.id: said.message for rule in project.rules if (said := refuse(rule))}
     known = [rule for rule in project.rules if rule.id not in refused]
     if not known or [*clashes(known)]:
         return None
-    return inset(known, [*refused.items()], [*of_examples(known)])
+    plan = planned(project)
+    recorded = Recorded((), ())
+    if evidence is not None and isinstance(plan, Plan):
+        recorded = of_evidence(known, plan, evidence)
+    starts = [
+        *recorded.starts,
+        *of_examples(known),
+        *of_files(project.rules, known, None, analysis),
+    ]
+    return inset(known, [*refused.items()], starts, notes=recorded.notes)
 
 
 def _outputs(

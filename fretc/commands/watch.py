@@ -77,8 +77,9 @@ def watch(
 ) -> None:
     """Watch a running robot by all requirements, until Ctrl-C.
 
-    SOURCE is `ros1`: the robot of the ROS 1 master that ROS_MASTER_URI names; or an MCAP file; with
-    --follow, one that is being recorded.
+    SOURCE is `dds`: the ROS 2 robot in the domain of ROS_DOMAIN_ID; `ros1`: the robot of the ROS 1
+    master that ROS_MASTER_URI names; `foxglove ws://HOST:PORT`: a Foxglove server, as
+    foxglove_bridge is one; or an MCAP file; with --follow, one that is being recorded.
 
     Verdicts are those that an audit gives of the recording. Exit status: 0 all satisfied, 1 a
     violation, 2 bad use or bad input, 3 something is not shown.

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
 from fretish.bindings.declarations import LabelSource
-from fretish.bindings.reader import MOST_LABELS, is_label
+from fretish.bindings.tables.labels import MOST_LABELS, is_label
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.reading import name_patterns
 

@@ -220,7 +220,7 @@ class Stream:
             The judged ticks at which nothing is known any more.
         """
         self._gaps.append((first, last))
-        self._end = max(self._end, last)
+        self._begin, self._end = min(self._begin, first), max(self._end, last)
         judged = self._ticking.last
         if judged is None or first > judged:
             return None

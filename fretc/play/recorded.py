@@ -14,6 +14,7 @@ from itertools import groupby
 
 from compiler.formalization.formalized import Formalized
 from compiler.targets.python import monitor as emitted
+from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.plan import Plan
 from fretc.logs.reader import read
 from fretc.logs.signals.traces import Timeline, trace
@@ -24,6 +25,8 @@ from monitors.kernel.stepping import literals_of
 from monitors.kernel.verdicts import Signals
 from monitors.loading import load
 
+RUNS = 20
+"""Runs of an audit whose violations are traces; the others are counted."""
 SHOWN = 20
 """Violations of a requirement that are traces; the others are counted."""
 _AROUND = 10
@@ -43,6 +46,8 @@ class Recorded:
     """What is not, in words."""
     findings: tuple[Diagnostic, ...] = ()
     """What is wrong with the log."""
+    sha256: str = ""
+    """Of the one log that it is of."""
 
 
 def of_log(rules: Sequence[Formalized], plan: Plan, log: str) -> Recorded | Diagnostic:
@@ -73,7 +78,37 @@ def of_log(rules: Sequence[Formalized], plan: Plan, log: str) -> Recorded | Diag
         notes.append(f"{recording.name}: no whole tick of it violates a requirement")
     if not recording.intact:
         notes.append(f"{recording.name}: messages of it may be lost: what is not known is unknown")
-    return Recorded(tuple(starts), tuple(notes), recording.findings)
+    return Recorded(tuple(starts), tuple(notes), recording.findings, recording.sha256)
+
+
+def of_evidence(rules: Sequence[Formalized], plan: Plan, evidence: EvidenceSource) -> Recorded:
+    """The violations of audited runs, as far as their logs are there as they were audited.
+
+    Args:
+        rules: those that the plan audits are looked at.
+        plan: of the audit.
+        evidence: of it; the names of its logs are their paths.
+    """
+    ids = {rule.id for rule in rules}
+    violated = dict.fromkeys(
+        (each.run, each.log)
+        for _, each in evidence.briefs()
+        if each.violations and each.requirement in ids
+    )
+    starts: list[Start] = []
+    notes: list[str] = []
+    for name, sha256 in [*violated][:RUNS]:
+        found = of_log(rules, plan, name)
+        if isinstance(found, Diagnostic):
+            notes.append(f"violations of {name} are not here: {found.message}")
+        elif found.sha256 != sha256:
+            notes.append(f"violations of {name} are not here: it is not the log that was audited")
+        else:
+            starts += found.starts
+            notes += found.notes
+    if len(violated) > RUNS:
+        notes.append(f"{len(violated) - RUNS} more runs with violations are not here")
+    return Recorded(tuple(starts), tuple(notes))
 
 
 class Run:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import partial
 
 from fretc.audit.measurements.judgement import judged
@@ -57,8 +57,10 @@ class Judges:
             rows: further ticks, which the monitors forget.
         """
         ahead = tuple(rows)
-        monitors = (_ahead(each, ahead) if ahead else each for each in self.monitors)
-        return tuple(standing.owed for monitor in monitors for standing in monitor.standings())
+        found = (
+            each.standings_after(ahead) if ahead else each.standings() for each in self.monitors
+        )
+        return tuple(standing.owed for standings in found for standing in standings)
 
     def last_triggers(self) -> tuple[int | None, ...]:
         """Of each requirement the time of the last tick that has triggered it for certain."""
@@ -86,14 +88,6 @@ class Judges:
         return verdict if decides else str(kernel.INCONCLUSIVE)
 
 
-def _ahead(monitor: Monitor, rows: Sequence[Mapping[str, Truth]]) -> Monitor:
-    """Another monitor that has taken further rows."""
-    other = type(monitor)()
-    other.restore(monitor.state())
-    other.advance(rows)
-    return other
-
-
 def _column(truth: Truth, ticks: int) -> Column:
     """The column of the last tick alone."""
     return Column(int(truth is True), int(truth is None)) if ticks else Column(0, 0)
@@ -103,10 +97,8 @@ def _outcome(
     monitor: Monitor, columns: Mapping[str, Column], ticks: int, end: Verdict, before: int
 ) -> tuple[Outcome, ...]:
     """What a monitor shows that has made its steps, and perhaps one more, which it forgets."""
-    if ticks > before:
-        row = {name: columns[name].at(before) for name in monitor.PROPOSITIONS}
-        monitor = _ahead(monitor, [row])
-    (standing,) = monitor.standings()
+    more = [{name: columns[name].at(before) for name in monitor.PROPOSITIONS}] * (ticks > before)
+    (standing,) = monitor.standings_after(more)
     verdict = standing.verdict
     if end == kernel.VIOLATED and verdict == kernel.INCONCLUSIVE:
         verdict = kernel.VIOLATED
@@ -115,7 +107,7 @@ def _outcome(
     return (
         Outcome(
             standing.requirement,
-            monitor.tick + 1,
+            monitor.tick + 1 + len(more),
             verdict,
             standing.finite,
             first,

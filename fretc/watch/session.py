@@ -16,6 +16,7 @@ from fretc.logs.stream import End, Stream, Withdrawn
 from fretc.watch.decoding import Decoder, Timed
 from fretc.watch.judging import Judges
 from fretc.watch.sources.source import Arrival
+from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel.verdicts import Truth
 from monitors.ticking import Ledger, is_jump
@@ -99,6 +100,7 @@ class Session:
         self._missed: list[Gap] = []
         self._gap_from: int | None = None
         """The latest time before messages were missed, until another one comes."""
+        self._interrupted = False
         self._ahead: tuple[Truth, ...] | None = None
         self.topics = {name: Topic() for name in sorted(self._decoder.topics)}
         self.problems: list[Diagnostic] = []
@@ -108,6 +110,11 @@ class Session:
     def missed(self) -> tuple[Gap, ...]:
         """When messages were missed, by receive time."""
         return tuple(self._missed)
+
+    @property
+    def received(self) -> int:
+        """The receive time up to which everything that has come was given; 0 before the first."""
+        return self._received
 
     @property
     def origin(self) -> int | None:
@@ -181,7 +188,7 @@ class Session:
     def _take(self, message: Timed) -> None:
         self._latest[message.topic] = max(message.time, self._latest.get(message.topic, 0))
         self._now = max(self._now, message.time)
-        if self._gap_from is not None:
+        if self._gap_from is not None and not self._interrupted:
             before, self._gap_from = self._gap_from, None
             self._withdraw(self._stream.miss(min(before, message.time), max(before, message.time)))
         self._withdraw(
@@ -193,15 +200,26 @@ class Session:
         if late is not None:
             self._judges.withdraw(late)
 
+    def interrupt(self) -> None:
+        """The source is gone: no tick is judged until `miss` says what was lost."""
+        self._interrupted = True
+        self._gap_from = self._gap_from or self._now or None
+
     def miss(self, since: int, until: int) -> None:
-        """Messages received from `since` to `until` were lost; the next one tells the time."""
+        """Messages received from `since` to `until` were lost.
+
+        By stamps, the messages around them tell which times that are.
+        """
+        self._interrupted, self._ahead = False, None
         if self._missed and since <= self._missed[-1][1]:
-            since = min(since, self._missed[-1][0])
-            self._missed[-1] = since, max(until, self._missed[-1][1])
+            before = self._missed.pop()
+            since, until = min(since, before[0]), max(until, before[1])
+        self._missed.append((since, until))
+        if self._clock.time is TimeSource.LOG_TIME:
+            self._gap_from = None
+            self._withdraw(self._stream.miss(since, until))
         else:
-            self._missed.append((since, until))
-        if self._now and self._gap_from is None:
-            self._gap_from = self._now
+            self._gap_from = self._gap_from or self._now or None
 
     def idle(self, now: int) -> Diagnostic | None:
         """Everything that was received before `now` has been given."""
@@ -209,6 +227,8 @@ class Session:
         return self._pass(self._received - self._patience) if self._now else None
 
     def _pass(self, time: int) -> Diagnostic | None:
+        if self._interrupted:
+            return None
         found = self._stream.until(max(time, 0))
         if isinstance(found, Diagnostic):
             return found
@@ -231,6 +251,7 @@ class Session:
             rows = [tick.truth for tick in self._stream.glance(max(self._now, self._time_passed))]
             self._ahead = judges.owed(rows)
         owed = self._ahead if ahead and self._ahead is not None else judges.owed()
+        owed = (None,) * len(owed) if self._interrupted else owed
         read = zip(judges.standings(), owed, judges.last_triggers(), strict=True)
         return tuple(
             State(

@@ -93,7 +93,9 @@ class Watch:
                 yield item
             case Interrupted(since):
                 self._lost_since = since
+                self.session.interrupt()
                 yield item
+                yield from self._changes()
             case Opened():
                 yield item
             case Problem(diagnostic):
@@ -151,6 +153,8 @@ class Watch:
             yield Found(_two_clocks(jump))
             return
         self.session = Session(self._plan)
+        if self._lost_since is not None:
+            self.session.interrupt()
         self._states, self._late, self._began = {}, 0, arrival.log_time
         self._silent = set()
         try:
@@ -181,7 +185,7 @@ class Watch:
     def finish(self) -> Iterator[News]:
         """The present run ends: its verdicts are those of an audit of its recording."""
         if self._lost_since is not None:
-            self.session.miss(self._lost_since, self._lost_since)
+            self.session.miss(self._lost_since, max(self._lost_since, self.session.received))
         found = self.session.end()
         if not isinstance(found, Ended):
             self.failed = True

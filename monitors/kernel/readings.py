@@ -37,6 +37,12 @@ class Single(float):
     __slots__ = ()
 
 
+class Wide(float):
+    """A float that was chosen beside an `int`: constants are to it what they are to that."""
+
+    __slots__ = ()
+
+
 class Constant(NamedTuple):
     """A number that is written in a sentence."""
 
@@ -181,7 +187,7 @@ def compared(left: Term, sign: str, right: Term) -> Truth:
     assert not isinstance(left, Constant)
     if not isinstance(right, Constant):
         return _COMPARE[sign](left, right)
-    end = _WHOLE_END if isinstance(left, int) else DOUBLES_END
+    end = _WHOLE_END if isinstance(left, int | Wide) else DOUBLES_END
     if isinstance(left, Single) or not _HALVES_END <= abs(right.exact) < end:
         return _COMPARE[sign](left, right.beside(left))
     if right.exact.denominator != 1 and sign in ("=", "!="):
@@ -249,7 +255,7 @@ def negative(value: Reading) -> Reading:
     """`-value`."""
     if value is None:
         return None
-    return Single(-value) if isinstance(value, Single) else -value
+    return type(value)(-value)
 
 
 def absolute(value: Reading) -> Reading:
@@ -275,8 +281,8 @@ def _one_of(left: Term, right: Term, first: Callable[[Any, Any], bool]) -> Term:
         return left if first(left.exact, right.exact) else right
     x, y = _alike(left, right), _alike(right, left)
     chosen = x if first(x, y) else y
-    if isinstance(x, int) or isinstance(y, int):  # beside them a large float is whole, too
-        return int(chosen) if isfinite(chosen) and abs(chosen) >= DOUBLES_END else chosen
+    if isinstance(x, int | Wide) or isinstance(y, int | Wide):
+        return chosen if isinstance(chosen, int) else Wide(chosen)
     return chosen if isinstance(x, Single) and isinstance(y, Single) else float(chosen)
 
 
@@ -284,7 +290,7 @@ def _alike(term: float | Constant, other: float | Constant) -> float:
     """A number to choose: beside a constant, 64-bit floats stand for whole numbers."""
     if isinstance(term, Constant):
         return term.beside(other)
-    return _double(term) if isinstance(term, int) and isinstance(other, Constant) else term
+    return _plain(term) if isinstance(term, int | Wide) and isinstance(other, Constant) else term
 
 
 def in_base(value: Reading, scale: Constant) -> Reading:

@@ -301,6 +301,20 @@ class Monitor:
         )
         return tuple(map(_standing, self.REQUIREMENTS, *zip(*readings, strict=True)))
 
+    def standings_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Standing, ...]:
+        """The standings if these rows came, too; the monitor stays where it is.
+
+        Raises:
+            KeyError, TypeError, ValueError: as `advance` does.
+        """
+        kept = dict(vars(self))
+        self.must, self.may = self._copies()
+        try:
+            self._advance(self._in_order([*rows]))
+            return self.standings()
+        finally:
+            vars(self).update(kept)
+
     def _fork(self) -> None:
         """From now on what may hold differs from what holds for certain."""
         if self.may is self.must:
@@ -387,7 +401,7 @@ class Monitor:
 
     def _in_order(self, rows: list[Any]) -> list[Row]:
         """Rows by name as rows in the order of `PROPOSITIONS`."""
-        if not isinstance(rows[0], Mapping):
+        if not rows or not isinstance(rows[0], Mapping):
             return rows
         return list(map(_picked(tuple(self.PROPOSITIONS)), rows))
 

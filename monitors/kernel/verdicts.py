@@ -1,7 +1,7 @@
 """Truth with unknowns, verdicts, and what of a requirement is watched at each tick."""
 
-from enum import StrEnum
-from typing import Generic, NamedTuple, TypeVar
+from enum import Enum
+from typing import Any, Generic, NamedTuple, TypeVar
 
 Truth = bool | None
 """True, False, or None: unknown."""
@@ -19,7 +19,7 @@ def boolean(value: object, name: str = "") -> bool:
     raise TypeError(f"{subject} is True, False or None (unknown), not {value!r}")
 
 
-class Verdict(StrEnum):
+class Verdict(str, Enum):  # Python 3.10 has no StrEnum
     """The judgement of a trace on a requirement.
 
     While it runs: satisfied or violated, whatever follows, or pending (LTL3). When it has ended:
@@ -34,6 +34,9 @@ class Verdict(StrEnum):
     VACUOUS = "vacuous"
     NO_DATA = "no data"
 
+    __str__ = str.__str__
+    __format__ = str.__format__  # type: ignore[assignment]
+
 
 SATISFIED, VIOLATED, PENDING = Verdict.SATISFIED, Verdict.VIOLATED, Verdict.PENDING
 INCONCLUSIVE, VACUOUS, NO_DATA = Verdict.INCONCLUSIVE, Verdict.VACUOUS, Verdict.NO_DATA
@@ -42,23 +45,30 @@ EXIT_STATUS = {SATISFIED: 0, VIOLATED: 1, INCONCLUSIVE: 3, VACUOUS: 3, NO_DATA: 
 T = TypeVar("T")
 
 
-class Signals(NamedTuple, Generic[T]):
-    """A monitor's signals of one requirement: a truth value a tick, or whole columns of them."""
-
-    trigger: T
+class _Signals(NamedTuple):
+    trigger: Any
     """A demand begins here."""
-    breach: T
+    breach: Any
     """A demand is broken here: nothing that follows can repair it."""
-    doom: T
+    doom: Any
     """Demands are open here that no endless trace meets, though none of them is broken yet."""
-    owed: T
+    owed: Any
     """A demand is open after this tick (where none has been broken before)."""
-    fails: T
+    fails: Any
     """The trace would violate the requirement if it ended here, though nothing is broken yet."""
-    settled: T
+    settled: Any
     """Nothing that follows can break a demand any more."""
-    answer: T
+    answer: Any
     """The response comes here, where a demand waits for one."""
+
+
+class Signals(_Signals, Generic[T]):
+    """A monitor's signals of one requirement: a truth value a tick, or whole columns of them.
+
+    Each is a `T`; in Python 3.10 no NamedTuple can say so itself.
+    """
+
+    __slots__ = ()
 
 
 class Requirement(NamedTuple):

@@ -21,7 +21,16 @@ from fretc.audit.store.register import types
 from fretc.report.traceability import lock, texts, waivers
 from fretc.report.traceability.chain import Node
 from fretish.bindings import declarations as d
-from fretish.bindings import interceptor, reader
+from fretish.bindings.tables import (
+    clock,
+    coordinates,
+    interceptor,
+    labels,
+    propositions,
+    reader,
+    signals,
+    variables,
+)
 from fretish.clock import End, Rounding, TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.explanations import ACCEPTANCES, explanations
@@ -113,7 +122,7 @@ CHOICES: Mapping[tuple[str, str], tuple[str, ...] | type[StrEnum]] = {
     ("clock", "rounding"): Rounding,
     ("signal.NAME", "reduce"): d.Reduce,
     ("proposition.NAME", "role"): d.Role,
-    ("proposition.NAME", "kind"): reader._KINDS,
+    ("proposition.NAME", "kind"): propositions._KINDS,
     ("proposition.NAME", "agg"): d.Aggregate,
     ("proposition.NAME", "modality"): d.Modality,
     ("variable.NAME", "modality"): d.Modality,
@@ -124,14 +133,14 @@ CHOICES: Mapping[tuple[str, str], tuple[str, ...] | type[StrEnum]] = {
 }
 """Fields that are one of a few words; in all other ones no words are listed but examples."""
 TABLES = {
-    "clock": reader._CLOCK,
-    "signal.NAME": reader._SIGNAL,
-    "proposition.NAME": reader._PROPOSITION,
-    "variable.NAME": reader._VARIABLE,
+    "clock": clock._CLOCK,
+    "signal.NAME": signals._SIGNAL,
+    "proposition.NAME": propositions._PROPOSITION,
+    "variable.NAME": variables._VARIABLE,
     "interceptor": interceptor._INTERCEPTOR,
     "assume": interceptor._ASSUME,
-    "map": reader._MAP,
-    "run": reader._RUN,
+    "map": coordinates._MAP,
+    "run": labels._RUN,
     "hazards.toml": hazards._FIELDS,
     "waivers.toml": waivers._FIELDS,
     "fretc.toml": settings._FIELDS,

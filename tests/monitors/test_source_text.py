@@ -3,13 +3,20 @@
 import ast
 from collections import Counter
 
-from monitors.source_text import kernel_of_variables
+import pytest
+
+from monitors.source_text import kernel_of_variables, perception
 
 
-def test_no_two_modules_of_the_run_time_define_one_name() -> None:
+@pytest.mark.parametrize(
+    ("text", "one"),
+    [(kernel_of_variables().text, "Listing"), (perception().text, "Voice")],
+    ids=["monitor", "perception"],
+)
+def test_no_two_modules_of_the_run_time_define_one_name(text: str, one: str) -> None:
     """In the text of a monitor the later one would take the place of the other."""
     defined: list[str] = []
-    for node in ast.parse(kernel_of_variables().text).body:
+    for node in ast.parse(text).body:
         match node:
             case ast.FunctionDef(name) | ast.ClassDef(name) | ast.AnnAssign(ast.Name(name)):
                 defined.append(name)
@@ -17,4 +24,4 @@ def test_no_two_modules_of_the_run_time_define_one_name() -> None:
                 names = [name for target in targets for name in ast.walk(target)]
                 defined += [name.id for name in names if isinstance(name, ast.Name)]
     assert [name for name, count in Counter(defined).items() if count > 1] == []
-    assert "Listing" in defined
+    assert one in defined

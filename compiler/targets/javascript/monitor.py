@@ -7,9 +7,7 @@ each rail says.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from fractions import Fraction
-from math import ceil, floor, inf
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
@@ -18,13 +16,14 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
+from compiler.targets.javascript import signals
+from compiler.targets.javascript.constants import Constants, scale, truth
 from compiler.targets.javascript.printer import Printer
 from compiler.targets.python.comparisons import TRUTH, Front, Spelling, Writer, front
 from compiler.targets.python.monitor import described, module, refusal, remark
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import deep
-from monitors.kernel.readings import Constant, Single, exact
 
 _NAMES = ("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "step", "truths", "judge")
 """What a module exports."""
@@ -36,12 +35,15 @@ def refuse(rule: Formalized) -> Diagnostic | None:
 
 
 def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
-    """`<id>_monitor.mjs` for each rule, or one file."""
+    """`<id>_monitor.mjs` for each rule, or one file; and what makes truths of samples beside it."""
     if options.one_file:
-        return (Artifact(PurePosixPath("monitors.mjs"), text(*rules)),)
-    return tuple(
-        Artifact(PurePosixPath(f"{module(stem(rule))}_monitor.mjs"), text(rule)) for rule in rules
-    )
+        return _files("monitors", rules)
+    return tuple(file for rule in rules for file in _files(f"{module(stem(rule))}_monitor", [rule]))
+
+
+def _files(name: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
+    monitor = Artifact(PurePosixPath(f"{name}.mjs"), text(*rules))
+    return (monitor, *signals.files(name, rules))
 
 
 def text(*rules: Formalized) -> str:
@@ -128,60 +130,11 @@ class _Front:
         """By the names of its variables and propositions."""
         constants = Constants()
         variables = {name: f"v_{names[name]}" for name in compared.inputs}
-        writer = Writer(variables, constants.spelling)
+        writer = Writer(variables, Spelling(constants.name, scale, truth))
         texts = {name: writer.comparison(each) for name, each in compared.comparisons.items()}
         row = tuple((name, texts.get(name) or variables[name]) for name in propositions)
         earlier = tuple((name, *both) for both, name in writer.earlier.items())
         return cls(constants.lines(), row, earlier)
-
-
-@dataclass(frozen=True, slots=True)
-class Constants:
-    """The numbers of sentences, each under a name."""
-
-    names: dict[Fraction, str] = field(default_factory=dict)
-
-    @property
-    def spelling(self) -> Spelling:
-        """How JavaScript writes constants; the numbers among them get names here."""
-        return Spelling(self._name, _scale, _truth)
-
-    def _name(self, value: Fraction) -> str:
-        return self.names.setdefault(value, f"number_{len(self.names) + 1}")
-
-    def lines(self) -> tuple[str, ...]:
-        """What says which numbers the names are."""
-        return tuple(f"const {name} = {_constant(value)};" for value, name in self.names.items())
-
-
-_WHOLE = 2**52
-"""From here on 64-bit floats hold whole numbers only."""
-
-
-def _constant(value: Fraction) -> str:
-    number: Constant = exact(str(value))
-    single = _float(number.single)
-    if isinstance(number.single, Single):
-        single = f"float32({single})"
-    parts = [_float(number.double), single]
-    if abs(value) >= _WHOLE:
-        parts += [f"{floor(value)}n", f"{ceil(value)}n"]
-    return f"constant({', '.join(parts)})"
-
-
-def _float(value: float) -> str:
-    if value in (inf, -inf):
-        return "Infinity" if value > 0 else "-Infinity"
-    return repr(float(value))
-
-
-def _scale(value: Fraction) -> str:
-    top, bottom = (_float(exact(str(part)).double) for part in value.as_integer_ratio())
-    return f"[{top}, {bottom}]"
-
-
-def _truth(value: bool | None) -> str:
-    return "null" if value is None else str(value).lower()
 
 
 TARGET = Target(

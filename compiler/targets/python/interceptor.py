@@ -18,7 +18,7 @@ from compiler.project.interceptor_options import options as counted
 from compiler.project.interceptor_options import repetition, ticks
 from compiler.targets.target import DEFAULT, Options, Target
 from fretish.bindings.declarations import Declarations, Form, Interception
-from fretish.bindings.interceptor import TABLE
+from fretish.bindings.tables.interceptor import TABLE
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 from monitors.source_text import interceptor as core

@@ -1,6 +1,6 @@
 """Bindings → the Python text of what a live node makes of messages, beside its monitor.
 
-The text of `monitors/perception.py` and of what it needs is copied in; below it stands one table,
+The text of `monitors/voice.py` and of what it needs is copied in; below it stands one table,
 `SETTING`: a policy for each signal and a meaning for each proposition, whose expressions call the
 functions of `monitors.kernel.readings`, as `compiler.signals` has them.
 """
@@ -111,6 +111,8 @@ def setting(rules: Sequence[Formalized]) -> Setting:
         declared.clock.period,
         declared.clock.phase,
         declared.clock.patience or 0,
+        declared.clock.time is TimeSource.HEADER_STAMP,
+        tuple(f"({rule.id!r}, {_topics(rule)!r})" for rule in rules),
     )
 
 
@@ -123,6 +125,14 @@ class Setting:
     period: int
     phase: int
     lateness: int
+    stamped: bool
+    reads: tuple[str, ...]
+
+
+def _topics(rule: Formalized) -> tuple[str, ...]:
+    found = instant([rule])
+    assert found is not None, "it is refused"
+    return tuple(dict.fromkeys(policy.signal.path.topic for policy in found.policies))
 
 
 def _policy(policy: Policy) -> str:
@@ -145,8 +155,45 @@ def _policy(policy: Policy) -> str:
     texts = {name: repr(part) for name, part in parts.items() if part not in (None, False, (), "")}
     if policy.valid is not None:
         texts["valid"] = f"lambda row: {_truth(policy.valid)}"
+    measured = _measured(policy)
+    if measured is not None:
+        names = "".join(f", {name}" for name in _besides(policy).values())
+        each = f"x if -inf < x < inf and {measured} else meant(x)"
+        texts["quick"] = f"lambda xs, meant{names}: [{each} for x in xs]"
     head = [repr(signal.name), repr(signal.path.topic), repr(signal.path.fields)]
     return f"Policy({', '.join([*head, *_named(texts)])})"
+
+
+def _besides(policy: Policy) -> dict[str, str]:
+    """The fields that `valid` reads, each with the name of a parameter."""
+    return {name: f"beside{i}" for i, name in enumerate(policy.fields)}
+
+
+def _measured(policy: Policy) -> str | None:
+    """`valid` in Python's own logic, where nothing in it can be unknown, or needs rounding."""
+    if not policy.signal.path.each:
+        return None
+    if policy.valid is None:
+        return "True"
+    names = {**_besides(policy), "x": "x"}
+    signs = {"=": "=="}
+
+    def text(tree: n.Truth) -> str | None:
+        match tree:
+            case n.Compared(sign, n.Given(left), n.Given(right)):
+                return f"({names[left]} {signs.get(sign, sign)} {names[right]})"
+            case n.Not(arg):
+                inner = text(arg)
+                return inner and f"(not {inner})"
+            case n.All(args) | n.Some(args) if args:
+                parts = [text(arg) for arg in args]
+                word = " and " if isinstance(tree, n.All) else " or "
+                known = [part for part in parts if part is not None]
+                return f"({word.join(known)})" if len(known) == len(parts) else None
+            case _:
+                return None
+
+    return text(policy.valid)
 
 
 def _meaning(meaning: Meaning) -> str:

@@ -20,9 +20,10 @@ from compiler.program.rails import Reading, rail
 from compiler.targets.c.monitor import too_large
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
+from compiler.targets.rust import signals
 from compiler.targets.rust.printer import Printer
-from compiler.targets.rust.words import words
 from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.words import words
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import deep
 
@@ -41,7 +42,7 @@ def refuse(rule: Formalized) -> Diagnostic | None:
 
 
 def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
-    """A crate for each rule, or one for all: `Cargo.toml`, `src/lib.rs` and `tests/words.rs`."""
+    """A crate for each rule, or one for all, and a crate beside it that makes truths of samples."""
     if options.one_file:
         return _crate("monitors", rules)
     return tuple(file for rule in rules for file in _crate(f"{module(stem(rule))}_monitor", [rule]))
@@ -73,10 +74,11 @@ def _crate(name: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
     )
     found = {members[rule.id]: words(rule) for rule in rules}
     tests = render("rust/words.rs.j2", crate=name, names=names, words=found)
-    manifest = render("rust/Cargo.toml.j2", crate=name)
-    files = {"Cargo.toml": manifest, "src/lib.rs": library}
-    files |= {"tests/words.rs": tests} if any(found.values()) else {}
-    return tuple(Artifact(PurePosixPath(f"{name}/{path}"), text) for path, text in files.items())
+    manifest = render("rust/Cargo.toml.j2", crate=name, monitor=None)
+    files = {f"{name}/Cargo.toml": manifest, f"{name}/src/lib.rs": library}
+    files |= {f"{name}/tests/words.rs": tests} if any(found.values()) else {}
+    files |= signals.files(name, rules, names, _KEY_WORDS)
+    return tuple(Artifact(PurePosixPath(path), text) for path, text in files.items())
 
 
 def _reading(reading: Reading, printer: Printer) -> Mapping[str, Any]:

@@ -18,7 +18,7 @@ from fretc.audit.bindings.draft import draft, drafted_signals, plain_signals
 from fretc.logs.reader import Overview, look, read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations, Signal
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.printer import identifier

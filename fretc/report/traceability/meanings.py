@@ -38,7 +38,7 @@ from fretc.report.traceability.chain import (
 from fretc.report.traceability.texts import Bindings, Table, Texts, canonical_text, header_of
 from fretish.bindings import canonical
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import expression

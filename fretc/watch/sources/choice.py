@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
+from fretc.watch.sources.dds import Dds
+from fretc.watch.sources.foxglove import Foxglove, address
 from fretc.watch.sources.log import Log
 from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import Source
@@ -14,22 +16,48 @@ def chosen(words: Sequence[str], *, follow: bool) -> Source | Diagnostic:
     """The source, not yet opened; or what is wrong with the words.
 
     Args:
-        words: `ros1`, or the path of a log.
+        words: the name of a middleware and what it needs, or the path of a log.
         follow: whether what is still to be written to a log is waited for.
     """
     name, *more = words
-    if more:
-        return Diagnostic(
-            Code.BAD_USAGE,
-            f"`{more[0]}` is one name too many: a watch has one source",
-            help="watch two robots by two commands",
-        )
-    if name != "ros1":
-        return Log(name, follow=follow)
-    if follow:
+    middleware = _MIDDLEWARE.get(name)
+    if middleware is not None and follow:
         return Diagnostic(
             Code.BAD_USAGE,
             "`--follow` is for a log that is being recorded; a middleware is always followed",
-            help="leave it out, or name the log `./ros1`",
+            help=f"leave it out, or name the log `./{name}`",
         )
-    return Ros1()
+    if middleware is not None:
+        return middleware(more)
+    return _one_name_too_many(more[0]) if more else Log(name, follow=follow)
+
+
+def _ros1(more: Sequence[str]) -> Source | Diagnostic:
+    return _one_name_too_many(more[0]) if more else Ros1()
+
+
+def _dds(more: Sequence[str]) -> Source | Diagnostic:
+    return _one_name_too_many(more[0]) if more else Dds()
+
+
+def _foxglove(more: Sequence[str]) -> Source | Diagnostic:
+    if len(more) > 1:
+        return _one_name_too_many(more[1])
+    url = address("".join(more))
+    return url if isinstance(url, Diagnostic) else Foxglove(url)
+
+
+_MIDDLEWARE: Mapping[str, Callable[[Sequence[str]], Source | Diagnostic]] = {
+    "ros1": _ros1,
+    "dds": _dds,
+    "foxglove": _foxglove,
+}
+"""Of each name what the words behind it mean."""
+
+
+def _one_name_too_many(name: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"`{name}` is one name too many: a watch has one source",
+        help="watch two robots by two commands",
+    )

@@ -37,19 +37,20 @@ class Mailbox:
         """The receive time: the wall clock of the beginning, and from there on never set back."""
         return self._offset + time.monotonic_ns()
 
-    def put(self, channel: Channel, payload: bytes, publish_time: int | None = None) -> None:
-        """One message, received now; sent at `publish_time` if that is known."""
+    def put(self, channel: Channel, payload: bytes, publish_time: int | None = None) -> int:
+        """One message, sent at `publish_time` if that is known; the receive time, which is now."""
         with self._change:
             now = self.now
             if len(self._waiting) >= self._most or self._bytes + len(payload) > self._most_bytes:
                 before = self._missed or Missed(now, now, 0)
                 self._missed = Missed(before.since, now, before.count + 1)
-                return
+                return now
             self._tell_missed()
             sent = now if publish_time is None else publish_time
             self._waiting.append(Arrival(channel, payload, now, sent))
             self._bytes += len(payload)
             self._change.notify()
+            return now
 
     def tell(self, event: Event) -> None:
         """An event, behind the messages that have come before it; it always fits."""

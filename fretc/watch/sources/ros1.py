@@ -9,87 +9,45 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from threading import Event as Flag
-from threading import Lock, Thread
+from threading import Lock
 from typing import IO, Any
 
 from fretc.watch.sources import ros1_bridge
-from fretc.watch.sources.mailbox import Mailbox
-from fretc.watch.sources.source import (
-    Arrival,
-    Channel,
-    Event,
-    Idle,
-    Interrupted,
-    Opened,
-    Problem,
-    Reconnected,
-)
+from fretc.watch.sources.middleware import Middleware, simulated_time
+from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 PYTHON = "/usr/bin/python3"
 """Debian's and Ubuntu's, for which ROS is packaged."""
-_FIRST_PAUSE, _LONGEST_PAUSE = 0.5, 8.0
-"""Seconds before the master is sought again; each pause is twice the one before."""
 
 
-class Ros1:
+class Ros1(Middleware):
     """The graph of the master that `ROS_MASTER_URI` names."""
-
-    name = "ros1"
 
     def __init__(self, python: str = PYTHON) -> None:
         """Nothing is opened yet; `python` is the program that knows rospy."""
+        super().__init__("ros1")
         self._python = python
-        self._mailbox = Mailbox()
-        self._closed = Flag()
         self._lock = Lock()
         self._node: subprocess.Popen[bytes] | None = None
-        self._alive: int | None = None
-        """The receive time at which the master was last known to be there; None: never."""
-        self._interrupted = False
         self._several: set[str] = set()
         self._simulated = False
 
     def close(self) -> None:
         """End the node."""
-        self._closed.set()
-        self._mailbox.close()
+        super().close()
         with self._lock:
             if self._node is not None:
                 self._node.kill()
-
-    def arrivals(self, topics: Collection[str]) -> Iterator[Arrival | Event | Idle]:
-        """What the node hands on."""
-        thread = Thread(target=self._run, args=(sorted(topics),), daemon=True)
-        thread.start()
-        try:
-            while (item := self._mailbox.take()) is not None:
-                yield item
-        finally:
-            self.close()
-            thread.join()
-
-    def _run(self, topics: list[str]) -> None:
-        pause = _FIRST_PAUSE
-        try:
-            while not self._closed.is_set():
-                opened = self._listen(topics)
-                if self._alive is None or self._closed.is_set():
-                    break
-                pause = _FIRST_PAUSE if opened else min(2 * pause, _LONGEST_PAUSE)
-                self._closed.wait(pause)
-        finally:
-            self._mailbox.close()
 
     def _listen(self, topics: list[str]) -> bool:
         """One life of the node; whether it has found a master."""
         try:
             node = self._start()
         except OSError as error:
-            self._mailbox.tell(Problem(_no_rospy(self._python, error.strerror or str(error))))
+            self._lost(_no_rospy(self._python, error.strerror or str(error)))
             return False
         if node is None:
             return False
@@ -109,8 +67,7 @@ class Ros1:
                     node.kill()
         except OSError:
             pass  # its pipe broke: it has ended
-        if not self._closed.is_set():
-            self._lost(_node_ended())
+        self._lost(_node_ended())
         return opened
 
     def _start(self) -> subprocess.Popen[bytes] | None:
@@ -132,14 +89,14 @@ class Ros1:
     def _take(self, head: dict[str, Any], payload: bytes, channels: list[Channel]) -> None:
         match head["kind"]:
             case "message":
-                self._mailbox.put(channels[head["channel"]], payload)
+                self._put(channels[head["channel"]], payload)
             case "channel":
                 topic, type_, definition = head["channel"]
                 channels.append(Channel(topic, "ros1", type_, "ros1msg", definition.encode()))
             case "opened":
-                self._opened(head["uri"])
+                self._opened(f"the ROS 1 master {head['uri']}")
             case "alive":
-                self._alive = self._mailbox.now
+                self._is_alive(self._mailbox.now)
                 self._count_publishers(head["publishers"])
             case "simulated time":
                 self._warn_of_simulated_time()
@@ -150,32 +107,16 @@ class Ros1:
             case kind:
                 raise AssertionError(f"the node sends nothing of this kind: {kind}")
 
-    def _opened(self, uri: str) -> None:
-        now = self._mailbox.now
-        if self._alive is None:
-            self._mailbox.tell(Opened(f"the ROS 1 master {uri}"))
-        else:
-            self._mailbox.tell(Reconnected(self._alive, now))
-        self._alive, self._interrupted = now, False
-
-    def _lost(self, problem: Diagnostic) -> None:
-        """Told once; what was never there is an error, and the end."""
-        if self._interrupted:
-            return
-        self._interrupted = True
-        since = self._alive
-        self._mailbox.tell(Problem(problem) if since is None else Interrupted(since, problem))
-
     def _count_publishers(self, publishers: dict[str, list[str]]) -> None:
         for topic, nodes in publishers.items():
             if len(nodes) > 1 and topic not in self._several:
                 self._several.add(topic)
-                self._mailbox.tell(Problem(_several_publishers(topic, nodes)))
+                self._warn(_several_publishers(topic, nodes))
 
     def _warn_of_simulated_time(self) -> None:
         if not self._simulated:
             self._simulated = True
-            self._mailbox.tell(Problem(_simulated_time()))
+            self._warn(simulated_time())
 
 
 def _frames(stream: IO[bytes]) -> Iterator[tuple[dict[str, Any], bytes]]:
@@ -218,14 +159,5 @@ def _several_publishers(topic: str, nodes: list[str]) -> Diagnostic:
         Code.SEVERAL_PUBLISHERS,
         f"{len(nodes)} nodes publish `{topic}`: {', '.join(nodes)}",
         help="each message counts, whoever sent it; end what should not publish",
-        severity=Severity.WARNING,
-    )
-
-
-def _simulated_time() -> Diagnostic:
-    return Diagnostic(
-        Code.SIMULATED_TIME,
-        "the robot's time is simulated, and the times of arrival are those of this machine",
-        help='set `time = "header.stamp"` under `[clock]`, unless the simulation runs in real time',
         severity=Severity.WARNING,
     )

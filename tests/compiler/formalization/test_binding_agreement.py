@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from compiler.formalization.binding_agreement import unbound
 from compiler.formalization.formalize import formalize
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements

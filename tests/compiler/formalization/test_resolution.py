@@ -4,7 +4,7 @@ import pytest
 
 from compiler.formalization.formalize import formalize
 from fretish.bindings.declarations import Aggregate
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements

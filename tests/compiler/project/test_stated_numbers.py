@@ -6,7 +6,7 @@ import pytest
 
 from compiler.formalization.formalize import formalize
 from compiler.project.stated_numbers import disagreements, first_unit
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements

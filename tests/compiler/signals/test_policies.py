@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,10 @@ from compiler.signals import numbers as n
 from compiler.signals.policies import meaning
 from fretc.logs.signals.samples import widest
 from fretish import expressions as e
-from fretish.bindings.declarations import Proposition, Signal
-from tests.signal_policies import KINDS, audited_truth, signals, truth_of, truths_of
+from fretish.bindings.declarations import Path, Proposition, Signal
+from fretish.units import ONE
+from tests.each import each
+from tests.signal_policies import KINDS, SIGNS, audited_truth, signals, truth_of, truths_of
 
 
 @given(st.data())
@@ -33,6 +36,27 @@ def test_a_description_has_the_truth_that_the_audit_computes(data: st.DataObject
     except ValueError:  # a power that is too large, which the reader of bindings refuses
         return
     assert truth_of(lowered.truth, given_row) == audited_truth(tree, declared, samples)
+
+
+SIGNAL = Signal("a", Path("/t", ("f",)), ONE, "")
+A, B, C = map(e.Name, "abc")
+MIDDLE = e.Call("max", (e.Call("min", (A, C)), B))
+
+
+@each("sign", SIGNS)
+@each("whole", [2**53 + 1, -(2**53) - 1, 2**63 + 2049])
+@each("tree", [MIDDLE, e.Negation(MIDDLE), e.Call("abs", (MIDDLE,)), e.Arithmetic("+", MIDDLE, B)])
+def test_a_float_that_was_chosen_beside_a_whole_number_is_compared_as_that_is(
+    tree: e.Expression, whole: int, sign: Any
+) -> None:
+    """An audit has all of a column as numbers of the widest kind, whatever was chosen."""
+    compared = e.Comparison(sign, tree, e.Number(str(whole)))
+    declared = {name: replace(SIGNAL, name=name) for name in "abc"}
+    row = {"a": np.int64(2**60), "b": np.float64(whole), "c": np.float64(7 - 2.0**62 * (whole < 0))}
+    samples = {name: widest(np.array([value])) for name, value in row.items()}
+    lowered = meaning(Proposition("p", compared), declared.values())
+    plain = {name: value.item() for name, value in row.items()}
+    assert truth_of(lowered.truth, plain) == audited_truth(compared, declared, samples)
 
 
 def test_durations_are_inputs_in_the_order_in_which_they_close() -> None:

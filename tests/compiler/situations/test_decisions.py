@@ -21,7 +21,7 @@ from compiler.logic.formula import atoms
 from compiler.situations.situations import MEANINGS, Situation, situations
 from compiler.situations.thresholds import Place, places, written
 from fretish import expressions as e
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import expression

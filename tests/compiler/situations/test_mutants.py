@@ -11,7 +11,7 @@ from compiler.situations.changes import MOST_PARTS, changes
 from compiler.situations.mutants import OPERATORS, Mutant, mutants
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.parser import parse

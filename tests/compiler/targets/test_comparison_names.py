@@ -14,7 +14,7 @@ from compiler.formalization.letters import excluded
 from compiler.targets.comparison_names import comparison_names, definitions
 from compiler.targets.ltl import text
 from compiler.targets.target import Options
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import expression

@@ -17,7 +17,7 @@ from compiler.project.folder import load
 from compiler.targets.dafny import text
 from compiler.targets.dafny_claims import claims
 from fretish.bindings.declarations import Declarations, Form, Interception
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement

@@ -21,7 +21,7 @@ from fretc.audit.bases import bases
 from fretc.audit.bindings.draft import missing_propositions
 from fretc.audit.plan import Plan, planned
 from fretc.terminal.output import BAD, SHOWN, VIOLATION
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from tests.command import Fretc, write
 

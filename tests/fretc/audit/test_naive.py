@@ -25,7 +25,7 @@ from fretc.audit.one_log import MonitoredRequirement, audit
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from monitors import kernel

@@ -14,7 +14,7 @@ from fretc.audit.evidence.writer import Evidence, as_record
 from fretc.audit.one_log import MonitoredRequirement, audit, signals_of
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from monitors.loading import load

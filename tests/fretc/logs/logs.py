@@ -15,7 +15,7 @@ from rosbags.typesys import Stores, get_typestore
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.source import Source
 

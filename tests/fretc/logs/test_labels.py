@@ -16,7 +16,7 @@ from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations, LabelSource
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source

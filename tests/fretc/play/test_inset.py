@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -12,6 +13,7 @@ from tests.command import Fretc
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
+ROOT = Path(__file__).parents[3]
 WITHIN = "whenever near the robot shall within 2 ticks satisfy stopped"
 PROBABLE = "whenever near the robot shall with probability > 0.9 within 2 ticks satisfy stopped"
 
@@ -53,3 +55,31 @@ def test_a_report_opens_the_page_at_a_requirement(fretc: Fretc, browser: Browser
     context.close()
     assert messages == []
     assert not [url for url in asked if not url.startswith(("file:", "blob:", "about:"))]
+
+
+@pytest.mark.slow
+def test_a_report_opens_the_violations_of_its_runs(fretc: Fretc) -> None:
+    """As long as their logs are those that were audited."""
+    log = Path("off.mcap")
+    assert fretc("simulate", "safety-silent", "--duration", "25", "-o", str(log)).status == 0
+    folder = ("--requirements", str(ROOT / "requirements/mission"))
+    assert fretc("audit", str(log), *folder).status == 1
+    page = played(fretc, *folder)
+    first = page["starts"][0]
+    assert first["requirements"]
+    assert "violation 1 of off.mcap: ticks " in first["about"]
+    log.write_bytes(log.read_bytes() + b" ")
+    assert not [each for each in played(fretc, *folder)["starts"] if "violation" in each["about"]]
+    log.unlink()
+    text = inset(fretc, *folder)
+    assert "violations of off.mcap are not here: " in text
+
+
+def inset(fretc: Fretc, *options: str) -> str:
+    assert fretc("report", "--play", *options, "-o", "report.html").status == 0
+    whole = Path("report.html").read_text("utf-8")
+    return str(json.loads(whole.split('id="inset">')[1].split("</script>")[0]))
+
+
+def played(fretc: Fretc, *options: str) -> Any:
+    return json.loads(inset(fretc, *options).split('id="data">')[1].split("</script>")[0])

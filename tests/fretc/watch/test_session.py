@@ -128,6 +128,49 @@ def test_what_was_missed_satisfies_nothing_live_and_audited(
     assert not {"satisfied", "vacuous"} & {each.verdict for each in found}
 
 
+@given(messages, st.data())
+def test_nothing_is_judged_while_the_source_is_gone(some: list[Sent], data: st.DataObject) -> None:
+    """By arrival both know when it was, so the audit says the same; some messages still came."""
+    setting = Setting(time="log_time", slow="y < 5")
+    if not bound(some, setting):
+        return
+    plan = plan_of(setting)
+    arrivals = sorted((each.arrival for each in some), key=lambda each: each.log_time)
+    first = data.draw(st.integers(1, len(arrivals)))
+    last = data.draw(st.integers(first, len(arrivals)))
+    since = arrivals[first - 1].log_time + 1
+    session = Session(plan)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "run.mcap"
+        recorder = Recorder(path, plan.declarations.clock)
+        for i, arrival in enumerate(arrivals):
+            if i == first:
+                session.interrupt()
+                ticks = session.ticks
+            if first <= i < last:
+                assert session.ticks == ticks
+                assert {state.owed for state in session.states()} == {None}
+                session.idle(arrival.log_time)
+            if i == last:
+                session.miss(since, max(since, arrival.log_time - 1))
+            recorder.message(arrival)
+            assert session.arrive(arrival) is None
+            recorder.grid(session.origin)
+        if last == len(arrivals):
+            session.interrupt()
+            session.idle(arrivals[-1].log_time + 30 * MS)
+            session.miss(since, session.received)
+        ended = session.end()
+        assert isinstance(ended, Ended)
+        recorder.grid(session.origin)
+        recorder.close(ended.until, session.missed)
+        recording = read(str(path), plan.declarations, list(plan.declarations.signals))
+    assert isinstance(recording, Recording)
+    assert live_rows(session) == audited_rows(plan, recording)
+    found = audit(recording, plan.declarations, monitored_requirements(plan))
+    assert ended.verdicts == {each.requirement: each.verdict for each in found}
+
+
 def test_what_is_owed_does_not_wait_for_the_tick() -> None:
     plan = plan_of(Setting(slow="y < 5", lateness=20))
     session = Session(plan)

@@ -23,7 +23,7 @@ from fretish.bindings.declarations import (
     Role,
 )
 from fretish.bindings.expressions import parse
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.clock import Clock, End, Rounding, TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source

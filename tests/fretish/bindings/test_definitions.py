@@ -11,7 +11,7 @@ from compiler.formalization.formalized import Formalized
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.definitions import expanded, used
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements

@@ -3,7 +3,7 @@
 import pytest
 
 from compiler.formalization.formalize import formalize
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.bindings.types import Kind, kind
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source

@@ -5,7 +5,7 @@ import pytest
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.expressions import parse
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.bindings.words import words
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source

@@ -8,7 +8,7 @@ from compiler.formalization.formalize import duplicates, formalize
 from compiler.project.stated_numbers import disagreements
 from compiler.targets.python import monitor
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.explanations import Explanation, as_record, explanation, explanations, text
 from fretish.diagnostics.source import Source

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretish.bindings.interceptor import TABLE
+from fretish.bindings.tables.interceptor import TABLE
 from fretish.reading.toml_text import as_key
 from tests.mending import toml_in
 

@@ -1,4 +1,4 @@
-/* What samples say of the propositions of R1: what it needs stands in r1_signals.h */
+/* What samples say of the propositions of R1, as `fretc audit` reads them. */
 #include "r1_signals.h"
 
 fretc_number r1_sample_vx(fretc_number field)

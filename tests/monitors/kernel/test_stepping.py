@@ -474,3 +474,29 @@ def test_what_requirements_share_is_computed_once() -> None:
     assert text.count(" S ") > both.count(" S ")
     assert both.count("oldest_1 = 0") == 1
     assert "oldest_2" not in both
+
+
+@pytest.mark.parametrize("sentence", SENTENCES)
+def test_a_look_ahead_says_what_would_be_and_changes_nothing(sentence: str) -> None:
+    machine, other = monitor(sentence), monitor(sentence)
+    for seed in range(60):
+        block = rows(machine, 1 + seed % 3, seed, 0.1 if seed % 2 else 0.0)
+        before = machine.state()
+        copy = monitor(sentence)
+        copy.restore(before)
+        copy.advance(rows(machine, 4, 100 + seed))
+        assert machine.standings_after(rows(machine, 4, 100 + seed)) == copy.standings()
+        assert machine.state() == before
+        machine.advance(block)
+        other.advance(block)
+        assert machine.state() == other.state()
+
+
+def test_a_look_ahead_that_fails_changes_nothing() -> None:
+    machine = monitor(SENTENCES[0])
+    machine.advance(rows(machine, 5, 1))
+    before = machine.state()
+    with pytest.raises(TypeError):
+        machine.standings_after([("no truth", True)])  # type: ignore[list-item]
+    assert machine.state() == before
+    assert machine.standings_after([]) == machine.standings()

@@ -17,7 +17,7 @@ from compiler.formalization.formalized import Formalized
 from compiler.targets.ajpf.bundle import TARGET, emit, refusal
 from compiler.targets.target import DEFAULT, Options
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source

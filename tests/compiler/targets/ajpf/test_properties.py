@@ -19,7 +19,7 @@ from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.target import DEFAULT, Options, Target
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source

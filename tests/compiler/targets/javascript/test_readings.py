@@ -16,11 +16,19 @@ from hypothesis import strategies as st
 
 from compiler.files.templating import render
 from compiler.formalization.formalize import formalize
-from compiler.targets.javascript.monitor import Constants, text
-from compiler.targets.python.comparisons import NUMBER, Compared, Input, NotCompiledError, Writer
+from compiler.targets.javascript.constants import Constants, scale, truth
+from compiler.targets.javascript.monitor import text
+from compiler.targets.python.comparisons import (
+    NUMBER,
+    Compared,
+    Input,
+    NotCompiledError,
+    Spelling,
+    Writer,
+)
 from compiler.targets.python.monitor import text as in_python
 from fretish import expressions as e
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors.loading import load
@@ -79,7 +87,7 @@ def by_node(cases: Sequence[tuple[e.Comparison, Units, Mapping[str, Any]]]) -> l
         names = {name.id for name in e.names(tree)}
         inputs = {name: Input(NUMBER) for name in sorted(names)}
         kept = {name: unit for name, unit in units.items() if name in names}
-        writer = Writer({name: name for name in names}, constants.spelling)
+        writer = Writer({name: name for name in names}, Spelling(constants.name, scale, truth))
         texts.append(f"(x, y, z) => {writer.comparison(Compared(inputs, tree, kept))}")
     values = [[plain(row.get(name)) for name in NAMES] for _, _, row in cases]
     parts = (
@@ -143,12 +151,13 @@ def test_what_stands_at_an_edge_is_the_same() -> None:
     choose, values, y = random.Random("edges"), edges(), e.Name("y")
     speeds = {"x": ("km/h", Fraction(5, 18)), "y": ("m/s", Fraction(1))}
     calls = [e.Call(name, (X, y)) for name in ("min", "max")]
+    calls += [e.Call("max", (e.Call("min", (X, e.Name("z"))), y))]
     drawn: list[tuple[e.Comparison, Units, dict[str, Any]]] = []
     for _ in range(100 * MANY // 4):
         fixed: e.Expression = e.Number(choose.choice(TEXTS))
         fixed = choose.choice([fixed, e.Negation(fixed)])
         some: tuple[e.Expression, ...] = (X, e.Call("abs", (X,)), e.Call("min", (X, fixed)), *calls)
-        op, row = choose.choice([*e.COMPARE]), {name: choose.choice(values) for name in "xy"}
+        op, row = choose.choice([*e.COMPARE]), {name: choose.choice(values) for name in NAMES}
         near = float(choose.choice(TEXTS))  # where a bit more or less counts
         speed = choose.randrange(1, 1000) / 100
         with np.errstate(all="ignore"):

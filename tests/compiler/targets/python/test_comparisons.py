@@ -29,7 +29,7 @@ from fretc.logs.signals.propositions import truth, truth_values
 from fretc.logs.signals.samples import widest
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal, path
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement

@@ -22,7 +22,7 @@ from compiler.targets.python.interceptor import MARKER, text
 from compiler.targets.target import Options
 from fretish.bindings.canonical import bound
 from fretish.bindings.declarations import Declarations, Form, Interception
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from monitors import interceptor
 from monitors.loading import executed

@@ -13,7 +13,7 @@ from compiler.formalization.formalized import Formalized
 from compiler.targets.python.monitor import text
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.traces import trace
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from monitors.kernel.columns import truths

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from types import SimpleNamespace
 from typing import Any
@@ -20,7 +21,8 @@ from compiler.signals.policies import policy
 from compiler.targets.python import monitor, perception
 from fretc.logs.signals.signals import sample as audited
 from fretc.watch.session import Session
-from fretish.bindings.declarations import Reduce
+from fretish import expressions as e
+from fretish.bindings.declarations import Reduce, path
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
@@ -28,7 +30,7 @@ from monitors.loading import executed
 from tests.fretc.logs.logs import declare
 from tests.fretc.watch.sent import MS, SENTENCES, START, Sent, Setting, plan_of
 from tests.fretc.watch.test_session import audited_rows, recorded
-from tests.signal_policies import KINDS, Message, audited_sample, signals
+from tests.signal_policies import KINDS, SIGNS, Message, audited_sample, doubles, signals
 
 settings_ = st.builds(
     Setting,
@@ -143,6 +145,46 @@ def test_a_sample_is_that_of_the_audit(data: st.DataObject) -> None:
         eval(printed, vars(live)), SimpleNamespace(field=plain, **beside), kind == "float"
     )
     assert found == expected or (found is None and np.isnan(expected))
+
+
+truths_of_fields = st.recursive(
+    st.builds(
+        e.Comparison,
+        st.sampled_from(SIGNS),
+        st.sampled_from([e.Name("x"), e.Name("least"), e.Name("most")]),
+        st.sampled_from([e.Name("x"), e.Name("least"), e.Name("most")]),
+    ),
+    lambda parts: st.one_of(
+        st.builds(e.Not, parts),
+        st.tuples(parts, parts).map(e.And),
+        st.tuples(parts, parts).map(e.Or),
+    ),
+    max_leaves=4,
+)
+
+
+@given(
+    signals("a"),
+    truths_of_fields | st.none(),
+    st.sampled_from(["min", "max"]),
+    st.lists(doubles.map(float), max_size=6),
+    st.tuples(doubles, doubles),
+    st.booleans(),
+)
+def test_a_whole_array_at_once_gives_what_its_elements_give(
+    signal: Any, valid: Any, reduce: str, values: list[float], beside: Any, single: bool
+) -> None:
+    array = replace(
+        signal, path=path("/a.field[:]"), reduce=Reduce(reduce), valid=valid, max_age=None
+    )
+    live = live_module()
+    found = eval(perception._policy(policy(array)), vars(live))
+    assert found.quick is not None
+    least, most = map(float, beside)
+    message = SimpleNamespace(field=tuple(values), least=least, most=most)
+    one = live.sample(found, message, single)
+    other = live.sample(found._replace(quick=None), message, single)
+    assert (one, type(one)) == (other, type(other))
 
 
 @given(

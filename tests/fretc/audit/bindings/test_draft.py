@@ -16,7 +16,7 @@ from fretc.audit.bindings.draft import (
 from fretc.logs.reader import look, read
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from tests.command import write as put

@@ -6,7 +6,7 @@ import pytest
 from rosbags.typesys import Stores, get_typestore
 
 from fretc.audit.bindings.quantities import QUANTITIES, Quantity
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.units import unit
 

@@ -15,7 +15,7 @@ from fretc.audit.evidence.reader import Evidence, read
 from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, Result, Way
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from tests.command import Fretc
 from tests.command import write as put

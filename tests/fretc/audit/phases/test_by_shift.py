@@ -17,7 +17,7 @@ from fretc.audit.phases.by_shift import Phases, Stretch, phases
 from fretc.logs.signals.samples import Late, Recording, Samples, Topic
 from fretc.logs.signals.traces import trace
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from monitors import kernel

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from fretc.logs.signals.samples import EXACT, Recording, Samples
 from fretc.logs.signals.traces import trace
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source
 from monitors.kernel.columns import truths

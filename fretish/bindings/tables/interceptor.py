@@ -8,7 +8,7 @@ from typing import Any
 
 from fretish import units
 from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
-from fretish.bindings.fields import Fields
+from fretish.bindings.tables.fields import Fields
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import IDENTIFIER, Requirement
@@ -51,7 +51,7 @@ class Loop(Fields):
         table = self._table("interceptor")
         if table is None:
             return None
-        before = len(self.diagnostics)
+        before = len(self.notes.diagnostics)
         self._check_keys(table, _INTERCEPTOR, "[interceptor]", "interceptor")
         topics = {key: self._topic(table, key) for key in _TOPICS}
         at = ("interceptor", "form")
@@ -63,7 +63,7 @@ class Loop(Fields):
         ros = self._ros(table)
         self._check_topics(topics)
         self._check_times(table, form, times)
-        if len(self.diagnostics) > before:
+        if len(self.notes.diagnostics) > before:
             return None
         stop, command, output = (topics[key] or "" for key in ("stop", "command", "output"))
         span = self.tables.place("interceptor")
@@ -88,7 +88,7 @@ class Loop(Fields):
         table = self._table("assume")
         if table is None or table.keys() == {_SENTENCES}:
             return None
-        before = len(self.diagnostics)
+        before = len(self.notes.diagnostics)
         self._check_keys(table, (*_ASSUME, _SENTENCES), "[assume]", "assume")
         stands = self._stands(table, propositions)
         latency = self._needed(table, "latency", "100 ms")
@@ -97,7 +97,7 @@ class Loop(Fields):
         heartbeat = self._heartbeat(table, requests)
         planner = self._choice(table, ("assume", "planner"), Planner, Planner.ANY)
         lost = self._lost(table)
-        if len(self.diagnostics) > before:
+        if len(self.notes.diagnostics) > before:
             return None
         span = self.tables.place("assume")
         return Assumed(stands, latency, braking, lost, requests, planner, heartbeat, span)
@@ -269,7 +269,7 @@ class Loop(Fields):
             return ()
         found: dict[str, Requirement] = {}
         for each, block in zip(listed, self._blocks(len(listed)), strict=True):
-            requirement = Loop(Tables(block, each), self.diagnostics)._sentence(each)
+            requirement = Loop(Tables(block, each), self.notes)._sentence(each)
             if requirement is not None and requirement.id in found:
                 self._say(Code.DUPLICATE_ID, f"the id `{requirement.id}` is taken", block)
             elif requirement is not None:
@@ -289,7 +289,7 @@ class Loop(Fields):
         ]
 
     def _sentence(self, table: Mapping[str, Any]) -> Requirement | None:
-        before = len(self.diagnostics)
+        before = len(self.notes.diagnostics)
         where = f"[[assume.{_SENTENCES}]]"
         self._check_keys(table, _SENTENCE, where)
         texts = {
@@ -303,7 +303,7 @@ class Loop(Fields):
                 self.tables.text.part(0, 0),
                 'write `id = "A1"` and `sentence = "the operator shall never satisfy a & b"`',
             )
-        if len(self.diagnostics) > before:
+        if len(self.notes.diagnostics) > before:
             return None
         value = self.tables.value("sentence")
         start = value.text.find(sentence)

@@ -3,8 +3,8 @@
 import pytest
 
 from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
-from fretish.bindings.interceptor import TABLE
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.interceptor import TABLE
+from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 

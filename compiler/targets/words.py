@@ -1,4 +1,4 @@
-"""Shortest runs to each kind of verdict, for the tests of a crate: words of the reference."""
+"""Shortest runs to each kind of verdict, for tests beside monitors: words of the reference."""
 
 from __future__ import annotations
 

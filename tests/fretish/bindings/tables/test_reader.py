@@ -17,7 +17,7 @@ from fretish.bindings.declarations import (
     Role,
     path,
 )
-from fretish.bindings.reader import read_bindings
+from fretish.bindings.tables.reader import read_bindings
 from fretish.clock import Clock, End, Rounding, TimeSource
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source

@@ -1,0 +1,161 @@
+"""From a scan to the stop and to zero on the wheels, in ROS 1: the emitted nodes, and one by hand.
+
+    python -m benchmarks.live_latency [--scans 800]
+
+A lidar of 720 beams at 40 Hz is near in each second scan. Wall time from before its publication to
+the arrival of the stop, and of zero, at its process, in ms; the share of a processor that the node
+takes, and the interceptor. No test asserts them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import statistics
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from compiler.emit import TARGETS
+from compiler.files.text_files import write as deliver
+from compiler.project.folder import load
+from compiler.project.paths import listed
+from compiler.targets.target import Options
+from fretish.diagnostics.diagnostic import Diagnostic
+from tests.ros1 import PYTHON, Ros, missing, ros, until
+
+Process = subprocess.Popen[str]
+HERE = Path(__file__).parent
+BINDINGS = """
+[clock]
+tick = "100 ms"
+time = "{time}"
+lateness = "100 ms"
+[signal.clearance]
+path = "/scan.ranges[:]"
+type = "sensor_msgs/LaserScan"
+{reduce}
+valid = "range_min <= x and x <= range_max"
+invalid = {{ nan = "drop", "+inf" = "far", "-inf" = "near", other = "drop", empty = "unknown" }}
+max_age = "300 ms"
+[signal.speed]
+path = "/odom.twist.twist.linear.x"
+type = "nav_msgs/Odometry"
+max_age = "300 ms"
+[proposition.near]
+expr = "clearance < {least}"
+[proposition.stands]
+expr = "abs(speed) < 0.01 for 200 ms"
+[interceptor]
+stop = "/stop"
+command = "/cmd_vel"
+output = "/wheels"
+period = "50 ms"
+stop_timeout = "500 ms"
+ros = 1
+"""
+KINDS = {
+    "least": {"reduce": 'reduce = "min"', "least": "1.0"},
+    "outline": {
+        "reduce": 'reduce = "outline"\n'
+        "footprint = [[0.3, 0.3], [-0.3, 0.3], [-0.3, -0.3], [0.3, -0.3]]",
+        "least": "0.4",
+    },
+}
+
+
+def package(folder: Path, kind: str, count: int, time: str) -> Path:
+    """The package of so many requirements, all of which a near scan triggers."""
+    project_folder = folder / "live"
+    texts: dict[Path, str | bytes] = {
+        project_folder / f"R{i}.fret": "whenever near the robot shall immediately satisfy stands"
+        if i == 0
+        else f"whenever near the robot shall within {i} ticks satisfy near"
+        for i in range(count)
+    }
+    texts[project_folder / "bindings.toml"] = BINDINGS.format(time=time, **KINDS[kind])
+    assert deliver(texts) is None
+    paths = listed([str(project_folder)])
+    assert not isinstance(paths, Diagnostic)
+    project = load(paths)
+    target, options = TARGETS["ros1-package"], Options(declarations=project.declarations)
+    assert [target.refuse(rule) for rule in project.rules] == [None] * count
+    files = target.emit(project.rules, options)
+    assert deliver({folder / file.path: file.text for file in files}) is None
+    return folder / files[0].path.parts[0]
+
+
+def seconds(process: subprocess.Popen[str]) -> float:
+    """Of a processor that it has taken."""
+    fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+@contextmanager
+def system(
+    made: Path, by_hand: str
+) -> Iterator[tuple[Ros, subprocess.Popen[str], subprocess.Popen[str]]]:
+    """A master, the node, and the interceptor."""
+    with tempfile.TemporaryDirectory() as folder, ros(Path(folder)) as here:
+        here.environment = {**here.environment, "PYTHONPATH": str(made / "src")}
+        here.master()
+        interceptor = here.start(str(made / "scripts/interceptor.py"))
+        if by_hand:
+            node = here.start(PYTHON, str(HERE / "live_robot.py"), "by-hand", by_hand)
+        else:
+            node = here.start(str(made / "scripts/monitor_node.py"))
+        until("they listen", lambda: {"/scan", "/stop"} <= set((here.state() or [{}, {}])[1]))
+        yield here, node, interceptor
+
+
+def measured(made: Path, by_hand: str, scans: int) -> str:
+    """A line of the table."""
+    with system(made, by_hand) as (here, node, interceptor):
+        lidar = here.start(
+            PYTHON, str(HERE / "live_robot.py"), "lidar", str(scans), stdout=subprocess.PIPE
+        )
+        assert lidar.stdout is not None
+        assert lidar.stdout.readline() == "begun\n"
+        before = seconds(node), seconds(interceptor)
+        found = json.loads(lidar.stdout.readline())
+        took = [
+            after - b
+            for after, b in zip((seconds(node), seconds(interceptor)), before, strict=True)
+        ]
+    shares = " | ".join(f"{100 * each / (scans * 0.025):.1f} %" for each in took)
+    stop, zero = found["stop"], found["zero"]
+    lost = scans // 2 - 2 - len(stop)
+    return f"{_spread(stop)} | {_spread(zero)} | {lost} | {shares}"
+
+
+def _spread(times: list[float]) -> str:
+    if len(times) < 2:
+        return f"{len(times)} answers | | "
+    centiles = statistics.quantiles(times, n=100)
+    return f"{centiles[49]:.2f} | {centiles[98]:.2f} | {max(times):.2f}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scans", type=int, default=800)
+    scans = parser.parse_args().scans
+    assert not missing(), missing()
+    head = "node | stop: p50 | p99 | max | zero: p50 | p99 | max | no answer | node | interceptor"
+    print(f"| {head} |\n{'|---' * 10}|")
+    for kind in KINDS:
+        for time in ("header.stamp", "log_time"):
+            for count in (0, 1, 20):
+                if count == 0 and time == "log_time":
+                    continue
+                with tempfile.TemporaryDirectory() as folder:
+                    made = package(Path(folder), kind, max(count, 1), time)
+                    name = f"{count} requirements, {time}" if count else "by hand"
+                    line = measured(made, "" if count else kind, scans)
+                    print(f"| {name}, {kind} | {line} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

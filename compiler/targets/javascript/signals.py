@@ -1,0 +1,48 @@
+"""Beside a monitor in JavaScript: a module from typed samples to the truths that `judge` takes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import PurePosixPath
+
+from compiler.files.artifact import Artifact
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.logic.identifiers import legal_names
+from compiler.signals.functions import file_name, functions
+from compiler.signals.printing import Language
+from compiler.targets.javascript.constants import Constants, scale, truth
+from fretish.expressions import COMPARE
+
+
+def files(monitor: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
+    """The module beside the module `monitor`; none where no bindings are at hand."""
+    constants = Constants()
+    names = legal_names((name for rule in rules for name in rule.watched), ())
+    found = functions(rules, names, _language(constants))
+    if found is None:
+        return ()
+    text = render(
+        "js/signals.mjs.j2",
+        functions=found,
+        constants=constants.lines(),
+        readings=render("js/readings.js.j2"),
+        samples=render("js/samples.js.j2"),
+    )
+    return (Artifact(PurePosixPath(f"{file_name(monitor)}.mjs"), text),)
+
+
+def _language(constants: Constants) -> Language:
+    """Constants get their names while it writes."""
+    return Language(
+        prefix="",
+        truths={value: truth(value) for value in (True, False, None)},
+        signs={sign: f'"{sign}"' for sign in COMPARE},
+        held="h_{}",
+        scale=scale,
+        fixed=constants.name,
+        chosen=lambda function, number, value: f"{function}({number}, {constants.name(value)})",
+        compared=lambda number, sign, value: (
+            f'compared({number}, "{sign}", {constants.name(value)})'
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Packages of ROS: a monitor, the node around it, and the interceptor."""

@@ -1,0 +1,282 @@
+"""What a package of ROS 1 and one of ROS 2 have in common: its description, and the same texts.
+
+The printers `ros1.py` and `ros2.py` write only what the middleware asks for: manifests, launch
+files, and the node that gives messages to `Guard` of `perception.py` and publishes what it says.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.signals.policies import instant
+from compiler.targets.python import interceptor, monitor, perception
+from compiler.targets.target import Options, stem
+from compiler.targets.words import words
+from fretish.bindings.declarations import Interception, Signal, short_type
+from fretish.bindings.tables.interceptor import TABLE
+from fretish.clock import TimeSource
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.source import Source, Span
+from fretish.expressions import names
+from monitors.guard import LONGEST
+from monitors.voice import LONGEST_BEAT, SHORTEST
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """A topic that the node subscribes to."""
+
+    name: str
+    package: str
+    """`sensor_msgs`."""
+    message: str
+    """`LaserScan`."""
+    fields: tuple[str, ...]
+    """What is read of its messages, as the bindings say it: `ranges[:]`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A setting of the node that can be changed without compiling anew; the node checks it."""
+
+    name: str
+    value: float | tuple[str, ...]
+    text: str
+    least: float = 0.0
+    most: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Package:
+    """A package with one node, one file of monitors, and perhaps an interceptor."""
+
+    name: str
+    rules: tuple[Formalized, ...]
+    topics: tuple[Topic, ...]
+    period: int
+    """Nanoseconds of a tick."""
+    phase: int
+    lateness: int
+    time: TimeSource
+    """How messages are placed: by their stamps where they have one, or by their arrival."""
+    parameters: tuple[Parameter, ...]
+    bindings: str
+    """The name of their file."""
+    interception: Interception | None = None
+    version: str = "0.1.0"
+    maintainer: str = "Maintainer"
+    email: str = "maintainer@example.org"
+    license: str = "0BSD"
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Of the requirements."""
+        return tuple(rule.id for rule in self.rules)
+
+    @property
+    def description(self) -> str:
+        """One line, without characters that any format would have to escape."""
+        return f"Runtime monitor of {', '.join(self.ids)}, which stops the robot"
+
+    @property
+    def stop(self) -> str:
+        """The topic of requests to stop, std_msgs/Bool, where nothing is remapped."""
+        return self.interception.stop if self.interception else f"/{self.name}/stop"
+
+    @property
+    def verdicts(self) -> str:
+        """The topic of verdicts, std_msgs/String: the lines of `fretc watch --format jsonl`."""
+        return f"/{self.name}/verdicts"
+
+    @property
+    def dependencies(self) -> tuple[str, ...]:
+        """The packages of all messages."""
+        own = {"std_msgs", "diagnostic_msgs", *(topic.package for topic in self.topics)}
+        own |= {"geometry_msgs"} if self.interception else set()
+        own |= {"sensor_msgs"} if self.interception and self.interception.scan else set()
+        return tuple(sorted(own))
+
+
+# What cannot be a package -----------------------------------------------------------------------
+
+_TYPE = re.compile(r"(?P<package>[a-z]\w*)/(?P<message>[A-Z]\w*)", re.ASCII)
+_TOPIC = re.compile(r"/?[A-Za-z]\w*(?:/[A-Za-z]\w*)*", re.ASCII)
+
+
+def refuse(rule: Formalized) -> Diagnostic | None:
+    """F312 and F601: what no monitor, no live node, or no subscription can be made of."""
+    return monitor.refuse(rule) or perception.refuse(rule) or next(_unsubscribable(rule), None)
+
+
+def _unsubscribable(rule: Formalized) -> Iterator[Diagnostic]:
+    declared = rule.declarations.signals.values() if rule.declarations else ()
+    for signal in _signals([rule]):
+        topic, kind = signal.path.topic, _kind(signal)
+        place = signal.span or rule.requirement.wording
+        others = [_kind(each) for each in declared if each.path.topic == topic]
+        if _TYPE.fullmatch(kind) is None:
+            what = f"is of `{kind}`, which is no type of ROS" if kind else "has no type"
+            mend = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
+            yield _refusal(rule, f"`{signal.name}` {what}", place, mend)
+        elif any(other not in ("", kind) for other in others):
+            what = f"{topic} is of `{kind}`, and of another type for another signal"
+            yield _refusal(rule, what, place, "give all signals the type of their topic")
+        elif _TOPIC.fullmatch(topic) is None:
+            what = f"`{topic}` is no name of a topic in ROS"
+            yield _refusal(rule, what, place, "letters, digits, `_` and `/` make one: remap it")
+
+
+def _kind(signal: Signal) -> str:
+    return short_type(signal.type or "")
+
+
+def _refusal(rule: Formalized, what: str, place: Span, mend: str) -> Diagnostic:
+    message = f"no node of ROS can judge {rule.id}: {what}"
+    return Diagnostic(Code.NOT_EXPRESSIBLE, message, place, help=mend)
+
+
+def remarks(options: Options) -> tuple[Diagnostic, ...]:
+    """F323 where nobody carries out a stop; F630 to F633 of the interceptor."""
+    declared = options.declarations
+    if declared is None or declared.interceptor is not None:
+        return interceptor.remarks(options)
+    return (
+        Diagnostic(
+            Code.NO_INTERCEPTOR,
+            "the package has no interceptor: nothing in it carries out a stop",
+            declared.source.span().part(0, 0),
+            help=f"add this table to {declared.source.name}, or let your base subscribe to the "
+            "topic of the stop:",
+            paste=TABLE,
+            severity=Severity.WARNING,
+        ),
+    )
+
+
+# The description --------------------------------------------------------------------------------
+
+
+def package(rules: Sequence[Formalized], options: Options) -> Package:
+    """Of rules that were not refused.
+
+    Raises:
+        AssertionError: some were to be refused.
+    """
+    declared = options.declarations or rules[0].declarations
+    assert declared is not None
+    clock = declared.clock
+    assert clock.period is not None
+    signals = _signals(rules)
+    return Package(
+        name(rules, declared.source),
+        tuple(rules),
+        tuple(_topics(signals)),
+        clock.period,
+        clock.phase,
+        clock.patience or 0,
+        clock.time,
+        tuple(_parameters(rules, signals, options, clock.period)),
+        PurePosixPath(declared.source.name).name,
+        declared.interceptor,
+    )
+
+
+def name(rules: Sequence[Formalized], bindings: Source) -> str:
+    """Legal in ROS 1 and 2, and no word of Python: `r1_monitor`, or by the project's folder."""
+    if len(rules) == 1:
+        own = stem(rules[0])
+    else:
+        parts = [part for part in PurePosixPath(bindings.name).parent.parts if part not in _PLAIN]
+        own = parts[-1].lower() if parts else "robot"
+    own = re.sub(r"[^a-z0-9]+", "_", own).strip("_")
+    return f"{own if own[:1].isalpha() else f'r{own}'}_monitor"
+
+
+_PLAIN = {"requirements", "..", ".", "/"}
+"""Folders whose names say nothing of a project."""
+
+
+def _signals(rules: Sequence[Formalized]) -> list[Signal]:
+    found = instant(rules)
+    return [policy.signal for policy in found.policies] if found else []
+
+
+def _topics(signals: Sequence[Signal]) -> Iterator[Topic]:
+    for topic in dict.fromkeys(signal.path.topic for signal in signals):
+        own = [signal for signal in signals if signal.path.topic == topic]
+        kind = _TYPE.fullmatch(_kind(own[0]))
+        assert kind is not None, "it is refused"
+        fields = dict.fromkeys(str(signal.path).removeprefix(f"{topic}.") for signal in own)
+        yield Topic(topic, kind["package"], kind["message"], tuple(fields))
+
+
+def _parameters(
+    rules: Sequence[Formalized], signals: Sequence[Signal], options: Options, period: int
+) -> Iterator[Parameter]:
+    ages = [signal.max_age for signal in signals if signal.max_age is not None]
+    declared = options.declarations
+    node = declared.interceptor if declared else None
+    often = [period, 10**8, *([node.stop_timeout // 3] if node and node.stop_timeout else [])]
+    yield Parameter(
+        "source_timeout",
+        max(ages, default=0) / 10**9,
+        "seconds of silence of a topic with `max_age` after which the robot must stop; "
+        "0: by the ages alone",
+        0.0,
+        LONGEST,
+    )
+    yield Parameter(
+        "heartbeat",
+        max(min(often), 10**6) / 10**9,
+        "seconds from one request, to stop or not to stop, to the next",
+        SHORTEST,
+        LONGEST_BEAT,
+    )
+    yield Parameter(
+        "stop_for", _deciding(rules, options), "the requirements that stop the robot while owed"
+    )
+
+
+def _deciding(rules: Sequence[Formalized], options: Options) -> tuple[str, ...]:
+    """Those that ask the robot to stand, by `[assume]`; all of them, where nothing says which."""
+    assumed = options.declarations.assumed if options.declarations else None
+    asking = [
+        rule.id
+        for rule in rules
+        if assumed and assumed.stands in {each.id for each in names(rule.sentence.response)}
+    ]
+    return tuple(asking or [rule.id for rule in rules])
+
+
+# The texts --------------------------------------------------------------------------------------
+
+
+def modules(package: Package) -> Mapping[str, str]:
+    """Files that need the standard library only: `monitor.py` as audited, and `perception.py`."""
+    return {
+        "monitor.py": monitor.text(*package.rules),
+        "perception.py": perception.text(package.rules),
+    }
+
+
+def tests(package: Package) -> str:
+    """Unit tests of both: shortest runs to each verdict, and a node to which nothing has come."""
+    found = {rule.id: words(rule) for rule in package.rules}
+    return render("ros/test_monitor.py.j2", package=package, words=found, version=__version__)
+
+
+def documents(package: Package, ros: int) -> Mapping[str, str]:
+    """LICENSE, README.md and CHANGELOG.rst."""
+    described = [monitor.described(rule) for rule in package.rules]
+    given = {"package": package, "ros": ros, "version": __version__, "rules": described}
+    return {
+        "LICENSE": render("ros/LICENSE.j2", **given),
+        "README.md": render("ros/README.md.j2", **given),
+        "CHANGELOG.rst": render("ros/CHANGELOG.rst.j2", **given),
+    }

@@ -1,0 +1,117 @@
+"""`--emit ros2-package`: a package of ROS 2 in Python (`ament_python`), ready for colcon."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import PurePosixPath
+from textwrap import wrap
+from typing import Any
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.targets.python import interceptor, monitor
+from compiler.targets.ros import package as shared
+from compiler.targets.ros.package import Package, Topic
+from compiler.targets.target import DEFAULT, Options, Target
+
+_SENSORS = {"sensor_msgs", "nav_msgs"}
+"""The packages of messages that drivers publish so that they may be lost."""
+_NODE = {
+    "diagnostic_msgs.msg": "DiagnosticArray, DiagnosticStatus, KeyValue",
+    "rcl_interfaces.msg": "FloatingPointRange, ParameterDescriptor",
+    "rclpy": "",
+    "rclpy.clock": "Clock, ClockType",
+    "rclpy.executors": "ExternalShutdownException, SingleThreadedExecutor",
+    "rclpy.lifecycle": "LifecycleNode, TransitionCallbackReturn",
+    "rclpy.qos": "DurabilityPolicy, qos_profile_sensor_data, QoSProfile",
+    "rclpy.signals": "SignalHandlerOptions",
+    "std_msgs.msg": "Bool, String",
+}
+"""What the node imports of ROS; nothing by name: the module itself."""
+_NEEDED = ("launch", "launch_ros", "lifecycle_msgs", "rcl_interfaces", "rclpy")
+_TEMPLATES = {
+    "package.xml": "package.xml.j2",
+    "setup.py": "setup.py.j2",
+    "setup.cfg": "setup.cfg.j2",
+    "{name}/node.py": "node.py.j2",
+    "launch/{name}.launch.py": "launch.py.j2",
+    "config/{name}.yaml": "config.yaml.j2",
+    "test/test_node.py": "test_node.py.j2",
+    "test/test_linters.py": "test_linters.py.j2",
+    "test/flake8.ini": "flake8.ini.j2",
+}
+"""The files that are of ROS 2 alone."""
+
+
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """A folder with the name of the package.
+
+    Raises:
+        AssertionError: some rules were to be refused.
+    """
+    package = shared.package(rules, options)
+    folder = PurePosixPath(package.name)
+    return tuple(Artifact(folder / path, text) for path, text in _files(package).items())
+
+
+def _files(package: Package) -> dict[str, str]:
+    name = package.name
+    files = {
+        place.format(name=name): render(f"ros2/{template}", **_values(package))
+        for place, template in _TEMPLATES.items()
+    }
+    files |= {f"{name}/{file}": text for file, text in shared.modules(package).items()}
+    files |= shared.documents(package, 2)
+    files |= {f"resource/{name}": "", f"{name}/__init__.py": ""}
+    files["test/test_monitor.py"] = shared.tests(package)
+    if package.interception is not None:
+        node = replace(package.interception, ros=2)
+        files[f"{name}/interceptor.py"] = interceptor.text(node, package.bindings)
+    return files
+
+
+def _values(package: Package) -> dict[str, Any]:
+    messages = {f"{topic.package}.msg": "" for topic in package.topics}
+    lines = sorted((*_NODE.items(), *messages.items()))
+    return {
+        "package": package,
+        "version": __version__,
+        "dependencies": sorted({*_NEEDED, *package.dependencies}),
+        "imports": [
+            f"from {at} import {names}" if names else f"import {at}" for at, names in lines
+        ],
+        "sources": [
+            (topic.name, f"{topic.package}.msg.{topic.message}", _qos(topic))
+            for topic in package.topics
+        ],
+        "parameters": [
+            (each, _literal(each.value), wrap(each.text, 80, drop_whitespace=False))
+            for each in package.parameters
+        ],
+    }
+
+
+def _literal(value: float | Sequence[str]) -> str:
+    """Of Python, and of YAML."""
+    return repr(value) if isinstance(value, float) else json.dumps(list(value))
+
+
+def _qos(topic: Topic) -> str:
+    return "qos_profile_sensor_data" if topic.package in _SENSORS else "10"
+
+
+TARGET = Target(
+    "ros2-package",
+    "a package of ROS 2: monitor, lifecycle node, interceptor, launch file, tests",
+    emit,
+    shared.refuse,
+    monitor.remark,
+    remarks=shared.remarks,
+    per_rule=False,
+    together=True,
+    next_step="`colcon build` builds it; fill in the maintainer and the license of `{}`",
+)

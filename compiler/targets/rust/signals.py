@@ -1,0 +1,93 @@
+"""Beside a monitor in Rust: a crate from typed samples to the inputs of the monitor.
+
+It stands beside the crate of the monitor, whose text it leaves as it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from fractions import Fraction
+from math import isinf, isnan
+
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.signals.functions import file_name, functions
+from compiler.signals.printing import Language, letters, parts, suited
+
+_SIGNS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "=": "eq", "!=": "ne"}
+
+
+def files(
+    monitor: str,
+    rules: Sequence[Formalized],
+    names: Mapping[str, str],
+    reserved: Collection[str],
+) -> dict[str, str]:
+    """The texts of the crate beside the crate `monitor`; none where no bindings are at hand.
+
+    Args:
+        monitor: the name of the crate.
+        rules: those of the monitor.
+        names: the monitor's input of each proposition.
+        reserved: what no name may be.
+    """
+    found = functions(rules, names, _LANGUAGE, reserved)
+    if found is None:
+        return {}
+    bound = {each.name for each in found.propositions}
+    library = render(
+        "rust/signals.rs.j2",
+        functions=found,
+        monitor=monitor,
+        others=[name for name in names.values() if name not in bound],
+        letters=letters,
+    )
+    crate = file_name(monitor)
+    return {
+        f"{crate}/Cargo.toml": render("rust/Cargo.toml.j2", crate=crate, monitor=monitor),
+        f"{crate}/src/lib.rs": library,
+        f"{crate}/src/numbers.rs": render("rust/numbers.rs.j2"),
+    }
+
+
+def _double(value: float) -> str:
+    if isnan(value):
+        return "f64::NAN"
+    if isinf(value):
+        return "f64::INFINITY" if value > 0 else "f64::NEG_INFINITY"
+    return repr(value)
+
+
+def _fixed(value: Fraction) -> str:
+    return f"Some(Number::Double({_double(suited(value).double)}))"
+
+
+def _chosen(function: str, number: str, value: Fraction) -> str:
+    found = suited(value)
+    kind = "Single" if found.is_single else "Double"
+    single = f"Number::{kind}({_double(found.single)})"
+    return f"{function}_with({number}, {single}, {_double(found.double)})"
+
+
+def _compared(number: str, sign: str, value: Fraction) -> str:
+    found = suited(value, sign)
+    whole = found.magnitude if found.exact > 0 else -found.magnitude
+    wide = f"Number::Whole({whole})" if whole else f"Number::Wide({_double(found.exact)})"
+    beside = f"{_double(found.single)}, {_double(found.double)}, {wide}"
+    return f"compared_with({number}, Ordering::is_{_SIGNS[sign]}, {beside})"
+
+
+def _scale(value: Fraction) -> str:
+    return ", ".join(map(_double, parts(value)))
+
+
+_LANGUAGE = Language(
+    prefix="",
+    truths={True: "Some(true)", False: "Some(false)", None: "None"},
+    signs={sign: f"Ordering::is_{name}" for sign, name in _SIGNS.items()},
+    held="held.{}",
+    scale=_scale,
+    fixed=_fixed,
+    chosen=_chosen,
+    compared=_compared,
+)

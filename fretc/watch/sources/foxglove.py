@@ -1,0 +1,387 @@
+"""A Foxglove WebSocket server as a source: foxglove_bridge on a robot, or a program with the SDK.
+
+The server is a stranger: what it sends is bounded, what it must answer is waited for so long and no
+longer, and a connection on which something else is said than the protocol allows is closed.
+"""
+
+from __future__ import annotations
+
+import logging
+import socket
+import time
+from contextlib import closing
+from dataclasses import dataclass, field
+from ssl import SSLCertVerificationError, SSLError
+from threading import Event as Flag
+from typing import TYPE_CHECKING, assert_never
+from urllib.parse import SplitResult, urlsplit
+
+from compiler.files.checked_json import MisshapenError
+from fretc.logs.storage.storage_diagnostics import install
+from fretc.watch.sources.foxglove_protocol import (
+    SUBPROTOCOLS,
+    Advertised,
+    Advertisement,
+    Data,
+    Greeting,
+    Message,
+    ServerTime,
+    Status,
+    Withdrawal,
+    read,
+    subscribe,
+    unsubscribe,
+)
+from fretc.watch.sources.middleware import Middleware, simulated_time
+from fretc.watch.sources.source import Channel
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+
+if TYPE_CHECKING:
+    from websockets.sync.client import ClientConnection
+
+PATIENCE = 5.0
+"""Seconds in which a server answers: to the connection, with its greeting, to a ping."""
+LARGEST = 2**26
+"""Bytes of a message."""
+MOST_CHANNELS = 256
+"""Different channels of all bound topics together."""
+MOST_STATUSES = 20
+"""Different words of a server that are shown."""
+_PERIOD = 0.05
+"""Seconds between two looks whether the watch has ended."""
+_PING = 0.5
+"""Seconds between two pings."""
+_WAITING = 4
+"""Frames that wait in the library."""
+_EXCERPT = 300
+"""Characters of a server's words that are shown."""
+_TOO_BIG = 1009
+"""The code with which a connection is closed on which too large a message has come."""
+
+
+class _GoneError(Exception):
+    """The connection is of no use any more; the message says why."""
+
+
+@dataclass(slots=True)
+class _Connection:
+    """One connection, from the server's greeting to its end."""
+
+    socket: ClientConnection
+    topics: frozenset[str]
+    opened: float = field(default_factory=time.monotonic)
+    subscriptions: dict[int, Channel] = field(default_factory=dict)
+    of_channel: dict[int, int] = field(default_factory=dict)
+    """Of each id of the server the subscription."""
+    count: int = 0
+    """Of all subscriptions so far."""
+    is_useful: bool = False
+    """Whether a message has come."""
+    answer: Flag | None = None
+    """Set when the server has answered to the last ping; None: it has."""
+    asked: int = 0
+    """The receive time at which that was sent."""
+    asked_at: float = 0.0
+    """The same by the monotonic clock, in seconds."""
+
+    def ping(self, now: int) -> None:
+        """Ask the server for an answer to everything that was sent to it."""
+        self.answer, self.asked, self.asked_at = self.socket.ping(), now, time.monotonic()
+
+    @property
+    def subscribed(self) -> set[str]:
+        """The topics that it sends."""
+        return {channel.topic for channel in self.subscriptions.values()}
+
+
+def address(url: str) -> SplitResult | Diagnostic:
+    """The parts of the URL of a server, or what is wrong with it."""
+    try:
+        parts = urlsplit(url)
+        is_named = parts.scheme in ("ws", "wss") and parts.hostname and parts.port != 0
+    except ValueError:
+        return _no_url(url)
+    is_plain = url.isascii() and url.isprintable() and " " not in url and not parts.fragment
+    return parts if is_named and is_plain else _no_url(url)
+
+
+class Foxglove(Middleware):
+    """One server."""
+
+    def __init__(self, url: SplitResult) -> None:
+        """Nothing is opened yet; `url` is one of `address`."""
+        self._host = url.hostname or ""
+        self._port = url.port or (443 if url.scheme == "wss" else 80)
+        host = f"[{self._host}]" if ":" in self._host else self._host
+        super().__init__(f"{url.scheme}://{host}:{self._port}{url.path}")  # without a password
+        self._url = url.geturl()
+        self._channels: dict[Channel, Channel] = {}
+        self._topics: set[str] = set()
+        """Those that the server has had."""
+        self._warnings: set[Diagnostic] = set()
+        self._statuses = 0
+
+    def _listen(self, topics: list[str]) -> bool:
+        try:
+            from websockets.exceptions import WebSocketException
+            from websockets.sync.client import connect
+            from websockets.typing import Subprotocol
+        except ImportError as error:
+            self._lost(_no_websockets(str(error)))
+            return False
+        logging.getLogger("websockets").addHandler(logging.NullHandler())
+        connection = None
+        try:
+            with (
+                closing(self._socket()) as plain,
+                connect(
+                    self._url,
+                    sock=plain,
+                    subprotocols=[Subprotocol(name) for name in SUBPROTOCOLS],
+                    compression=None,
+                    open_timeout=PATIENCE,
+                    ping_interval=None,
+                    close_timeout=_PING,
+                    max_size=LARGEST,
+                    max_queue=_WAITING,
+                ) as client,
+            ):
+                connection = _Connection(client, frozenset(topics))
+                self._converse(connection)
+        except (OSError, EOFError, ValueError, WebSocketException, _GoneError) as error:
+            self._lost(_server_not_reached(self.name, *_reason(error)))
+        return connection is not None and connection.is_useful
+
+    def _socket(self) -> socket.socket:
+        """A connection that breaks off, too, where the server takes nothing any more."""
+        plain = socket.create_connection((self._host, self._port), PATIENCE)
+        plain.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, int(1000 * PATIENCE))
+        return plain
+
+    # One connection
+
+    def _converse(self, connection: _Connection) -> None:
+        """Take what comes, until the watch ends.
+
+        Raises:
+            _GoneError, OSError, WebSocketException: the server is of no use any more.
+            MisshapenError: it speaks another protocol.
+        """
+        if connection.socket.subprotocol is None:
+            raise _GoneError("it does not speak Foxglove's protocol")
+        greeting = read(connection.socket.recv(timeout=PATIENCE), connection.topics)
+        if not isinstance(greeting, Greeting):
+            raise _GoneError("it does not begin with `serverInfo`")
+        if self._alive is None:
+            self._opened(self.name)
+        connection.ping(self._mailbox.now)
+        while not self._closed.is_set():
+            self._look(connection)
+            try:
+                message = connection.socket.recv(timeout=_PERIOD)
+            except TimeoutError:
+                continue
+            found = read(message, connection.topics)
+            if found is not None:
+                self._take(connection, found)
+
+    def _look(self, connection: _Connection) -> None:
+        """Whether the server answers, and has all that it has had before."""
+        now = time.monotonic()
+        if connection.answer is not None:
+            if connection.answer.is_set():
+                connection.answer = None
+                self._is_alive(connection.asked)
+            elif now - connection.asked_at > PATIENCE:
+                raise _GoneError(f"it has not answered for {PATIENCE:g} s")
+        elif now - connection.asked_at > _PING:
+            connection.ping(self._mailbox.now)
+        if self._is_lost:
+            is_whole = connection.answer is None and self._topics <= connection.subscribed
+            if is_whole or now - connection.opened > PATIENCE:
+                self._opened(self.name)
+
+    def _take(self, connection: _Connection, message: Message) -> None:
+        match message:
+            case Data(subscription, time, payload):
+                channel = connection.subscriptions.get(subscription)
+                if channel is not None:
+                    connection.is_useful = True
+                    self._put(channel, payload, time)
+            case Advertisement(channels):
+                for advertised in channels:
+                    self._subscribe(connection, advertised)
+            case Withdrawal(ids):
+                for id in ids:
+                    self._withdraw(connection, id)
+            case Status(is_grave, text):
+                if is_grave:
+                    self._repeat(text)
+            case ServerTime():
+                self._warn_once(simulated_time())
+            case Greeting():
+                pass  # a new session: its channels are advertised anew
+            case _:
+                assert_never(message)
+
+    def _subscribe(self, connection: _Connection, advertised: Advertised) -> None:
+        channel = advertised.channel
+        if isinstance(channel, str):
+            self._warn_once(_unreadable_channel(advertised.topic, channel))
+            return
+        is_new = channel not in self._channels
+        most = max(len(self._channels) * is_new, len(connection.subscriptions))
+        if most >= MOST_CHANNELS:
+            self._warn_once(_too_many_channels(MOST_CHANNELS))
+            return
+        channel = self._channels.setdefault(channel, channel)
+        before = connection.of_channel.get(advertised.id)
+        if before is not None:
+            if connection.subscriptions[before] == channel:
+                return
+            del connection.subscriptions[before]
+            connection.socket.send(unsubscribe(before))
+        if channel.topic in connection.subscribed:
+            self._warn_once(_several_channels(channel.topic))
+        connection.count += 1
+        connection.of_channel[advertised.id] = connection.count
+        connection.subscriptions[connection.count] = channel
+        self._topics.add(channel.topic)
+        connection.socket.send(subscribe(connection.count, advertised.id))
+        connection.ping(self._mailbox.now)
+
+    def _withdraw(self, connection: _Connection, id: int) -> None:
+        subscription = connection.of_channel.pop(id, None)
+        if subscription is None:
+            return
+        topic = connection.subscriptions.pop(subscription).topic
+        if topic not in connection.subscribed:
+            self._topics.discard(topic)
+            self._warn_once(_withdrawn(topic))
+
+    def _repeat(self, text: str) -> None:
+        """The server's own words."""
+        problem = _status(text[:_EXCERPT])
+        if problem not in self._warnings:
+            self._statuses += 1
+            few = self._statuses <= MOST_STATUSES
+            self._warn_once(problem if few else _more_statuses(MOST_STATUSES))
+
+    def _warn_once(self, problem: Diagnostic) -> None:
+        if problem not in self._warnings:
+            self._warnings.add(problem)
+            self._warn(problem)
+
+
+_TRUST = "SSL_CERT_FILE names the file with the authority that has signed it"
+
+
+def _reason(error: Exception) -> tuple[str, str | None]:
+    """Why a connection has ended, in words, and what to do where that is not the usual."""
+    from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus
+
+    match error:
+        case SSLCertVerificationError():
+            return f"its certificate is not trusted: {error.verify_message}", _TRUST
+        case SSLError():
+            return "it does not speak TLS", "write `ws://` in place of `wss://`"
+        case TimeoutError():
+            return f"it has not answered within {PATIENCE:g} s", None
+        case OSError():
+            return error.strerror or str(error), None
+        case MisshapenError():
+            return f"it sends what is not of the protocol: {str(error)[:_EXCERPT]}", None
+        case InvalidStatus():
+            status = f"HTTP status {error.response.status_code}"
+            return f"{status}: does it speak Foxglove's protocol, at this address?", None
+        case InvalidHandshake() | EOFError():
+            return "it is no WebSocket server, or speaks another protocol than Foxglove's", None
+        case ConnectionClosed(sent=sent) if sent is not None and sent.code == _TOO_BIG:
+            return f"it has sent a message of more than {LARGEST >> 20} MiB", None
+        case ConnectionClosed(rcvd=rcvd) if rcvd is not None:
+            why = f": {rcvd.reason[:_EXCERPT]}" if rcvd.reason else ""
+            return f"it has closed the connection{why}", None
+        case ConnectionClosed():
+            return "the connection has broken off", None
+        case _:
+            return str(error)[:_EXCERPT], None
+
+
+def _no_url(text: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"`{text}` is no URL of a Foxglove server",
+        help="write `ws://HOST:PORT`, or `wss://HOST:PORT`; foxglove_bridge has port 8765",
+    )
+
+
+def _no_websockets(why: str) -> Diagnostic:
+    return Diagnostic(
+        Code.MISSING_EXTRA,
+        f"a Foxglove server is watched by `websockets`, which cannot be imported: {why}",
+        help=install("live"),
+    )
+
+
+def _server_not_reached(name: str, why: str, mend: str | None) -> Diagnostic:
+    return Diagnostic(
+        Code.ROBOT_NOT_REACHED,
+        f"{name} cannot be watched: {why}",
+        help=mend or "start the server on the robot (`ros2 run foxglove_bridge foxglove_bridge`)",
+    )
+
+
+def _several_channels(topic: str) -> Diagnostic:
+    return Diagnostic(
+        Code.SEVERAL_PUBLISHERS,
+        f"the server has several channels of `{topic}`",
+        help="each message counts, of whichever channel; end what should not publish",
+        severity=Severity.WARNING,
+    )
+
+
+def _too_many_channels(most: int) -> Diagnostic:
+    """The server makes new ones without end."""
+    return Diagnostic(
+        Code.CHANNEL_REFUSED,
+        f"the server has had {most} different channels of the topics that are bound: no more are "
+        "watched",
+        help="does it change the types of its topics again and again?",
+    )
+
+
+def _unreadable_channel(topic: str, why: str) -> Diagnostic:
+    return Diagnostic(
+        Code.CHANNEL_REFUSED,
+        f"a channel of `{topic}` cannot be watched: {why}",
+        help="what reads the topic is unknown; look at what the server advertises",
+    )
+
+
+def _withdrawn(topic: str) -> Diagnostic:
+    """A warning, since what has stopped sends nothing."""
+    return Diagnostic(
+        Code.CHANNEL_REFUSED,
+        f"the server has withdrawn `{topic}`",
+        help="it is watched again when the server has it again; does its node still run?",
+        severity=Severity.WARNING,
+    )
+
+
+def _status(text: str) -> Diagnostic:
+    return Diagnostic(
+        Code.SERVER_STATUS,
+        f"the server says: {text}",
+        help="look at the server's own log",
+        severity=Severity.WARNING,
+    )
+
+
+def _more_statuses(most: int) -> Diagnostic:
+    """The rest is not shown."""
+    return Diagnostic(
+        Code.SERVER_STATUS,
+        f"the server says more than {most} different things; the rest is not shown",
+        help="look at the server's own log",
+        severity=Severity.WARNING,
+    )

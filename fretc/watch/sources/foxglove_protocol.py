@@ -1,0 +1,167 @@
+"""What a Foxglove WebSocket server and its client say to each other.
+
+A server of a stranger is read strictly: what is not of the protocol is an error, what is newer than
+this module is ignored.
+
+Source: https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md
+"""
+
+from __future__ import annotations
+
+import binascii
+import json
+import struct
+from base64 import b64decode
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+from compiler.files.checked_json import MisshapenError, Shape
+from compiler.files.checked_json import plain as json_value
+from fretc.watch.sources.source import Channel
+
+SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
+"""The names of the protocol, which is the same: of the SDK, and of servers before it."""
+LARGEST_SCHEMA = 2**20
+"""Characters of a definition of a type."""
+_DATA_HEAD = struct.Struct("<xIQ")
+_SCHEMA_ENCODINGS: Mapping[str, str] = {
+    "cdr": "ros2msg",
+    "ros1": "ros1msg",
+    "json": "jsonschema",
+    "protobuf": "protobuf",
+    "flatbuffer": "flatbuffer",
+}
+"""Of each encoding of messages that of its schema, where a server does not say."""
+_BINARY = ("protobuf", "flatbuffer")
+"""Encodings of schemas that are bytes, which a server sends as base64."""
+
+
+@dataclass(frozen=True, slots=True)
+class Greeting:
+    """The first message of a server."""
+
+
+@dataclass(frozen=True, slots=True)
+class Advertised:
+    """A channel that the server has."""
+
+    id: int
+    topic: str
+    channel: Channel | str
+    """Or why it cannot be read."""
+
+
+@dataclass(frozen=True, slots=True)
+class Advertisement:
+    """Channels of the topics that are wanted."""
+
+    channels: tuple[Advertised, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Withdrawal:
+    """Channels that the server has no more."""
+
+    ids: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """Words for people."""
+
+    is_grave: bool
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Data:
+    """A message of a channel."""
+
+    subscription: int
+    time: int
+    """When the server received it, in nanoseconds of its clock."""
+    payload: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class ServerTime:
+    """The server sets the time."""
+
+
+Message = Greeting | Advertisement | Withdrawal | Status | Data | ServerTime
+
+
+def read(message: str | bytes, topics: Collection[str]) -> Message | None:
+    """One message of a server; None: nothing that concerns these topics.
+
+    Raises:
+        MisshapenError: it is not of the protocol.
+    """
+    return _text(message, topics) if isinstance(message, str) else _binary(message)
+
+
+def _binary(message: bytes) -> Message | None:
+    match message[:1]:
+        case b"":
+            raise MisshapenError("a binary message is empty")
+        case b"\x01":
+            if len(message) < _DATA_HEAD.size:
+                raise MisshapenError("a message of a channel breaks off")
+            subscription, time = _DATA_HEAD.unpack_from(message)
+            return Data(subscription, time, message[_DATA_HEAD.size :])
+        case b"\x02":
+            return ServerTime()
+        case _:
+            return None
+
+
+def _text(message: str, topics: Collection[str]) -> Message | None:
+    shape = Shape(json_value(message))
+    match shape.field("op").text():
+        case "serverInfo":
+            return Greeting()
+        case "advertise":
+            items = shape.field("channels").items()
+            return Advertisement(tuple(_advertised(each) for each in items if _is_in(each, topics)))
+        case "unadvertise":
+            return Withdrawal(tuple(each.count() for each in shape.field("channelIds").items()))
+        case "status":
+            return Status(shape.field("level").count() > 0, shape.field("message").text())
+        case _:
+            return None
+
+
+def _is_in(channel: Shape, topics: Collection[str]) -> bool:
+    return channel.field("topic").text() in topics
+
+
+def _advertised(shape: Shape) -> Advertised:
+    encoding, schema = shape.field("encoding").text(), shape.field("schema").text()
+    of_schema = _SCHEMA_ENCODINGS.get(encoding, "")
+    if shape.has("schemaEncoding") and shape.field("schemaEncoding").value is not None:
+        of_schema = shape.field("schemaEncoding").text()
+    id, topic = shape.field("id").count(), shape.field("topic").text()
+    name = shape.field("schemaName").text()
+    size = sum(map(len, (encoding, name, of_schema, schema)))
+    if size > LARGEST_SCHEMA:
+        return Advertised(id, topic, "the definition of its type is larger than any type needs")
+    try:
+        data = b64decode(schema, validate=True) if of_schema in _BINARY else schema.encode()
+        for text in (encoding, name, of_schema):
+            text.encode()
+    except binascii.Error:
+        return Advertised(id, topic, "the definition of its type is not base64")
+    except UnicodeEncodeError:
+        return Advertised(id, topic, "the definition of its type is not Unicode")
+    return Advertised(id, topic, Channel(topic, encoding, name, of_schema, data))
+
+
+def subscribe(subscription: int, channel: int) -> str:
+    """The message that asks for a channel by a number of the client's."""
+    wanted = [{"id": subscription, "channelId": channel}]
+    return json.dumps({"op": "subscribe", "subscriptions": wanted})
+
+
+def unsubscribe(subscription: int) -> str:
+    """The message that ends a subscription."""
+    return json.dumps({"op": "unsubscribe", "subscriptionIds": [subscription]})

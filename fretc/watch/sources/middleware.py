@@ -1,0 +1,116 @@
+"""What every middleware that can go away has in common: it is sought again, ever less often.
+
+It runs in a thread of its own. What was sent while it was away is lost, and nobody knows how much.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterator
+from threading import Event as Flag
+from threading import Thread
+
+from fretc.watch.sources.mailbox import Mailbox
+from fretc.watch.sources.source import (
+    Arrival,
+    Channel,
+    Event,
+    Idle,
+    Interrupted,
+    Opened,
+    Problem,
+    Reconnected,
+)
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+
+_FIRST_PAUSE, _LONGEST_PAUSE = 0.5, 8.0
+"""Seconds before it is sought again; each pause is twice the one before."""
+_LAST = 2.0
+"""Seconds that the end of a watch waits for the thread."""
+
+
+class Middleware(ABC):
+    """A source that is there, gone, and there again."""
+
+    def __init__(self, name: str) -> None:
+        """Nothing is opened yet."""
+        self.name = name
+        self._mailbox = Mailbox()
+        self._closed = Flag()
+        self._alive: int | None = None
+        """What was sent before this receive time has come; None: it was never there."""
+        self._is_lost = False
+
+    def close(self) -> None:
+        """Let it go."""
+        self._closed.set()
+        self._mailbox.close()
+
+    def arrivals(self, topics: Collection[str]) -> Iterator[Arrival | Event | Idle]:
+        """What the thread hands on."""
+        thread = Thread(target=self._run, args=(sorted(topics),), daemon=True)
+        thread.start()
+        try:
+            while (item := self._mailbox.take()) is not None:
+                yield item
+        finally:
+            self.close()
+            thread.join(_LAST)
+
+    @abstractmethod
+    def _listen(self, topics: list[str]) -> bool:
+        """Hand on what comes, until it is gone; whether it was of any use."""
+
+    def _run(self, topics: list[str]) -> None:
+        pause = _FIRST_PAUSE
+        try:
+            while not self._closed.is_set():
+                useful = self._listen(topics)
+                if self._alive is None or self._closed.is_set():
+                    break
+                pause = _FIRST_PAUSE if useful else min(2 * pause, _LONGEST_PAUSE)
+                self._closed.wait(pause)
+        finally:
+            self._mailbox.close()
+
+    # What the thread says
+
+    def _opened(self, name: str) -> None:
+        """It is there, and everything that is sent from now on comes."""
+        now = self._mailbox.now
+        if self._alive is None:
+            self._mailbox.tell(Opened(name))
+        else:
+            self._mailbox.tell(Reconnected(self._alive, now))
+        self._alive, self._is_lost = now, False
+
+    def _is_alive(self, now: int) -> None:
+        """Everything that was sent before this receive time has come."""
+        if self._alive is not None and not self._is_lost:
+            self._alive = max(self._alive, now)
+
+    def _put(self, channel: Channel, payload: bytes, publish_time: int | None = None) -> None:
+        self._is_alive(self._mailbox.put(channel, payload, publish_time) + 1)
+
+    def _warn(self, problem: Diagnostic) -> None:
+        self._mailbox.tell(Problem(problem))
+
+    def _lost(self, problem: Diagnostic) -> None:
+        """It is gone; said once. What was never there is an error, and the end."""
+        if self._is_lost or self._closed.is_set():
+            return
+        self._is_lost = True
+        if self._alive is None:
+            self._warn(problem)
+        else:
+            self._mailbox.tell(Interrupted(self._alive, problem))
+
+
+def simulated_time() -> Diagnostic:
+    """F957: durations are wrong where it does not run as real time does."""
+    return Diagnostic(
+        Code.SIMULATED_TIME,
+        "the robot's time is simulated, and the times of arrival are those of this machine",
+        help='set `time = "header.stamp"` under `[clock]`, unless the simulation runs in real time',
+        severity=Severity.WARNING,
+    )

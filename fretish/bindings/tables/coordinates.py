@@ -1,0 +1,66 @@
+"""The table `[map]` of `bindings.toml`: where the robot is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from fretish import units
+from fretish.bindings.declarations import Map, Signal, path
+from fretish.bindings.tables.fields import Fields, Notes
+from fretish.diagnostics.diagnostic import Code
+from fretish.reading.toml_text import Tables
+
+_MAP = ("x", "y")
+
+
+class MapTable(Fields):
+    """Reads it."""
+
+    def __init__(self, tables: Tables, notes: Notes, signals: Mapping[str, Signal]) -> None:
+        """`signals`: every one that has a unit."""
+        super().__init__(tables, notes)
+        self._signals = signals
+
+    def map(self) -> Map | None:
+        """`[map]`; None where it is absent, or has mistakes, which become diagnostics."""
+        table = self.tables.data.get("map")
+        if table is None:
+            return None
+        if not isinstance(table, dict):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`map` must be a table",
+                self.tables.place("map"),
+                'write `[map]`, and below it `x = "/odom.pose.pose.position.x"`',
+            )
+            return None
+        self._check_keys(table, _MAP, "[map]", "map")
+        x, y = self._coordinate(table, "x"), self._coordinate(table, "y")
+        return Map(x, y) if x is not None and y is not None else None
+
+    def _coordinate(self, table: Mapping[str, Any], key: str) -> Signal | None:
+        """A coordinate of the map: as the signal of the same path reads it, else in metres."""
+        text = table.get(key)
+        where = path(text) if isinstance(text, str) else None
+        if where is None or where.each:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`{key}` of the map must be a topic and one number of its messages",
+                self.tables.value("map", key) if key in table else self.tables.place("map"),
+                f'write `{key} = "/odom.pose.pose.position.{key}"`',
+            )
+            return None
+        same = next((signal for signal in self._signals.values() if signal.path == where), None)
+        own = same or Signal("", where, units.METRE, "m")
+        if own.unit.dimension != units.METRE.dimension:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`{key}` of the map must be a length, and `{own.name}` is in "
+                f"{own.unit_name or 'plain numbers'}",
+                self.tables.value("map", key),
+                f'give `[signal.{own.name}]` a length for its unit: `unit = "m"`',
+            )
+            return None
+        return replace(own, name=f"[map] {key}", span=self.tables.value("map", key))

@@ -1,0 +1,68 @@
+"""The table `[run.label]` of `bindings.toml`: what runs are called."""
+
+from __future__ import annotations
+
+import re
+
+from fretish.bindings.declarations import LabelSource
+from fretish.bindings.tables.fields import Fields
+from fretish.diagnostics.diagnostic import Code
+from fretish.reading import name_patterns
+
+_RUN = ("label",)
+_LABEL = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,49}", re.ASCII)
+MOST_LABELS = 32
+_MOST_SOURCES, _LONGEST_SOURCE = 8, 200
+_LABEL_FORM = '`version = "metadata:build.version"` or `scenario = "path:{scenario}-*.mcap"`'
+
+
+class Labels(Fields):
+    """Reads the table."""
+
+    def labels(self) -> dict[str, tuple[LabelSource, ...]]:
+        """`[run.label]`: each label with its sources."""
+        table = self.tables.data.get("run", {})
+        labels = table.get("label", {}) if isinstance(table, dict) else None
+        if not isinstance(labels, dict) or len(labels) > MOST_LABELS:
+            message = f"`run` must hold a table `label`, of up to {MOST_LABELS} labels"
+            self._bad_label(message, ("run",), f"write `[run.label]` and {_LABEL_FORM}")
+            return {}
+        self._check_keys(table, _RUN, "[run]", "run")
+        return {name: self._label_sources(name, written) for name, written in labels.items()}
+
+    def _label_sources(self, name: str, written: object) -> tuple[LabelSource, ...]:
+        at = ("run", "label", name)
+        if not is_label(name):
+            message = f"`{name}` is no name of a label: a letter, then letters, digits, `_`, `-`"
+            self._bad_label(f"{message}, 50 at most", at)
+            return ()
+        texts = written if isinstance(written, list) else [written]
+        sources = [_label_source(name, text) for text in texts]
+        wrong = next((each for each in sources if isinstance(each, str)), None)
+        if wrong is None and not 0 < len(sources) <= _MOST_SOURCES:
+            wrong = f"a label has 1 to {_MOST_SOURCES} sources"
+        if wrong is not None:
+            self._bad_label(f"`{name}` has no sound source: {wrong}", at, f"write {_LABEL_FORM}")
+            return ()
+        return tuple(each for each in sources if isinstance(each, LabelSource))
+
+    def _bad_label(self, message: str, at: tuple[str, ...], mend: str | None = None) -> None:
+        self._say(Code.BAD_LABEL, message, self.tables.value(*at), mend)
+
+
+def is_label(name: str) -> bool:
+    """Whether it can be the name of a label."""
+    return _LABEL.fullmatch(name) is not None
+
+
+def _label_source(name: str, written: object) -> LabelSource | str:
+    """The source of a label, or what is wrong with it."""
+    kind, _, text = written.partition(":") if isinstance(written, str) else ("", "", "")
+    if kind not in ("metadata", "path") or not 0 < len(text) <= _LONGEST_SOURCE:
+        return "it is neither `metadata:RECORD.KEY` nor `path:PATTERN`"
+    if kind == "metadata":
+        return LabelSource(False, text) if "." in text else "a record has keys: `RECORD.KEY`"
+    found = name_patterns.names(text)
+    if isinstance(found, str):
+        return found
+    return LabelSource(True, text) if name in found else f"`{{{name}}}` is not in the pattern"

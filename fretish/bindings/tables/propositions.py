@@ -1,0 +1,152 @@
+"""The tables `[proposition.NAME]` of `bindings.toml`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from fretish import expressions as e
+from fretish import units
+from fretish.bindings import expressions as binding
+from fretish.bindings.declarations import Aggregate, Default, Proposition, Role, Signal
+from fretish.bindings.tables.fields import Fields, Notes
+from fretish.bindings.words import words
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.reading.toml_text import Tables
+
+_PROPOSITION = ("text", "expr", "role", "agg", "on_unknown", "kind", "modality", "action")
+_KINDS = ("belief", "command", "physical")
+
+
+class PropositionTables(Fields):
+    """Reads one after the other."""
+
+    def __init__(self, tables: Tables, notes: Notes, signals: Mapping[str, Signal]) -> None:
+        """`signals`: every one that has a unit, or words."""
+        super().__init__(tables, notes)
+        self._signals = signals
+
+    def proposition(self, name: str, table: Mapping[str, Any]) -> Proposition | None:
+        """The proposition; None with mistakes that leave nothing of it."""
+        at = ("proposition", name)
+        self._check_keys(table, _PROPOSITION, f"[proposition.{name}]", *at)
+        if "expr" not in table:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"the proposition `{name}` has no `expr`",
+                self.tables.place(*at),
+                'add `expr = "min_range < 5 cm"`',
+            )
+        written = self._expression(table, (*at, "expr"))
+        if written is None:
+            return None
+        names = dict.fromkeys(name.id for name in e.names(written))
+        self.notes.keep(
+            at, [m for name in names for m in self.notes.mistakes.get(("signal", name), ())]
+        )
+        expression = self._truth(written, at)
+        if expression is None:
+            return None
+        if not self._ticks_fit(table, expression, at):
+            return None
+        if table.get("agg", Aggregate.LAST) == Aggregate.LAST:
+            last = f"proposition {name}: the last sample of a tick counts"
+            self.notes.defaults.append(Default(("proposition", name), last, "agg" in table))
+        return Proposition(
+            name,
+            expression,
+            text=self._field(table, (*at, "text"), str, "a text in quotes") or "",
+            role=self._choice(table, (*at, "role"), Role, Role.INTERNAL),
+            kind=self._kind(table, at),
+            aggregate=self._choice(table, (*at, "agg"), Aggregate, Aggregate.LAST),
+            on_unknown=self._on_unknown(table, at),
+            modality=self._modality(table, at),
+            action=self._action(table, at),
+            span=self.tables.value(*at, "expr"),
+        )
+
+    def _truth(self, written: e.Expression, at: tuple[str, ...]) -> e.Expression | None:
+        """The expression with its words; None where it cannot be a proposition."""
+        place = self.tables.value(*at, "expr")
+        unknown = self._tables("signal").keys() - self._signals.keys()
+        if any(name.id in unknown for name in e.names(written)):
+            return None  # the signal has a diagnostic of its own
+        expression = words(written, self._signals, place)
+        if isinstance(expression, Diagnostic):
+            self.notes.diagnostics.append(expression)
+            return None
+        kinds = {name: signal.unit.dimension for name, signal in self._signals.items()}
+        if isinstance(expression, e.Name) and expression.id in kinds:
+            return expression
+        kind = binding.dimension(expression, kinds, place)
+        if isinstance(kind, Diagnostic):
+            self.notes.diagnostics.append(kind)
+        elif kind is not None:
+            self._say(
+                Code.BAD_EXPRESSION,
+                "a proposition must be true or false, and this is a number",
+                place,
+                "compare it: `min_range < 5 cm`",
+            )
+        else:
+            known = {name.id: self._signals.get(name.id) for name in e.names(expression)}
+            percents = {n for n, each in known.items() if each and each.unit == units.PERCENT}
+            self.notes.diagnostics.extend(binding.plain_percents(expression, percents, place))
+        return expression if kind is None else None
+
+    def _ticks_fit(
+        self, table: Mapping[str, Any], expression: e.Expression, at: tuple[str, ...]
+    ) -> bool:
+        """Whether what looks back by ticks stands where there are ticks."""
+        if not binding.ticks_back(expression):
+            return True
+        place = self.tables.value(*at, "expr")
+        if table.get("agg", Aggregate.LAST) != Aggregate.LAST:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`pre` sees what is in force at each tick: `agg` can only be `last`",
+                self.tables.value(*at, "agg"),
+                "take it out",
+            )
+        elif any(
+            isinstance(part, e.Persistence) and binding.ticks_back(part)
+            for part in e.parts(expression)
+        ):
+            self._say(
+                Code.BAD_EXPRESSION,
+                "`pre` counts ticks, and `for` the time between them",
+                place,
+                "let the requirement say for how long: `for 2 ticks satisfy ...`",
+            )
+        else:
+            return True
+        return False
+
+    def _kind(self, table: Mapping[str, Any], at: tuple[str, ...]) -> str:
+        kind = table.get("kind", "")
+        if kind not in (*_KINDS, ""):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`kind` cannot be `{kind}`",
+                self.tables.value(*at, "kind"),
+                f"it may be {', '.join(_KINDS)}",
+            )
+        return str(kind)
+
+    def _on_unknown(self, table: Mapping[str, Any], at: tuple[str, ...]) -> bool | None:
+        value = table.get("on_unknown", "unknown")
+        if value == "unknown":
+            return None
+        if isinstance(value, bool):
+            text = (
+                f"proposition {at[1]}: where its signals are unknown it counts as "
+                f"{str(value).lower()}, as the bindings declare"
+            )
+            self.notes.defaults.append(Default((at[0], at[1]), text))
+            return value
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            "`on_unknown` must be true, false or `unknown`",
+            self.tables.value(*at, "on_unknown"),
+        )
+        return None

@@ -1,0 +1,103 @@
+"""Read `bindings.toml`: every field is checked, every mistake has its place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from fretish.bindings.declarations import Assumed, Declarations, Proposition, Signal
+from fretish.bindings.tables.clock import ClockTable
+from fretish.bindings.tables.coordinates import MapTable
+from fretish.bindings.tables.fields import Fields, Notes
+from fretish.bindings.tables.interceptor import Loop
+from fretish.bindings.tables.labels import Labels
+from fretish.bindings.tables.propositions import PropositionTables
+from fretish.bindings.tables.signals import SignalTables
+from fretish.bindings.tables.variables import VariableTables
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Source
+from fretish.reading.limits import within
+from fretish.reading.toml_text import Tables, read
+
+_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run")
+T = TypeVar("T", Signal, Proposition)
+
+
+def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
+    """Read the text of a `bindings.toml`.
+
+    Returns:
+        The declarations, and all that there is to say. A mistake in the table of a signal or a
+        proposition is among the `mistakes` of the declarations; with any other error there are
+        none.
+    """
+    found = within(len(source.text), source.span(0, 0), lambda: _read(source))
+    return (None, (found,)) if isinstance(found, Diagnostic) else found
+
+
+def _read(source: Source) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
+    tables = read(source.span(), Code.BAD_BINDINGS, "the bindings file")
+    if isinstance(tables, Diagnostic):
+        return None, (tables,)
+    reader = _Reader(tables)
+    declarations = reader.declarations()
+    return (declarations if reader.is_usable else None), tuple(reader.notes.diagnostics)
+
+
+class _Reader(Fields):
+    """One walk over the tables, which collects every mistake."""
+
+    def __init__(self, tables: Tables) -> None:
+        super().__init__(tables, Notes())
+        self.errors_of_parts = 0
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether every error is in the table of a signal or a proposition."""
+        return sum(each.is_error for each in self.notes.diagnostics) == self.errors_of_parts
+
+    def declarations(self) -> Declarations:
+        tables, notes = self.tables, self.notes
+        self._check_keys(tables.data, _TABLES, "the bindings")
+        of_signals = SignalTables(tables, notes)
+        signals = self._parts("signal", of_signals.signal)
+        of_propositions = PropositionTables(tables, notes, of_signals.known)
+        propositions = self._parts("proposition", of_propositions.proposition)
+        variables = VariableTables(tables, notes).variables()
+        loop = Loop(tables, notes)
+        return Declarations(
+            tables.text.source,
+            ClockTable(tables, notes).clock(),
+            signals,
+            propositions,
+            variables,
+            tuple(each for each in notes.defaults if each.part not in notes.mistakes),
+            loop.interceptor(),
+            self._assumed(loop),
+            notes.mistakes,
+            MapTable(tables, notes, of_signals.known).map(),
+            Labels(tables, notes).labels(),
+            loop.sentences(),
+        )
+
+    def _parts(self, kind: str, read: Callable[[str, Mapping[str, Any]], T | None]) -> dict[str, T]:
+        """The parts without a mistake; `mistakes` holds those of the others."""
+        parts = {}
+        for name, table in self._tables(kind).items():
+            before = len(self.notes.diagnostics)
+            part = read(name, table)
+            own = [each for each in self.notes.diagnostics[before:] if each.is_error]
+            self.errors_of_parts += len(own)
+            self.notes.keep((kind, name), own)
+            if (kind, name) not in self.notes.mistakes:
+                assert part is not None, name
+                parts[name] = part
+        return parts
+
+    def _assumed(self, loop: Loop) -> Assumed | None:
+        """`[assume]`; None, too, where the proposition that it names has a mistake."""
+        assumption = loop.assumed(tuple(self._tables("proposition")))
+        broken = (
+            assumption is not None and ("proposition", assumption.stands) in self.notes.mistakes
+        )
+        return None if broken else assumption

@@ -1,0 +1,137 @@
+"""The tables `[variable.NAME]` of `bindings.toml`: names without a binding."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from fretish import expressions as e
+from fretish.bindings.declarations import Role, Variable
+from fretish.bindings.definitions import circle
+from fretish.bindings.tables.fields import Fields
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.source import Span
+from fretish.parser import parse_value
+from fretish.reading.toml_text import as_key
+
+_VARIABLE = ("component", "type", "role", "text", "value", "fret", "of", "modality", "action")
+_OF_COMPONENT = ("type", "role", "text", "value", "fret")
+_MOST_NAMES = 12
+"""Of a circle that a message shows."""
+
+
+class VariableTables(Fields):
+    """Reads them."""
+
+    def variables(self) -> dict[str, Variable]:
+        """All of them, also those with mistakes."""
+        variables = {name: self._variable(name, f) for name, f in self._tables("variable").items()}
+        components = dict.fromkeys(name for each in variables.values() for name in each.of)
+        self._check_definitions(variables, "")
+        for component in components:
+            own = {name: each.of.get(component, each) for name, each in variables.items()}
+            self._check_definitions(own, component)
+        return variables
+
+    def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
+        at = ("variable", name)
+        self._check_keys(table, _VARIABLE, f"[variable.{name}]", *at)
+        of = self._field(table, (*at, "of"), dict, "tables of components") or {}
+        if not all(isinstance(each, dict) for each in of.values()):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`of` must hold tables",
+                self.tables.value(*at, "of"),
+                f"write `[variable.{as_key(name)}.of.COMPONENT]`",
+            )
+            of = {}
+        whole = self._fields_of_variable(name, table, at)
+        own = {
+            component: replace(
+                self._fields_of_variable(name, each, (*at, "of", component)),
+                component=component,
+                modality=whole.modality,
+                action=whole.action,
+            )
+            for component, each in of.items()
+        }
+        return replace(whole, of=own)
+
+    def _fields_of_variable(
+        self, name: str, table: Mapping[str, Any], at: tuple[str, ...]
+    ) -> Variable:
+        if len(at) > 2:
+            self._check_keys(table, _OF_COMPONENT, f"[{'.'.join(at)}]", *at)
+        texts = {
+            key: self._field(table, (*at, key), str, "a text in quotes") or ""
+            for key in ("component", "type", "role", "text")
+        }
+        fret = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
+        value, place = self._value(table, (*at, "value"))
+        if value is not None and texts["role"] not in ("", Role.INTERNAL, Role.MODE):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`{name}` stands for something: its role cannot be `{texts['role']}`",
+                self.tables.value(*at, "role"),
+                "it may be internal or mode",
+            )
+        return Variable(
+            name,
+            component=texts["component"],
+            type=texts["type"],
+            role=texts["role"],
+            text=texts["text"],
+            fret=fret,
+            modality=self._modality(table, at),
+            action=self._action(table, at),
+            value=value,
+            span=place,
+        )
+
+    def _value(
+        self, table: Mapping[str, Any], at: tuple[str, ...]
+    ) -> tuple[e.Expression | None, Span | None]:
+        """What a variable stands for, and where that is written."""
+        text = self._field(table, at, str, 'an expression in quotes: `"1.5 m/s"`')
+        if text is None:
+            return None, None
+        place = self._inside(at, text)
+        value = parse_value(place)
+        if isinstance(value, Diagnostic):
+            self.notes.diagnostics.append(value)
+            return None, place
+        return value, place
+
+    def _check_definitions(self, variables: Mapping[str, Variable], component: str) -> None:
+        """F342 and F343: what a name stands for is said once, and not by way of itself.
+
+        Args:
+            variables: as they are for a component.
+            component: empty: for those that no variable names.
+        """
+        values = {name: v.value for name, v in variables.items() if v.value is not None}
+        for name in values:
+            kinds = [kind for kind in ("signal", "proposition") if name in self._tables(kind)]
+            other = f"by `[{kinds[0]}.{name}]`" if kinds else "by FRETish, as the first tick"
+            if kinds or name == "FTP":
+                self._say(
+                    Code.DOUBLE_DEFINITION,
+                    f"`{name}` is defined twice: by its `value`, and {other}",
+                    self._of_value(name, component),
+                    "take one of them out",
+                )
+        chain = circle(values)
+        if chain:
+            self._say(
+                Code.DEFINITION_CIRCLE,
+                f"the values of variables lead in a circle: {' -> '.join(chain[:_MOST_NAMES])}"
+                f"{' ...' if len(chain) > _MOST_NAMES else ''}",
+                self._of_value(chain[0], component),
+                "let one of them stand for numbers and signals alone",
+            )
+
+    def _of_value(self, name: str, component: str) -> Span:
+        """Where it is written what a variable stands for."""
+        own = component in self._tables("variable")[name].get("of", {})
+        return self.tables.value("variable", name, *(("of", component) if own else ()), "value")

@@ -1,0 +1,93 @@
+"""The `values` of a signal: words, and their numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from fretish.bindings.tables.fields import Fields
+from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.source import Span
+from fretish.reading.toml_text import as_key
+
+_MOST_WORDS, _LONGEST_WORD = 1000, 100
+_EXACT = 2**53
+"""Numbers of words below it are exact in every field."""
+
+
+class Vocabulary(Fields):
+    """Reads the field."""
+
+    def words(
+        self, written: object, at: tuple[str, ...]
+    ) -> tuple[tuple[str, ...], tuple[int, ...]]:
+        """The words, and the number of each one; no words where there is a mistake."""
+        before = len(self.notes.diagnostics)
+        if isinstance(written, dict):
+            values, numbers = [*written], [*written.values()]
+            self._check_numbers(written, at)
+        else:
+            values, numbers = written if isinstance(written, list) else [], []
+        if not values:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`values` must be a list of words, or a table of their numbers",
+                self.tables.value(*at),
+                'write `values = ["drive", "docking"]` or `values = { drive = 0, docking = 4 }`',
+            )
+        if len(values) > _MOST_WORDS:
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                f"`values` has {len(values)} words; {_MOST_WORDS} is the most",
+                self.tables.value(*at),
+            )
+        for place, word in enumerate(values[:_MOST_WORDS]):
+            self._check_word(word, values[:place], at)
+        if len(self.notes.diagnostics) > before:
+            return (), ()
+        return tuple(values), tuple(numbers)
+
+    def _check_word(self, word: object, before: list[Any], at: tuple[str, ...]) -> None:
+        if (
+            not isinstance(word, str)
+            or not word.isprintable()
+            or '"' in word
+            or not 0 < len(word) <= _LONGEST_WORD
+        ):
+            message, mend = (
+                f"a word must be a text of 1 to {_LONGEST_WORD} characters on one line, without "
+                "a double quote",
+                'write such as `values = ["drive", "docking"]`',
+            )
+        elif word in before:
+            message, mend = f"`{word}` stands twice in `values`", "take one out"
+        else:
+            return
+        self._say(Code.BAD_BINDING_FIELD, message, self._last_in(at, word), mend)
+
+    def _check_numbers(self, written: Mapping[str, Any], at: tuple[str, ...]) -> None:
+        words: dict[int, str] = {}
+        for word, number in written.items():
+            place = self.tables.value(*at, word)
+            if not isinstance(number, int) or isinstance(number, bool) or abs(number) >= _EXACT:
+                self._say(
+                    Code.BAD_BINDING_FIELD,
+                    f"the number of `{word}` must be a whole number below 2^53",
+                    place,
+                    f"write the one that the messages have for it: `{as_key(word)} = 4`",
+                )
+            elif number in words:
+                self._say(
+                    Code.BAD_BINDING_FIELD,
+                    f"`{words[number]}` and `{word}` are both {number}",
+                    place,
+                    "give each word a number of its own",
+                )
+            else:
+                words[number] = word
+
+    def _last_in(self, at: tuple[str, ...], word: object) -> Span:
+        """Where a text stands in the value of a field, for the last time; else the whole value."""
+        value = self.tables.value(*at)
+        start = value.text.rfind(word) if isinstance(word, str) and word else -1
+        return value.part(start, start + len(str(word))) if start >= 0 else value
