@@ -8,7 +8,7 @@ from pathlib import Path
 from fretc.audit.plan import Plan
 from fretc.watch.news import Changed, Found, Late, News, RunEnded
 from fretc.watch.recording import Recorder
-from fretc.watch.session import Ended, Jump, Session, State
+from fretc.watch.session import Ended, Jump, Session
 from fretc.watch.sources.source import (
     Arrival,
     Event,
@@ -21,6 +21,7 @@ from fretc.watch.sources.source import (
 )
 from fretish.bindings.amounts import duration
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from monitors.guard import State
 
 MOST_RUNS = 100
 """After so many a clock that is set back again and again is two clocks."""

@@ -246,6 +246,7 @@ class Code(Enum):
     SERVER_STATUS = ("F960", "the server of a robot says that something is wrong")
     CHANNEL_REFUSED = ("F961", "a channel of a server is not watched")
     PUBLISHER_GONE = ("F962", "nobody publishes a topic any more that is watched")
+    NOT_PUBLISHED = ("F963", "the verdicts of a watch cannot be published")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

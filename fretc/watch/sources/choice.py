@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from fretc.watch.sources.dds import Dds
-from fretc.watch.sources.foxglove import Foxglove, address
+from fretc.watch.sources.foxglove import Foxglove
+from fretc.watch.sources.foxglove_protocol import address
 from fretc.watch.sources.log import Log
 from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import Source

@@ -1,9 +1,12 @@
 """`fretc watch ros1` on real ROS 1: what it says is what an audit of its recording says."""
 
+import json
 import signal
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Thread
+from typing import IO, Any
 from xmlrpc.client import ServerProxy
 
 import pytest
@@ -11,8 +14,9 @@ import pytest
 from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import Interrupted, Opened, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code
+from monitors.guard import ERROR, OK
 from tests.fretc.watch.watched import Watched, audited
-from tests.ros1 import Ros, missing, ros, until
+from tests.ros1 import PYTHON, Ros, missing, ros, until
 
 BINDINGS = """
 [clock]
@@ -79,6 +83,57 @@ def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
     assert again.returncode == 1, again.stderr
     assert (tmp_path / "audit.json").read_bytes() == (tmp_path / "live.json").read_bytes()
     assert run.verdicts() == {"GO": "satisfied", "HALT": "violated"}
+
+
+_READER = """
+import json, sys
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+
+def take(message):
+    of = [(s.level, s.name, {v.key: v.value for v in s.values}) for s in message.status]
+    print(json.dumps([message.header.stamp.to_nsec(), of]), flush=True)
+
+rospy.init_node("reader", disable_signals=True)
+rospy.Subscriber("/diagnostics", DiagnosticArray, take)
+sys.stdin.read()
+"""
+
+
+def test_diagnostics_are_read_back_on_the_robot(here: Ros, folder: Path, tmp_path: Path) -> None:
+    """As any node reads them; the levels are those of `monitors/guard.py`."""
+    probe = [PYTHON, "-c", "import diagnostic_msgs.msg"]
+    if subprocess.run(probe, env=here.environment, capture_output=True).returncode:
+        pytest.skip("Debian's python3 has no diagnostic_msgs")
+    here.master()
+    robot = here.world("robot")
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    reader = here.start(PYTHON, "-c", _READER, **pipes)
+    words = ("ros1", "--requirements", "requirements", "--publish", "diagnostics")
+    run = Watched(here.environment, tmp_path, *words)
+    assert reader.stdout is not None
+    try:
+        _until_level(reader.stdout, "GO", OK)
+        robot.ask(True)
+        stamp, found = _until_level(reader.stdout, "HALT", ERROR)
+        assert stamp > 0
+        assert found["HALT"][1]["verdict"] == "violated"
+        assert int(found["sources"][1]["messages of /stop"]) > 0
+        assert run.end() == 1
+    finally:
+        run.close()
+
+
+def _until_level(stream: IO[str], name: str, level: int) -> tuple[int, dict[str, Any]]:
+    """The first message in which a status has this level."""
+    for line in stream:
+        stamp, statuses = json.loads(line)
+        found = {
+            text.removeprefix("fretc watch: "): (its, values) for its, text, values in statuses
+        }
+        if found[name][0] == level:
+            return stamp, found
+    raise AssertionError("the reader has ended")
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGSTOP])
