@@ -20,6 +20,7 @@ from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.program.program import Counter
 from compiler.program.rails import Reading, Ring, rail
+from compiler.signals.functions import Functions, functions
 from compiler.targets.c import signals
 from compiler.targets.c.printer import Printer
 from compiler.targets.comparison_names import comparison_names, in_words
@@ -135,9 +136,34 @@ def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact,
         Artifact(PurePosixPath(f"{name}.{ending}"), text)
         for ending, text in (("c", source), ("h", header))
     )
+    return (*monitor, *signals.files(name, base, rules, printer.names, _reserved_by(rules)))
+
+
+def _reserved_by(rules: Sequence[Formalized]) -> frozenset[str]:
+    """What no name of a signal may be."""
     read = {n for rule in rules if rule.declarations for n in rule.declarations.signals}
-    reserved = _RESERVED | {*filter(_TAKEN.fullmatch, read)}
-    return (*monitor, *signals.files(name, base, rules, printer.names, reserved))
+    return _RESERVED | {*filter(_TAKEN.fullmatch, read)}
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """What a caller of one monitor for all rules names; all names begin with `monitors`."""
+
+    inputs: Mapping[str, str]
+    """Proposition → the member of the inputs."""
+    outcomes: tuple[str, ...]
+    """The member of each rule."""
+    signals: Functions
+    """From samples to the inputs."""
+
+
+@deep
+def joined(rules: Sequence[Formalized]) -> Joined:
+    """Of `emit` with `one_file`, for rules with bindings."""
+    printer = printed("monitors", rules)
+    found = functions(rules, printer.names, signals.LANGUAGE, _reserved_by(rules))
+    assert found is not None, "there are bindings"
+    return Joined(printer.names, tuple(each.prefix for each in printer.rail.readings), found)
 
 
 def printed(name: str, rules: Sequence[Formalized]) -> Printer:

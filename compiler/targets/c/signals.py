@@ -35,7 +35,7 @@ def files(
         names: the monitor's input of each proposition.
         reserved: what no name may be.
     """
-    found = functions(rules, names, _LANGUAGE, reserved)
+    found = functions(rules, names, LANGUAGE, reserved)
     if found is None:
         return ()
     file = file_name(name)
@@ -88,7 +88,7 @@ def _scale(value: Fraction) -> str:
     return ", ".join(map(_double, parts(value)))
 
 
-_LANGUAGE = Language(
+LANGUAGE = Language(
     prefix="fretc_",
     truths={True: "FRETC_TRUE", False: "FRETC_FALSE", None: "FRETC_UNKNOWN"},
     signs={sign: f"FRETC_{name}" for sign, name in _SIGNS.items()},
