@@ -8,6 +8,7 @@ from compiler.logic.claims import Result
 from fretc.verification.c import language as c
 from fretc.verification.c.build import compiler
 from fretc.verification.compiled.text import StrangeTextError
+from fretc.verification.compiled.tools import ToolError, compiled
 from fretc.verification.compiled.verifying import verified
 from fretc.verification.engines.sandbox import Limits
 from tests.compiled_monitors import (
@@ -32,6 +33,11 @@ def test_a_header_of_another_form_is_refused(edit: tuple[str, str]) -> None:
     assert edit[0] in monitor.header
     with pytest.raises(StrangeTextError):
         c.checked(replace(monitor, header=monitor.header.replace(*edit)), [one])
+
+
+def test_a_compiler_that_writes_nothing_is_none() -> None:
+    with pytest.raises(ToolError, match=r"compiles it, and writes no `text\.so`"):
+        compiled("/bin/true", (), {"text.c": ""}, [()], "text.so")
 
 
 @pytest.mark.slow
