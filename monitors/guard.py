@@ -194,24 +194,43 @@ class Guard:
             "ticks that became unknown": judging.ledger.late,
             "clock was set": judging.resets,
         }
-        sources = _status(STALE if wrong else OK, "sources", "; ".join(wrong) or "all come", values)
+        sources = status(STALE if wrong else OK, "sources", "; ".join(wrong) or "all come", values)
         own = [
             [faults[each] for each in topics if faults[each]] for _, topics in self._setting.reads
         ]
         read = zip(self.states(), own, strict=True)
-        return [sources, *(self._status(state, "".join(some[:1])) for state, some in read)]
+        return [
+            sources,
+            *(
+                status_of(state, "".join(some[:1]), violated=state.requirement in self._violated)
+                for state, some in read
+            ),
+        ]
 
-    def _status(self, state: State, fault: str) -> Status:
-        values = {name: value for name, value in state._asdict().items() if name != "requirement"}
-        if state.verdict == "violated" or state.requirement in self._violated:
-            level, message = ERROR, "violated"
-        elif fault:
-            level, message = STALE, fault
-        elif state.owed is not False:
-            level, message = WARN, "a demand is open" if state.owed else "unknown what is owed"
-        else:
-            level, message = OK, "nothing is owed"
-        return _status(level, state.requirement, message, values)
+
+def status_of(state: State, fault: str, *, violated: bool = False) -> Status:
+    """What is said of a requirement: a violation stays an error, whatever else is wrong.
+
+    Args:
+        state: what is known of it.
+        fault: why a topic that it reads cannot be relied on; empty: nothing is wrong.
+        violated: whether it was before, in another run.
+    """
+    values = {name: value for name, value in state._asdict().items() if name != "requirement"}
+    if violated or state.verdict == "violated":
+        level, message = ERROR, "violated"
+    elif fault:
+        level, message = STALE, fault
+    elif state.owed is not False:
+        level, message = WARN, "a demand is open" if state.owed else "unknown what is owed"
+    else:
+        level, message = OK, "nothing is owed"
+    return status(level, state.requirement, message, values)
+
+
+def status(level: int, name: str, message: str, values: Mapping[str, object]) -> Status:
+    """With its values as texts."""
+    return Status(level, name, message, tuple((key, str(value)) for key, value in values.items()))
 
 
 LONGEST = 3600.0
@@ -228,10 +247,6 @@ def bounded(name: str, value: float, least: float, most: float) -> float:
     if not is_number or not least <= value <= most:
         raise ValueError(f"{name} is from {least:g} to {most:g} s, not {value!r}")
     return float(value)
-
-
-def _status(level: int, name: str, message: str, values: Mapping[str, object]) -> Status:
-    return Status(level, name, message, tuple((key, str(value)) for key, value in values.items()))
 
 
 # What middlewares have in common -----------------------------------------------------------------

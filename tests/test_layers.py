@@ -37,7 +37,7 @@ fretc.report.sections  fretc.report.front
 fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
 simulation.world  simulation.nodes  simulation
 fretc.play  fretc.terminal  fretc.campaigns  fretc.testing.staging
-fretc.watch.sources  fretc.watch  fretc.api  fretc.commands  fretc
+fretc.watch.sources  fretc.watch  fretc.watch.publishing  fretc.api  fretc.commands  fretc
 """.split()
 ROOMS = {package.partition(".")[0] for package in ORDER}
 NOT = {  # what stands above, and is still not to be known
@@ -85,6 +85,7 @@ DOORS = {
     "msgspec": {"compiler/files/records.py"},
     "rosbags": {
         "fretc/logs/messages/idl.py",
+        "fretc/logs/messages/ros2_types.py",
         "fretc/logs/storage/bags.py",
         "fretc/testing/staging/messages.py",
         "simulation/nodes/messages.py",
@@ -128,7 +129,9 @@ DOORS = {
     "zlib_ng": {"fretc/logs/mcap/container.py"},
     "lz4": {"fretc/logs/mcap/container.py"},
     "wcwidth": {"fretc/terminal/screen.py"},
+    "cyclonedds": {"fretc/watch/sources/dds_domain.py", "fretc/watch/sources/dds_types.py"},
     "websockets": {"fretc/watch/sources/foxglove.py"},
+    "foxglove": {"fretc/watch/publishing/foxglove_server.py"},
     "click": CLICK,
 }
 """Each library, and the modules that import it."""

@@ -19,6 +19,7 @@ from fretc.terminal.output import (
     protect,
     say_also,
     say_briefly,
+    say_line,
     stop,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
@@ -29,12 +30,14 @@ if TYPE_CHECKING:
     from compiler.project.folder import Project
     from fretc.audit.plan import Plan
     from fretc.watch.news import RunEnded
+    from fretc.watch.publishing.publishing import Publisher
+    from fretc.watch.sources.source import Source
 
 _WATCH = {
     "Judged by": ("requirements", "bindings"),
     "What is watched": ("follow",),
     "Printed and written": ("form", "record", "evidence"),
-    "Done meanwhile": ("command",),
+    "Done meanwhile": ("publish", "command"),
 }
 
 
@@ -60,6 +63,13 @@ _WATCH = {
     help="At the end write what `fretc audit` says of the recording. Needs --record.",
 )
 @click.option(
+    "--publish",
+    multiple=True,
+    metavar="WHERE",
+    help="`diagnostics`: on /diagnostics of the robot. `foxglove[:PORT]`: a Foxglove server with "
+    "the robot's topics and the states of requirements. May be given twice.",
+)
+@click.option(
     "--on-violation",
     "command",
     metavar="CMD",
@@ -73,19 +83,21 @@ def watch(
     form: str,
     record: str | None,
     evidence: str | None,
+    publish: tuple[str, ...],
     command: str | None,
 ) -> None:
     """Watch a running robot by all requirements, until Ctrl-C.
 
-    SOURCE is `ros1`: the robot of the ROS 1 master that ROS_MASTER_URI names; `foxglove
-    ws://HOST:PORT`: a Foxglove server, as foxglove_bridge is one; or an MCAP file; with --follow,
-    one that is being recorded.
+    SOURCE is `dds`: the ROS 2 robot in the domain of ROS_DOMAIN_ID; `ros1`: the robot of the ROS 1
+    master that ROS_MASTER_URI names; `foxglove ws://HOST:PORT`: a Foxglove server, as
+    foxglove_bridge is one; or an MCAP file; with --follow, one that is being recorded.
 
     Verdicts are those that an audit gives of the recording. Exit status: 0 all satisfied, 1 a
     violation, 2 bad use or bad input, 3 something is not shown.
     """
     from fretc.commands import notify
     from fretc.commands.watch_output import outputs_of, until_stopped, watched
+    from fretc.watch.publishing.publishing import Publishing
     from fretc.watch.reaction import Reaction
     from fretc.watch.sources.choice import chosen
     from fretc.watch.watch import Watch
@@ -101,6 +113,11 @@ def watch(
     protect(outputs, [*inputs, *words])
     if record == evidence and record is not None:
         stop(not_written(record, "two outputs would go there"))
+    if record == "-":
+        stop(not_written(record, "a recording is a file"))
+    if evidence is not None and Path(evidence).is_dir():  # not after a night of watching
+        stop(not_written(evidence, "there is a directory of that name"))
+    publishers = _opened(publish, source)
     try:
         run = Watch(plan, Path(record) if record is not None else None)
     except OSError as error:
@@ -108,11 +125,25 @@ def watch(
     titles = {rule.id: rule.requirement.title for rule in project.rules}
     shown = outputs_of(form, titles)
     with until_stopped() as stopped:
-        watched(run, source, shown, reaction, stopped)
+        watched(run, source, shown, reaction, Publishing(publishers), stopped)
     status = BAD if run.failed else _status(run.runs)
     if evidence is not None:
         status = max(status, _audited(plan, run.recordings, evidence, inputs, project))
     raise SystemExit(BAD if plan.refused or has_errors(project.diagnostics) else status)
+
+
+def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
+    """Where verdicts go; where a server is, is said."""
+    if not words:
+        return ()
+    from fretc.watch.publishing.choice import addresses, chosen
+
+    publishers = chosen(words, source)
+    if isinstance(publishers, Diagnostic):
+        stop(publishers)
+    for address in addresses(publishers):
+        say_line(f"publishes at {address}: open it in Foxglove")
+    return publishers
 
 
 def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Sequence[str]]:

@@ -18,6 +18,7 @@ from fretc.terminal.output import coloured, painted, say
 from fretc.terminal.screen import screen
 from fretc.watch.json_lines import line as json_line
 from fretc.watch.news import Changed, Found, News
+from fretc.watch.publishing.publishing import Publishing
 from fretc.watch.reaction import Reaction
 from fretc.watch.session import Session
 from fretc.watch.sources.source import Source
@@ -148,18 +149,39 @@ def until_stopped() -> Iterator[Flag]:
 
 
 def watched(
-    watch: Watch, source: Source, output: Output, reaction: Reaction | None, stopped: Flag
+    watch: Watch,
+    source: Source,
+    output: Output,
+    reaction: Reaction | None,
+    publishing: Publishing,
+    stopped: Flag,
 ) -> None:
     """Watch until the source ends or the user stops it; the recording is whole afterwards.
 
     Raises:
         OSError: nobody reads any more what is shown.
     """
+    try:
+        _watched(watch, source, output, reaction, publishing, stopped)
+    finally:
+        if reaction is not None:
+            reaction.end()
+
+
+def _watched(
+    watch: Watch,
+    source: Source,
+    output: Output,
+    reaction: Reaction | None,
+    publishing: Publishing,
+    stopped: Flag,
+) -> None:
     broken: OSError | None = None
     try:
         for item in source.arrivals(watch.topics):
             for news in watch.take(item):
                 _tell(news, watch, output, reaction)
+            publishing.take(item, watch)
             if reaction is not None:
                 for problem in reaction.problems():
                     output.tell(Found(problem), watch.session)
@@ -173,6 +195,7 @@ def watched(
         for news in watch.finish():
             with suppress(OSError) if broken is not None else _through():
                 _tell(news, watch, output, reaction)
+        publishing.end(watch)
     if broken is not None:
         raise broken
     output.end(watch.session)

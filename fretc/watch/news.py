@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from fretc.watch.session import State
 from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
 from fretish.diagnostics.diagnostic import Diagnostic
+from monitors.guard import State
 
 
 @dataclass(frozen=True, slots=True)

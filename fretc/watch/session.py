@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from fretc.audit.plan import Plan
 from fretc.logs.signals.samples import Gap
@@ -18,27 +19,9 @@ from fretc.watch.judging import Judges
 from fretc.watch.sources.source import Arrival
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
+from monitors.guard import State
 from monitors.kernel.verdicts import Truth
 from monitors.ticking import Ledger, is_jump
-
-
-@dataclass(frozen=True, slots=True)
-class State:
-    """What is known of a requirement now; a change of it is news."""
-
-    requirement: str
-    verdict: str
-    """If the run ended now."""
-    owed: Truth
-    """Whether a demand is open that the robot must meet now: it stops unless this is False."""
-    triggered_ns: int | None
-    """The last tick that has triggered it for certain."""
-    open_ns: int | None
-    """The trigger of the demand that is open for certain."""
-    deadline_ns: int | None
-    """The last tick at which that can be met; None: there is no deadline, or none in time."""
-    violated_ns: int | None
-    """The first tick at which it was violated for certain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,11 +83,22 @@ class Session:
         self._missed: list[Gap] = []
         self._gap_from: int | None = None
         """The latest time before messages were missed, until another one comes."""
-        self._interrupted = False
+        self.interrupted = False
+        """Whether the source is gone."""
         self._ahead: tuple[Truth, ...] | None = None
         self.topics = {name: Topic() for name in sorted(self._decoder.topics)}
         self.problems: list[Diagnostic] = []
         """What is wrong with the messages of a topic, each once."""
+
+    @cached_property
+    def reads(self) -> Mapping[str, tuple[str, ...]]:
+        """Of each requirement the topics on which it depends."""
+        of, found = self._plan.declarations, {}
+        for monitor in self._judges.monitors:
+            names = {n for each in monitor.PROPOSITIONS for n in of.propositions[each].signals}
+            topics = {of.signals[name].path.topic for name in names}
+            found[monitor.REQUIREMENTS[0].id] = tuple(sorted(topics))
+        return found
 
     @property
     def missed(self) -> tuple[Gap, ...]:
@@ -188,7 +182,7 @@ class Session:
     def _take(self, message: Timed) -> None:
         self._latest[message.topic] = max(message.time, self._latest.get(message.topic, 0))
         self._now = max(self._now, message.time)
-        if self._gap_from is not None and not self._interrupted:
+        if self._gap_from is not None and not self.interrupted:
             before, self._gap_from = self._gap_from, None
             self._withdraw(self._stream.miss(min(before, message.time), max(before, message.time)))
         self._withdraw(
@@ -202,7 +196,7 @@ class Session:
 
     def interrupt(self) -> None:
         """The source is gone: no tick is judged until `miss` says what was lost."""
-        self._interrupted = True
+        self.interrupted = True
         self._gap_from = self._gap_from or self._now or None
 
     def miss(self, since: int, until: int) -> None:
@@ -210,7 +204,7 @@ class Session:
 
         By stamps, the messages around them tell which times that are.
         """
-        self._interrupted, self._ahead = False, None
+        self.interrupted, self._ahead = False, None
         if self._missed and since <= self._missed[-1][1]:
             before = self._missed.pop()
             since, until = min(since, before[0]), max(until, before[1])
@@ -227,7 +221,7 @@ class Session:
         return self._pass(self._received - self._patience) if self._now else None
 
     def _pass(self, time: int) -> Diagnostic | None:
-        if self._interrupted:
+        if self.interrupted:
             return None
         found = self._stream.until(max(time, 0))
         if isinstance(found, Diagnostic):
@@ -251,7 +245,7 @@ class Session:
             rows = [tick.truth for tick in self._stream.glance(max(self._now, self._time_passed))]
             self._ahead = judges.owed(rows)
         owed = self._ahead if ahead and self._ahead is not None else judges.owed()
-        owed = (None,) * len(owed) if self._interrupted else owed
+        owed = (None,) * len(owed) if self.interrupted else owed
         read = zip(judges.standings(), owed, judges.last_triggers(), strict=True)
         return tuple(
             State(

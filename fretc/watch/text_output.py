@@ -9,9 +9,10 @@ from fretc.audit.evidence.verdicts import VERDICTS
 from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded, titled, width
 from fretc.watch.news import Changed, Found, Late, News, RunEnded
-from fretc.watch.session import Session, State
+from fretc.watch.session import Session
 from fretc.watch.sources.source import Interrupted, Missed, Opened, Reconnected
 from fretish.bindings.amounts import duration, seconds
+from monitors.guard import State
 from monitors.kernel.verdicts import Truth
 
 _S = 10**9

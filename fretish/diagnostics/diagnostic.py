@@ -241,8 +241,12 @@ class Code(Enum):
     ROBOT_NOT_REACHED = ("F955", "the robot that is to be watched cannot be reached")
     SEVERAL_PUBLISHERS = ("F956", "several nodes publish a topic that is watched")
     SIMULATED_TIME = ("F957", "a robot that is watched has a simulated clock")
+    NO_DEFINITION = ("F958", "nothing says what is in the messages of a topic that is watched")
+    PUBLISHER_NOT_READ = ("F959", "a publisher of a topic that is watched cannot be read")
     SERVER_STATUS = ("F960", "the server of a robot says that something is wrong")
     CHANNEL_REFUSED = ("F961", "a channel of a server is not watched")
+    PUBLISHER_GONE = ("F962", "nobody publishes a topic any more that is watched")
+    NOT_PUBLISHED = ("F963", "the verdicts of a watch cannot be published")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property

@@ -13,7 +13,16 @@ from tests.each import each
 ROOT = Path(__file__).parents[2]
 R1 = "requirements/r1.fret"
 LOG = "traces/mission-seed15.mcap"
-ALWAYS = {"asyncio", "dask", "duckdb", "importlib.metadata", "matplotlib", "mujoco", "numpy.ma"}
+ALWAYS = {
+    "asyncio",
+    "cyclonedds",
+    "dask",
+    "duckdb",
+    "importlib.metadata",
+    "matplotlib",
+    "mujoco",
+    "numpy.ma",
+}
 ALWAYS |= {"foxglove", "pyarrow", "rosbags", "scipy", "spot", "websockets", "xml", "z3", "zipfile"}
 TEXTS = ALWAYS | {"mcap", "multiprocessing", "numpy", "socket", "subprocess", "zstandard"}
 HELP = TEXTS | {"jinja2", "lark", "tomllib"}

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import bz2
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -22,6 +22,7 @@ from mcap.records import Channel, Schema
 from fretc.logs.mcap.container import BrokenError, Stream, largest, unpacked_lz4
 from fretc.logs.mcap.damage import LATEST, Damage
 from fretc.logs.mcap.messages import Sink
+from fretc.logs.messages.ros2_types import standard
 from fretc.logs.signals.samples import Gap
 from fretc.logs.storage import storage_diagnostics
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -284,53 +285,11 @@ class _Way:
         name, kind, text = connection.msgtype, connection.msgdef.format, connection.msgdef.data
         encoding = {"MSG": "ros1msg" if self._bag else "ros2msg", "IDL": "ros2idl"}.get(kind.name)
         if encoding is None:
-            encoding, standard = "ros2msg", _standard(name)
-            if standard is None:
+            encoding, own = "ros2msg", standard(name)
+            if own is None:
                 return None
-            text = standard
+            text = own
             self.assumed.append(name)
         if self._bag:
             name = name.replace("/msg/", "/")
         return Schema(connection.id, text.encode(), encoding, name)
-
-
-# Definitions that bags of older releases leave out
-
-
-def _standard(name: str) -> str | None:
-    """The definition of a type of ROS 2's own, if it is the same in all its releases."""
-    stores = [store for store in _stores() if name in store.fielddefs]
-    kinds = {repr(sorted(_closure(store.fielddefs, name).items())) for store in stores}
-    if len(kinds) != 1:
-        return None
-    text, _ = stores[-1].generate_msgdef(name, ros_version=2)
-    return str(text)
-
-
-@cache
-def _stores() -> tuple[Any, ...]:
-    from rosbags.typesys import Stores, get_typestore
-
-    return tuple(get_typestore(store) for store in Stores if store.name.startswith("ROS2_"))
-
-
-def _closure(fields: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """The fields of a type, and of all types in it."""
-    closure: dict[str, Any] = {}
-    queue = [name]
-    while queue:
-        name_ = queue.pop()
-        if name_ in closure or name_ not in fields:
-            continue
-        closure[name_] = fields[name_][1]
-        queue += [part for _, kind in fields[name_][1] for part in _names(kind)]
-    return closure
-
-
-def _names(kind: Any) -> Iterator[str]:
-    """The types that a field is made of."""
-    node, inner = kind
-    while not isinstance(inner, str) and not isinstance(inner[0], str):
-        node, inner = inner[0]
-    if node.name == "NAME":
-        yield inner

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from fretc.watch.sources.foxglove import Foxglove, address
+from fretc.watch.sources.dds import Dds
+from fretc.watch.sources.foxglove import Foxglove
+from fretc.watch.sources.foxglove_protocol import address
 from fretc.watch.sources.log import Log
 from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import Source
@@ -35,6 +37,10 @@ def _ros1(more: Sequence[str]) -> Source | Diagnostic:
     return _one_name_too_many(more[0]) if more else Ros1()
 
 
+def _dds(more: Sequence[str]) -> Source | Diagnostic:
+    return _one_name_too_many(more[0]) if more else Dds()
+
+
 def _foxglove(more: Sequence[str]) -> Source | Diagnostic:
     if len(more) > 1:
         return _one_name_too_many(more[1])
@@ -44,6 +50,7 @@ def _foxglove(more: Sequence[str]) -> Source | Diagnostic:
 
 _MIDDLEWARE: Mapping[str, Callable[[Sequence[str]], Source | Diagnostic]] = {
     "ros1": _ros1,
+    "dds": _dds,
     "foxglove": _foxglove,
 }
 """Of each name what the words behind it mean."""

@@ -7,6 +7,7 @@ longer, and a connection on which something else is said than the protocol allow
 from __future__ import annotations
 
 import logging
+import re
 import socket
 import time
 from contextlib import closing
@@ -14,7 +15,7 @@ from dataclasses import dataclass, field
 from ssl import SSLCertVerificationError, SSLError
 from threading import Event as Flag
 from typing import TYPE_CHECKING, assert_never
-from urllib.parse import SplitResult, urlsplit
+from urllib.parse import SplitResult
 
 from compiler.files.checked_json import MisshapenError
 from fretc.logs.storage.storage_diagnostics import install
@@ -55,6 +56,10 @@ _WAITING = 4
 """Frames that wait in the library."""
 _EXCERPT = 300
 """Characters of a server's words that are shown."""
+_AGAIN = 0.1
+"""Seconds after which a channel is asked for again that the server did not know yet."""
+_MOST_TRIES = 6
+"""Times that it is; each pause is twice the one before."""
 _TOO_BIG = 1009
 """The code with which a connection is closed on which too large a message has come."""
 
@@ -75,8 +80,14 @@ class _Connection:
     """Of each id of the server the subscription."""
     count: int = 0
     """Of all subscriptions so far."""
-    is_useful: bool = False
-    """Whether a message has come."""
+    heard: set[int] = field(default_factory=set)
+    """Subscriptions of which a message has come."""
+    subscribed_at: float = 0.0
+    """When the last channel was asked for, by the monotonic clock."""
+    tries: dict[int, int] = field(default_factory=dict)
+    """Of ids of the server how often they were asked for again."""
+    again: dict[int, float] = field(default_factory=dict)
+    """When that is to be done."""
     answer: Flag | None = None
     """Set when the server has answered to the last ping; None: it has."""
     asked: int = 0
@@ -88,21 +99,31 @@ class _Connection:
         """Ask the server for an answer to everything that was sent to it."""
         self.answer, self.asked, self.asked_at = self.socket.ping(), now, time.monotonic()
 
+    def subscribe(self, id: int, now: int) -> None:
+        """Ask for a channel, by the id of the server."""
+        self.socket.send(subscribe(self.of_channel[id], id))
+        self.subscribed_at = time.monotonic()
+        self.ping(now)
+
+    def is_unknown_yet(self, text: str) -> bool:
+        """Whether the server complains of a channel that it has advertised itself.
+
+        The SDK advertises a channel a little before it takes subscriptions to it. So it is asked
+        for again, by the same number: where there is a subscription, that changes nothing.
+        """
+        ids = {int(word) for word in re.findall(r"\d{1,10}", text)} & self.of_channel.keys()
+        new = {id for id in ids if self.of_channel[id] not in self.heard}
+        found = {id for id in new if self.tries.get(id, 0) < _MOST_TRIES}
+        for id in found - self.again.keys():
+            pause = _AGAIN * 2 ** self.tries.get(id, 0)
+            self.tries[id] = self.tries.get(id, 0) + 1
+            self.again[id] = time.monotonic() + pause
+        return bool(found)
+
     @property
     def subscribed(self) -> set[str]:
         """The topics that it sends."""
         return {channel.topic for channel in self.subscriptions.values()}
-
-
-def address(url: str) -> SplitResult | Diagnostic:
-    """The parts of the URL of a server, or what is wrong with it."""
-    try:
-        parts = urlsplit(url)
-        is_named = parts.scheme in ("ws", "wss") and parts.hostname and parts.port != 0
-    except ValueError:
-        return _no_url(url)
-    is_plain = url.isascii() and url.isprintable() and " " not in url and not parts.fragment
-    return parts if is_named and is_plain else _no_url(url)
 
 
 class Foxglove(Middleware):
@@ -150,7 +171,7 @@ class Foxglove(Middleware):
                 self._converse(connection)
         except (OSError, EOFError, ValueError, WebSocketException, _GoneError) as error:
             self._lost(_server_not_reached(self.name, *_reason(error)))
-        return connection is not None and connection.is_useful
+        return connection is not None and bool(connection.heard)
 
     def _socket(self) -> socket.socket:
         """A connection that breaks off, too, where the server takes nothing any more."""
@@ -188,6 +209,10 @@ class Foxglove(Middleware):
     def _look(self, connection: _Connection) -> None:
         """Whether the server answers, and has all that it has had before."""
         now = time.monotonic()
+        for id in [id for id, due in connection.again.items() if due <= now]:
+            del connection.again[id]
+            if id in connection.of_channel:
+                connection.subscribe(id, self._mailbox.now)
         if connection.answer is not None:
             if connection.answer.is_set():
                 connection.answer = None
@@ -197,7 +222,9 @@ class Foxglove(Middleware):
         elif now - connection.asked_at > _PING:
             connection.ping(self._mailbox.now)
         if self._is_lost:
-            is_whole = connection.answer is None and self._topics <= connection.subscribed
+            is_answered = connection.answer is None and not connection.again
+            is_answered &= now - connection.subscribed_at > _AGAIN
+            is_whole = is_answered and self._topics <= connection.subscribed
             if is_whole or now - connection.opened > PATIENCE:
                 self._opened(self.name)
 
@@ -206,7 +233,7 @@ class Foxglove(Middleware):
             case Data(subscription, time, payload):
                 channel = connection.subscriptions.get(subscription)
                 if channel is not None:
-                    connection.is_useful = True
+                    connection.heard.add(subscription)
                     self._put(channel, payload, time)
             case Advertisement(channels):
                 for advertised in channels:
@@ -215,7 +242,7 @@ class Foxglove(Middleware):
                 for id in ids:
                     self._withdraw(connection, id)
             case Status(is_grave, text):
-                if is_grave:
+                if is_grave and not connection.is_unknown_yet(text[:_EXCERPT]):
                     self._repeat(text)
             case ServerTime():
                 self._warn_once(simulated_time())
@@ -247,8 +274,7 @@ class Foxglove(Middleware):
         connection.of_channel[advertised.id] = connection.count
         connection.subscriptions[connection.count] = channel
         self._topics.add(channel.topic)
-        connection.socket.send(subscribe(connection.count, advertised.id))
-        connection.ping(self._mailbox.now)
+        connection.subscribe(advertised.id, self._mailbox.now)
 
     def _withdraw(self, connection: _Connection, id: int) -> None:
         subscription = connection.of_channel.pop(id, None)
@@ -305,14 +331,6 @@ def _reason(error: Exception) -> tuple[str, str | None]:
             return "the connection has broken off", None
         case _:
             return str(error)[:_EXCERPT], None
-
-
-def _no_url(text: str) -> Diagnostic:
-    return Diagnostic(
-        Code.BAD_USAGE,
-        f"`{text}` is no URL of a Foxglove server",
-        help="write `ws://HOST:PORT`, or `wss://HOST:PORT`; foxglove_bridge has port 8765",
-    )
 
 
 def _no_websockets(why: str) -> Diagnostic:

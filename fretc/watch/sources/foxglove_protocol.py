@@ -14,10 +14,12 @@ import struct
 from base64 import b64decode
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from urllib.parse import SplitResult, urlsplit
 
 from compiler.files.checked_json import MisshapenError, Shape
 from compiler.files.checked_json import plain as json_value
 from fretc.watch.sources.source import Channel
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 SUBPROTOCOLS = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 """The names of the protocol, which is the same: of the SDK, and of servers before it."""
@@ -165,3 +167,22 @@ def subscribe(subscription: int, channel: int) -> str:
 def unsubscribe(subscription: int) -> str:
     """The message that ends a subscription."""
     return json.dumps({"op": "unsubscribe", "subscriptionIds": [subscription]})
+
+
+def address(url: str) -> SplitResult | Diagnostic:
+    """The parts of the URL of a server, or what is wrong with it."""
+    try:
+        parts = urlsplit(url)
+        is_named = parts.scheme in ("ws", "wss") and parts.hostname and parts.port != 0
+    except ValueError:
+        return _no_url(url)
+    is_plain = url.isascii() and url.isprintable() and " " not in url and not parts.fragment
+    return parts if is_named and is_plain else _no_url(url)
+
+
+def _no_url(text: str) -> Diagnostic:
+    return Diagnostic(
+        Code.BAD_USAGE,
+        f"`{text}` is no URL of a Foxglove server",
+        help="write `ws://HOST:PORT`, or `wss://HOST:PORT`; foxglove_bridge has port 8765",
+    )

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from threading import Lock
 from typing import IO, Any
@@ -18,6 +18,7 @@ from fretc.watch.sources import ros1_bridge
 from fretc.watch.sources.middleware import Middleware, simulated_time
 from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from monitors.guard import Status
 
 PYTHON = "/usr/bin/python3"
 """Debian's and Ubuntu's, for which ROS is packaged."""
@@ -34,6 +35,18 @@ class Ros1(Middleware):
         self._node: subprocess.Popen[bytes] | None = None
         self._several: set[str] = set()
         self._simulated = False
+        self._statuses: Sequence[Status] | None = None
+        """What is to be published; None: nothing ever is."""
+        self._is_mute = False
+        """Whether the node cannot publish."""
+
+    def diagnose(self, statuses: Sequence[Status]) -> None:
+        """Hand them on with the next sign of life of the node, which comes twice a second."""
+        self._statuses = statuses
+
+    @property
+    def _diagnoses(self) -> bool:
+        return self._statuses is not None and not self._is_mute
 
     def close(self) -> None:
         """End the node."""
@@ -58,11 +71,13 @@ class Ros1(Middleware):
         try:
             with node:
                 try:
-                    node.stdin.write(json.dumps(topics).encode() + b"\n")
-                    node.stdin.flush()
+                    asked = {"topics": topics, "diagnoses": self._diagnoses}
+                    _write(node.stdin, asked)
                     for head, payload in _frames(node.stdout):
                         opened |= head["kind"] == "opened"
                         self._take(head, payload, channels)
+                        if head["kind"] == "alive" and self._diagnoses and self._statuses:
+                            _write(node.stdin, self._statuses)
                 finally:
                     node.kill()
         except OSError:
@@ -100,6 +115,9 @@ class Ros1(Middleware):
                 self._count_publishers(head["publishers"])
             case "simulated time":
                 self._warn_of_simulated_time()
+            case "no diagnostics":
+                self._warn(_no_diagnostics(self._python, head["why"]))
+                self._is_mute = True
             case "no master":
                 self._lost(_no_master(head["uri"]))
             case "no rospy":
@@ -119,6 +137,12 @@ class Ros1(Middleware):
             self._warn(simulated_time())
 
 
+def _write(stream: IO[bytes], content: object) -> None:
+    """A line of JSON; a status is an array."""
+    stream.write(json.dumps(content).encode() + b"\n")
+    stream.flush()
+
+
 def _frames(stream: IO[bytes]) -> Iterator[tuple[dict[str, Any], bytes]]:
     """All that are whole."""
     lengths = ros1_bridge.LENGTHS
@@ -135,6 +159,14 @@ def _no_rospy(python: str, why: str) -> Diagnostic:
         Code.MISSING_EXTRA,
         f"ROS 1 is watched by rospy, which `{python}` does not have: {why}",
         help="apt install python3-rospy",
+    )
+
+
+def _no_diagnostics(python: str, why: str) -> Diagnostic:
+    return Diagnostic(
+        Code.NOT_PUBLISHED,
+        f"nothing is published on `/diagnostics`: `{python}` does not have its type: {why}",
+        help="apt install python3-diagnostic-msgs",
     )
 
 

@@ -1,7 +1,9 @@
 """A node of ROS 1 that hands every message on as bytes; a program of its own.
 
 It runs under the Python that knows rospy, which may be older than fretc's, and imports nothing of
-fretc. Standard input: a list of topics, as one line of JSON; when it ends, so does the node.
+fretc. Standard input: lines of JSON, first the topics and whether something is published, then what
+goes to `/diagnostics`: of each status level, name, message, keys with values. When it ends, so does
+the node.
 Standard output: frames, each two lengths of 4 bytes (little-endian), a head as JSON, and a payload.
 """
 
@@ -9,6 +11,7 @@ from __future__ import annotations
 
 import json
 import os
+import queue
 import struct
 import sys
 import threading
@@ -55,8 +58,10 @@ def _main() -> None:
     del sys.path[0]  # this folder: its modules have common names
     frames = _Frames(os.fdopen(os.dup(1), "wb"))
     os.dup2(2, 1)  # rospy prints its log
-    topics = json.loads(sys.stdin.readline())
-    threading.Thread(target=_end_with_input, daemon=True).start()
+    asked = json.loads(sys.stdin.readline())
+    topics = asked["topics"]
+    diagnoses: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    threading.Thread(target=_read, args=(diagnoses,), daemon=True).start()
     try:
         import rosgraph
         import rospy
@@ -73,6 +78,8 @@ def _main() -> None:
     rospy.init_node("fretc_watch", anonymous=True, disable_signals=True)
     subscribers = {topic: _subscribe(rospy, frames, topic) for topic in topics}
     _connect(master, subscribers)
+    if asked["diagnoses"]:
+        _publish(rospy, frames, diagnoses)
     frames.send({"kind": "opened", "uri": uri})
     if rospy.get_param("/use_sim_time", False):
         frames.send({"kind": "simulated time"})
@@ -142,9 +149,33 @@ def _end_in_silence(master: Any, frames: _Frames, uri: str) -> None:
     threading.Thread(target=look, daemon=True).start()
 
 
-def _end_with_input() -> None:
-    sys.stdin.read()
+def _read(diagnoses: queue.SimpleQueue[Any]) -> None:
+    for line in sys.stdin:
+        diagnoses.put(json.loads(line))
     os._exit(0)
+
+
+def _publish(rospy: Any, frames: _Frames, diagnoses: queue.SimpleQueue[Any]) -> None:
+    """All that comes, from a thread of its own."""
+    try:
+        from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+    except ImportError as error:
+        frames.send({"kind": "no diagnostics", "why": str(error)})
+        return
+    publisher = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=2)
+
+    def run() -> None:
+        while True:
+            message = DiagnosticArray()
+            statuses = diagnoses.get()
+            message.header.stamp = rospy.Time.now()
+            for level, name, text, values in statuses:
+                pairs = [KeyValue(key, value) for key, value in values]
+                name = f"fretc watch: {name}"
+                message.status.append(DiagnosticStatus(level, name, text, "", pairs))
+            publisher.publish(message)
+
+    threading.Thread(target=run, daemon=True).start()
 
 
 if __name__ == "__main__":

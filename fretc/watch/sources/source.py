@@ -6,11 +6,12 @@ very bytes, and the watch decodes them as an audit of the recording does. Times 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from fretish.diagnostics.diagnostic import Diagnostic
+from monitors.guard import Status
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,3 +115,14 @@ class Source(Protocol):
 
     def close(self) -> None:
         """Let it go; the iterator ends. It may be called from any thread, and more than once."""
+
+
+@runtime_checkable
+class Diagnosing(Protocol):
+    """A middleware through which statuses can be published."""
+
+    def diagnose(self, statuses: Sequence[Status]) -> None:
+        """Publish them on `/diagnostics`, soon; of those that wait the latest count.
+
+        It never waits. The first call comes before `arrivals`, with nothing: there will be some.
+        """

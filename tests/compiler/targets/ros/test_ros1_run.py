@@ -19,7 +19,7 @@ from xmlrpc.client import ServerProxy
 import pytest
 
 from compiler.files.text_files import write as deliver
-from tests.fretc.watch.sources.test_ros1 import ROOT, Watched
+from tests.fretc.watch.watched import ROOT, Watched
 from tests.ros1 import PYTHON, Ended, Ros, ended, missing, ros, until
 
 NEAR = 0.4
@@ -184,7 +184,7 @@ def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path) -> None:
     record = here.start("/usr/bin/rosbag", "record", "-O", str(bag), *TOPICS, **quiet)
     interceptor = here.node(made / "scripts/interceptor.py")
     node = here.node(made / "scripts/monitor_node.py")
-    watch = Watched(here, tmp_path, "--requirements", "halt")
+    watch = Watched(here.environment, tmp_path, "ros1", "--requirements", "halt")
     try:
         hearers = {"/record": TOPICS, "/halt_monitor": TOPICS[:2], "/fretc": TOPICS[:2]}
         until("all hear", lambda: all(heard_by(here, n, t) for n, t in hearers.items()), 30)

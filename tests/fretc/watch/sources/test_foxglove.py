@@ -5,11 +5,9 @@ import os
 import signal
 import socket
 import ssl
-import subprocess
 import sys
 from base64 import b64encode
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from ipaddress import ip_address
 from pathlib import Path
@@ -26,12 +24,11 @@ from fretc.commands.watch_output import Lines
 from fretc.watch.news import Found
 from fretc.watch.session import Session
 from fretc.watch.sources import foxglove
-from fretc.watch.sources.foxglove import Foxglove, address
+from fretc.watch.sources.foxglove import Foxglove
+from fretc.watch.sources.foxglove_protocol import address
 from fretc.watch.sources.source import (
     Arrival,
     Channel,
-    Event,
-    Idle,
     Interrupted,
     Opened,
     Problem,
@@ -40,8 +37,9 @@ from fretc.watch.sources.source import (
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.each import each
-from tests.foxglove import GREETING, advertisement, channel, hostile, server
+from tests.foxglove import GREETING, Listened, advertisement, channel, hostile, listened, server
 from tests.fretc.watch.sent import Setting, plan_of
+from tests.fretc.watch.watched import Watched, audited
 from tests.ros1 import until
 
 ROOT = Path(__file__).parents[4]
@@ -52,47 +50,6 @@ LOG = ROOT / "traces/mission-seed15.mcap"
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(foxglove, "PATIENCE", 1.0)
     monkeypatch.setattr(foxglove, "_PING", 0.05)
-
-
-class Listened:
-    """A source, and what it has given."""
-
-    def __init__(self, url: str, *topics: str) -> None:
-        parts = address(url)
-        assert not isinstance(parts, Diagnostic), parts
-        self.source = Foxglove(parts)
-        self.items: list[Arrival | Event] = []
-        self.thread = Thread(target=self._listen, args=(topics or ("/x",),), daemon=True)
-        self.thread.start()
-
-    def _listen(self, topics: tuple[str, ...]) -> None:
-        for item in self.source.arrivals(topics):
-            if not isinstance(item, Idle):
-                self.items.append(item)
-
-    def of(self, kind: type) -> list[Any]:
-        return [item for item in tuple(self.items) if isinstance(item, kind)]
-
-    @property
-    def codes(self) -> list[Code]:
-        return [item.diagnostic.code for item in self.of(Problem)]
-
-    def wait(self, what: str, holds: Callable[[], object]) -> None:
-        try:
-            until(what, holds, 20)
-        except AssertionError as error:
-            raise AssertionError(f"{error}: {self.items[-3:]}") from None
-
-
-@contextmanager
-def listened(url: str, *topics: str) -> Iterator[Listened]:
-    found = Listened(url, *topics)
-    try:
-        yield found
-    finally:
-        found.source.close()
-        found.thread.join(10)
-        assert not found.thread.is_alive()
 
 
 def only_problem(url: str) -> Diagnostic:
@@ -196,49 +153,6 @@ def test_a_server_that_answers_no_more_is_gone() -> None:
     assert "has not answered" in found.of(Interrupted)[0].problem.message
 
 
-class Watched:
-    """`fretc watch foxglove` as a process, and the lines that it has printed."""
-
-    def __init__(self, url: str, folder: Path, *words: str) -> None:
-        command = "from fretc.cli import main; main()"
-        run = [sys.executable, "-c", command, "watch", "foxglove", url, "--format", "jsonl", *words]
-        self.process: subprocess.Popen[str] = subprocess.Popen(
-            run,
-            cwd=folder,
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        self.lines: list[dict[str, Any]] = []
-        self._thread = Thread(target=self._read, daemon=True)
-        self._thread.start()
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            self.lines.append(json.loads(line))
-
-    def has(self, **wanted: object) -> bool:
-        return any(wanted.items() <= line.items() for line in tuple(self.lines))
-
-    def end(self) -> int:
-        """Ctrl-C."""
-        self.process.send_signal(signal.SIGINT)
-        status = self.process.wait(30)
-        self._thread.join(5)
-        return status
-
-    def close(self) -> None:
-        self.process.kill()
-        self.process.wait()
-        self._thread.join(5)
-        assert self.process.stdout is not None
-        assert self.process.stderr is not None
-        self.process.stdout.close()
-        self.process.stderr.close()
-
-
 @pytest.mark.slow
 def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
     tmp_path: Path,
@@ -246,31 +160,21 @@ def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
     """A part of a mission, in real time: a stop, and the robot that stands."""
     requirements = ["--requirements", str(ROOT / "requirements/r1.fret")]
     with server() as robot:
-        run = Watched(
-            robot.url, tmp_path, *requirements, "--record", "run.mcap", "--evidence", "live.json"
-        )
+        words = ("--record", "run.mcap", "--evidence", "live.json")
+        run = Watched(os.environ, tmp_path, "foxglove", robot.url, *requirements, *words)
         try:
-            until("it is opened", lambda: run.has(type="opened"), 30)
+            opened = {"type": "opened", "source": robot.url}
+            until("it is opened", lambda: opened in run.lines, 30)
             robot.ask("play", part=[str(LOG), 5.0, 6.5])
             until("it was triggered", lambda: any(line.get("triggered_ns") for line in run.lines))
             status = run.end()
         finally:
             run.close()
-    audit = [sys.executable, "-c", "from fretc.cli import main; main()", "audit", "run.mcap"]
-    done = subprocess.run(
-        [*audit, *requirements, "-o", "audit.json"],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        check=False,
-        capture_output=True,
-    )
-    assert done.returncode == status, (done.stderr, run.lines)
-    evidence = json.loads((tmp_path / "audit.json").read_text())
+    again = audited(tmp_path, "run.mcap", *requirements, "-o", "audit.json")
+    assert again.returncode == status, (again.stderr, run.lines)
     assert (tmp_path / "audit.json").read_bytes() == (tmp_path / "live.json").read_bytes()
-    (ended,) = [line for line in run.lines if line["type"] == "run"]
-    (result,) = evidence["results"]
-    assert ended["verdicts"] == {"R1": result["verdict"]}
-    assert ended["ticks"] > 10
+    (result,) = json.loads((tmp_path / "audit.json").read_text())["results"]
+    assert run.verdicts() == {"R1": result["verdict"]}
     assert result["triggers"]
 
 
@@ -424,6 +328,30 @@ def test_a_channel_that_becomes_another_one_is_subscribed_anew() -> None:
     assert [request["op"] for request in requests] == ["subscribe", "unsubscribe", "subscribe"]
     assert requests[1]["subscriptionIds"] == [1]
     assert [each.channel.schema_name for each in found.of(Arrival)] == ["B"]
+
+
+def test_a_channel_that_the_server_does_not_know_yet_is_asked_for_again() -> None:
+    """The SDK advertises a channel a moment before it takes subscriptions to it."""
+    requests: list[dict[str, Any]] = []
+    unknown = json.dumps({"op": "status", "level": 2, "message": "Unknown channel ID: 44"})
+
+    def late(connection: ServerConnection) -> None:
+        connection.send(GREETING)
+        connection.send(advertisement(channel(44)))
+        for _ in range(3):
+            requests.append(json.loads(connection.recv()))
+            connection.send(unknown)
+        requests.append(json.loads(connection.recv()))
+        connection.send(SENT_TO_US)
+        connection.send(unknown)
+        silent(connection)
+
+    with hostile(late) as url, listened(url) as found:
+        found.wait("the message comes", lambda: found.of(Arrival))
+        found.wait("now it is told", lambda: found.codes)
+    assert len(requests) == 4
+    assert all(request == requests[0] for request in requests)
+    assert found.codes == [Code.SERVER_STATUS]
 
 
 @each("encoding", ["odd", "cdr", "protobuf", "ros1"])

@@ -3,11 +3,10 @@
 import json
 import signal
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Thread
-from typing import Any
+from typing import IO, Any
 from xmlrpc.client import ServerProxy
 
 import pytest
@@ -15,9 +14,10 @@ import pytest
 from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import Interrupted, Opened, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code
-from tests.ros1 import Ros, missing, ros, until
+from monitors.guard import ERROR, OK
+from tests.fretc.watch.watched import Watched, audited
+from tests.ros1 import PYTHON, Ros, missing, ros, until
 
-ROOT = Path(__file__).parents[4]
 BINDINGS = """
 [clock]
 tick = "50 ms"
@@ -50,52 +50,6 @@ def here(tmp_path: Path) -> Iterator[Ros]:
         yield place
 
 
-class Watched:
-    """`fretc`, and the lines that it has printed."""
-
-    def __init__(self, here: Ros, folder: Path, *words: str) -> None:
-        command = "from fretc.cli import main; main()"
-        run = [sys.executable, "-c", command, "watch", "ros1", "--format", "jsonl", *words]
-        self.process: subprocess.Popen[str] = subprocess.Popen(
-            run,
-            cwd=folder,
-            env={**here.environment, "PYTHONPATH": str(ROOT)},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            text=True,
-        )
-        self.lines: list[dict[str, Any]] = []
-        self._thread = Thread(target=self._read, daemon=True)
-        self._thread.start()
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        self.lines.extend(json.loads(line) for line in self.process.stdout)
-
-    def verdict(self, requirement: str) -> str | None:
-        """The last that was said."""
-        found = [line for line in self.lines if line.get("requirement") == requirement]
-        return found[-1]["verdict"] if found else None
-
-    def codes(self) -> set[str]:
-        return {line["code"] for line in self.lines if "code" in line}
-
-    def end(self) -> int:
-        """Ctrl-C."""
-        self.process.send_signal(signal.SIGINT)
-        status = self.process.wait(30)
-        self._thread.join(5)
-        return status
-
-    def close(self) -> None:
-        """Leave nothing behind."""
-        self.process.kill()
-        self.process.wait()
-        self._thread.join(5)
-        assert self.process.stdout is not None
-        self.process.stdout.close()
-
-
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     folder = tmp_path / "requirements"
@@ -112,8 +66,8 @@ def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
     here.master()
     robot = here.world("robot")
     run = Watched(
-        here, tmp_path, "--requirements", "requirements", "--record", "run.mcap",
-        "--evidence", "live.json",
+        here.environment, tmp_path, "ros1", "--requirements", "requirements",
+        "--record", "run.mcap", "--evidence", "live.json",
     )  # fmt: skip
     try:
         until("it moves", lambda: run.verdict("GO") == "satisfied", 30)
@@ -125,16 +79,61 @@ def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
         assert run.end() == 1
     finally:
         run.close()
-    audit = [
-        sys.executable, "-c", "from fretc.cli import main; main()", "audit", "run.mcap",
-        "--requirements", "requirements", "-o", "audit.json",
-    ]  # fmt: skip
-    environment = {**here.environment, "PYTHONPATH": str(ROOT)}
-    audited = subprocess.run(audit, cwd=tmp_path, env=environment, check=False, capture_output=True)
-    assert audited.returncode == 1, audited.stderr
+    again = audited(tmp_path, "run.mcap", "--requirements", "requirements", "-o", "audit.json")
+    assert again.returncode == 1, again.stderr
     assert (tmp_path / "audit.json").read_bytes() == (tmp_path / "live.json").read_bytes()
-    (ended,) = [line for line in run.lines if line["type"] == "run"]
-    assert ended["verdicts"] == {"GO": "satisfied", "HALT": "violated"}
+    assert run.verdicts() == {"GO": "satisfied", "HALT": "violated"}
+
+
+_READER = """
+import json, sys
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+
+def take(message):
+    of = [(s.level, s.name, {v.key: v.value for v in s.values}) for s in message.status]
+    print(json.dumps([message.header.stamp.to_nsec(), of]), flush=True)
+
+rospy.init_node("reader", disable_signals=True)
+rospy.Subscriber("/diagnostics", DiagnosticArray, take)
+sys.stdin.read()
+"""
+
+
+def test_diagnostics_are_read_back_on_the_robot(here: Ros, folder: Path, tmp_path: Path) -> None:
+    """As any node reads them; the levels are those of `monitors/guard.py`."""
+    probe = [PYTHON, "-c", "import diagnostic_msgs.msg"]
+    if subprocess.run(probe, env=here.environment, capture_output=True).returncode:
+        pytest.skip("Debian's python3 has no diagnostic_msgs")
+    here.master()
+    robot = here.world("robot")
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    reader = here.start(PYTHON, "-c", _READER, **pipes)
+    words = ("ros1", "--requirements", "requirements", "--publish", "diagnostics")
+    run = Watched(here.environment, tmp_path, *words)
+    assert reader.stdout is not None
+    try:
+        _until_level(reader.stdout, "GO", OK)
+        robot.ask(True)
+        stamp, found = _until_level(reader.stdout, "HALT", ERROR)
+        assert stamp > 0
+        assert found["HALT"][1]["verdict"] == "violated"
+        assert int(found["sources"][1]["messages of /stop"]) > 0
+        assert run.end() == 1
+    finally:
+        run.close()
+
+
+def _until_level(stream: IO[str], name: str, level: int) -> tuple[int, dict[str, Any]]:
+    """The first message in which a status has this level."""
+    for line in stream:
+        stamp, statuses = json.loads(line)
+        found = {
+            text.removeprefix("fretc watch: "): (its, values) for its, text, values in statuses
+        }
+        if found[name][0] == level:
+            return stamp, found
+    raise AssertionError("the reader has ended")
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGSTOP])
@@ -198,7 +197,7 @@ def test_another_type_than_bound_and_a_simulated_clock_are_told_of(
     with ServerProxy(here.uri) as master:
         master.setParam("/test", "/use_sim_time", True)
     here.world("robot")
-    run = Watched(here, tmp_path, "--requirements", "requirements")
+    run = Watched(here.environment, tmp_path, "ros1", "--requirements", "requirements")
     expected = {Code.WRONG_TYPE.number, Code.SIMULATED_TIME.number}
     try:
         until("both are told of", lambda: expected <= run.codes(), 30)

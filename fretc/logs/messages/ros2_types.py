@@ -1,0 +1,55 @@
+"""The definitions of ROS 2's own types, as its releases have them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from typing import Any
+
+
+def definitions(name: str) -> Mapping[str, str]:
+    """Each definition that a type of ROS 2's own has in one of its releases, the oldest first.
+
+    Args:
+        name: `sensor_msgs/msg/LaserScan`.
+
+    Returns:
+        By its type hash (`RIHS01_...`) the text, with those of all types that it names; nothing
+        where it is no such type. The hash tells definitions apart that differ in a field, or in
+        one of a type within: https://ros.org/reps/rep-2016.html.
+
+    Raises:
+        ModuleNotFoundError: rosbags is not installed.
+    """
+    stores = [store for store in _stores() if name in store.fielddefs]
+    found = {store.hash_rihs01(name): store for store in stores}
+    return {
+        digest: str(store.generate_msgdef(name, ros_version=2)[0])
+        for digest, store in found.items()
+    }
+
+
+def standard(name: str) -> str | None:
+    """The definition of a type of ROS 2's own, if it is the same in all its releases.
+
+    Raises:
+        ModuleNotFoundError: rosbags is not installed.
+    """
+    found = definitions(name)
+    return next(iter(found.values())) if len(found) == 1 else None
+
+
+def latest() -> Any:
+    """The types of the latest release as a `rosbags` typestore: it makes messages, and their CDR.
+
+    Raises:
+        ModuleNotFoundError: rosbags is not installed.
+    """
+    return _stores()[-1]
+
+
+@cache
+def _stores() -> tuple[Any, ...]:
+    from rosbags.typesys import Stores, get_typestore
+
+    return tuple(get_typestore(store) for store in Stores if store.name.startswith("ROS2_"))

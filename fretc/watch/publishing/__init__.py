@@ -1,0 +1,1 @@
+"""Verdicts of a robot that runs, for other programs: diagnostics of ROS, a Foxglove server."""

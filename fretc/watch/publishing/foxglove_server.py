@@ -1,0 +1,137 @@
+"""A Foxglove server: the robot's topics as they came, and the state of each requirement.
+
+Source: https://docs.foxglove.dev/docs/sdk, the package foxglove-sdk.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from fretc.audit.outputs.annotations import state_topic
+from fretc.logs.storage.storage_diagnostics import install
+from fretc.watch.sources.source import Arrival, Channel
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from monitors.guard import State, Status
+from monitors.kernel.verdicts import Truth
+
+if TYPE_CHECKING:
+    import foxglove
+
+HOST, PORT = "127.0.0.1", 8765
+"""Where the server is, if nobody says otherwise: this machine, the usual port."""
+NAME = "fretc.RequirementState"
+LEVELS = ("OK", "WARN", "ERROR", "STALE")
+_OWED: dict[Truth, str] = {True: "yes", None: "perhaps", False: "no"}
+_TEXT, _WHOLE = {"type": "string"}, {"type": "integer"}
+_ALWAYS = {"requirement": _TEXT, "level": _TEXT, "message": _TEXT, "verdict": _TEXT, "owed": _TEXT}
+_TIMES = ("triggered_ns", "open_ns", "deadline_ns", "violated_ns")
+SCHEMA = {
+    "title": NAME,
+    "type": "object",
+    "properties": {
+        **_ALWAYS,
+        "level": {**_TEXT, "enum": [*LEVELS]},
+        "owed": {**_TEXT, "enum": [*_OWED.values()]},
+        **dict.fromkeys(_TIMES, _WHOLE),
+    },
+    "required": [*_ALWAYS],
+}
+"""Plain types only, which is what panels of Foxglove read: a time that is not there is left out."""
+
+
+class FoxgloveServer:
+    """Shows what arrives and what is known to all who connect."""
+
+    def __init__(self, host: str, port: int) -> None:
+        """Open it; port 0 is one that is free.
+
+        Raises:
+            ImportError: the package is not installed.
+            RuntimeError: the port is taken, or the host is none of this machine.
+        """
+        import foxglove
+
+        logging.getLogger("foxglove").addHandler(logging.NullHandler())  # else on the terminal
+        self._context = foxglove.Context()
+        self._server = foxglove.start_server(
+            name="fretc watch", host=host, port=port, context=self._context
+        )
+        self.host, self.port = host, self._server.port
+        self._channels: dict[Channel, foxglove.Channel] = {}
+        self._states: dict[str, foxglove.Channel] = {}
+
+    def pass_on(self, arrival: Arrival) -> None:
+        """A message of the robot, on a channel as it has it."""
+        channel = self._channels.get(arrival.channel)
+        if channel is None:
+            channel = self._channels[arrival.channel] = self._opened(arrival.channel)
+        channel.log(arrival.payload, log_time=arrival.log_time)
+
+    def publish(self, states: Sequence[State], known: Sequence[Status], now: int) -> None:
+        """The state of each requirement, on a channel of its own."""
+        statuses = {each.name: each for each in known[1:]}
+        for state in states:
+            if state.requirement not in self._states:
+                self._states[state.requirement] = self._opened(
+                    Channel(
+                        state_topic(state.requirement),
+                        "json",
+                        NAME,
+                        "jsonschema",
+                        json.dumps(SCHEMA).encode(),
+                    )
+                )
+            content = json.dumps(message(state, statuses[state.requirement])).encode()
+            self._states[state.requirement].log(content, log_time=now or None)
+
+    def close(self) -> None:
+        """Let it go."""
+        self._server.stop()
+
+    def _opened(self, channel: Channel) -> foxglove.Channel:
+        import foxglove
+
+        schema = foxglove.Schema(
+            name=channel.schema_name, encoding=channel.schema_encoding, data=channel.schema
+        )
+        return foxglove.Channel(
+            channel.topic,
+            message_encoding=channel.message_encoding,
+            schema=schema,
+            context=self._context,
+        )
+
+
+def message(state: State, status: Status) -> dict[str, object]:
+    """What is shown of a requirement; it fits `SCHEMA`."""
+    times = {name: getattr(state, name) for name in _TIMES}
+    return {
+        "requirement": state.requirement,
+        "level": LEVELS[status.level],
+        "message": status.message,
+        "verdict": state.verdict,
+        "owed": _OWED[state.owed],
+        **{name: time for name, time in times.items() if time is not None},
+    }
+
+
+def opened(host: str, port: int) -> FoxgloveServer | Diagnostic:
+    """The server; or why it cannot be opened."""
+    try:
+        return FoxgloveServer(host, port)
+    except ImportError as error:
+        return Diagnostic(
+            Code.MISSING_EXTRA,
+            f"a Foxglove server needs `foxglove-sdk`, which cannot be imported: {error}",
+            help=install("live"),
+        )
+    except (RuntimeError, OverflowError) as error:
+        why = str(error).rpartition(": ")[2]
+        return Diagnostic(
+            Code.NOT_PUBLISHED,
+            f"no Foxglove server can be opened at {host}:{port}: {why}",
+            help="name another port: `--publish foxglove:8766`; 0 is one that is free",
+        )

@@ -1,0 +1,46 @@
+"""A session → what is published of it, by the levels of emitted nodes (`monitors/guard.py`)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from fretc.watch.session import Session
+from monitors.guard import OK, STALE, State, Status, status, status_of
+
+SOURCES = "sources"
+"""The name of the status of what is read."""
+
+
+def statuses(
+    session: Session,
+    states: Collection[State],
+    violated: Collection[str],
+) -> list[Status]:
+    """One for what is read, and one for each requirement.
+
+    Args:
+        session: the present run.
+        states: what is known of its requirements.
+        violated: the requirements that were violated in earlier runs.
+    """
+    silent = {name for name, topic in session.topics.items() if not topic.count}
+
+    def fault(topics: Collection[str]) -> str:
+        """Why what is read cannot be relied on; empty: nothing is wrong."""
+        if session.interrupted:
+            return "the source is gone"
+        return "; ".join(f"no message of {each} yet" for each in topics if each in silent)
+
+    wrong = fault(session.topics)
+    values: dict[str, object] = {
+        f"messages of {name}": topic.count for name, topic in session.topics.items()
+    }
+    values |= {"ticks": session.ticks, "ticks that became unknown": session.late_ticks}
+    sources = status(STALE if wrong else OK, SOURCES, wrong or "all come", values)
+    own = (
+        status_of(
+            each, fault(session.reads[each.requirement]), violated=each.requirement in violated
+        )
+        for each in states
+    )
+    return [sources, *own]

@@ -1,0 +1,305 @@
+"""ROS 2's messages as a source, from its wire: DDS, without any ROS.
+
+Nobody is at the head of a domain of DDS: publishers come and go. Each kind of publisher of a topic
+(its type, and what it offers) has a reader of its own, which takes what publishers of this kind
+send. Times of arrival are when the message has reached this thread.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+from fretc.logs.messages import ros2_types
+from fretc.watch.sources.dds_domain import Domain, Publisher, Reader, Writer, join
+from fretc.watch.sources.dds_types import Offer, UnreadableError
+from fretc.watch.sources.mailbox import WAIT, Mailbox
+from fretc.watch.sources.middleware import Middleware, simulated_time
+from fretc.watch.sources.source import Channel, Problem, Reconnected
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from monitors.guard import Status
+
+MOST_KINDS = 20
+"""Kinds of publishers of a topic; who makes more of them is not read."""
+_MOST_PUBLISHERS = 10_000
+"""So many that are gone are remembered."""
+_SOON = 3 * 10**9
+"""Nanoseconds in which a reader and a publisher find together."""
+_CLOCK = "/clock"
+_PERIOD = 0.5
+"""Seconds from one publication of what is known to the next."""
+_ARRAY = "diagnostic_msgs/msg/DiagnosticArray"
+_PARTS = {
+    _ARRAY,
+    "diagnostic_msgs/msg/DiagnosticStatus",
+    "diagnostic_msgs/msg/KeyValue",
+    "std_msgs/msg/Header",
+    "builtin_interfaces/msg/Time",
+}
+
+
+class Dds(Middleware):
+    """The domain that `ROS_DOMAIN_ID` names."""
+
+    def __init__(self) -> None:
+        """Nothing is opened yet."""
+        super().__init__("dds")
+        self._statuses: Sequence[Status] = ()
+
+    def diagnose(self, statuses: Sequence[Status]) -> None:
+        """The thread publishes them, twice a second."""
+        self._statuses = statuses
+
+    def _listen(self, topics: list[str]) -> bool:
+        """What comes of the topics; one that begins with no slash is a topic of DDS."""
+        domain = join()
+        if isinstance(domain, Diagnostic):
+            self._lost(domain)
+            return False
+        try:
+            self._opened(f"domain {domain.number} of DDS")
+            listening = _Listening(domain, frozenset(topics), self._mailbox)
+            diagnosing = _Diagnosing(domain)
+            while not self._closed.is_set():
+                domain.wait(WAIT)
+                listening.look()
+                diagnosing.publish(self._statuses)
+        except Exception as error:  # what Cyclone DDS raises of what strangers send, it may be
+            self._lost(_broken(error))
+        finally:
+            domain.close()
+        return True
+
+
+@dataclass(slots=True)
+class _Kind:
+    """Publishers of one topic that offer the same."""
+
+    reader: Reader | None
+    """None: they cannot be read."""
+    channel: Channel
+
+
+@dataclass(slots=True)
+class _Peer:
+    """A publisher, there or gone."""
+
+    id: str
+    topic: str
+    offer: Offer
+    last: int
+    """When something has come of it."""
+    there: bool = True
+
+
+class _Listening:
+    """Who publishes the topics, and what they send."""
+
+    def __init__(self, domain: Domain, topics: frozenset[str], mailbox: Mailbox) -> None:
+        self._domain, self._topics, self._mailbox = domain, topics, mailbox
+        self._kinds: dict[tuple[str, Offer], _Kind] = {}
+        self._peers: dict[int, _Peer] = {}
+        """By handles; those that are gone, too: their last messages may still come."""
+        self._lost: dict[str, int] = {}
+        """Publishers that are gone, by their ids: when something has last come of them."""
+        self._unmatched: dict[int, int] = {}
+        """Publishers that no reader has found yet: since when."""
+        self._known: set[tuple[Code, str]] = set()
+        """What has been told of which topic."""
+
+    def look(self) -> None:
+        """Hand on what has come since the last look."""
+        for key, kind in tuple(self._kinds.items()):
+            if kind.reader is not None:
+                self._read(key, kind, kind.reader)
+        self._meet()
+        self._miss_matches()
+
+    def _read(self, key: tuple[str, Offer], kind: _Kind, reader: Reader) -> None:
+        for sample in reader.samples():
+            if sample.publisher not in self._peers:
+                self._meet()
+            peer = self._peers.get(sample.publisher)
+            if peer is not None:
+                if (peer.topic, peer.offer) != key:
+                    continue  # another reader takes it
+                peer.last = self._mailbox.now
+            self._mailbox.put(kind.channel, sample.payload, sample.sent)
+
+    # Who is there
+
+    def _meet(self) -> None:
+        for publisher in self._domain.publishers():
+            if publisher.offer is None:
+                self._part(publisher)
+            elif publisher.topic in self._topics:
+                self._greet(publisher, publisher.offer)
+            elif publisher.topic == _CLOCK:
+                self._tell_once(_CLOCK, simulated_time())
+
+    def _greet(self, publisher: Publisher, offer: Offer) -> None:
+        now, topic = self._mailbox.now, publisher.topic
+        if topic == _CLOCK:
+            self._tell_once(topic, simulated_time())
+        while len(self._peers) >= _MOST_PUBLISHERS:
+            del self._peers[next(iter(self._peers))]
+        self._peers[publisher.handle] = _Peer(publisher.id, topic, offer, now)
+        since = self._lost.pop(publisher.id, None)
+        if since is not None:
+            self._mailbox.tell(Reconnected(since, now))
+        if (topic, offer) not in self._kinds:
+            self._open(topic, offer)
+        if self._kinds[topic, offer].reader is not None:
+            self._unmatched[publisher.handle] = now
+        there = sum(peer.there for peer in self._peers.values() if peer.topic == topic)
+        if there > 1:
+            self._tell_once(topic, _several_publishers(topic, there))
+
+    def _part(self, publisher: Publisher) -> None:
+        peer = self._peers.get(publisher.handle)
+        if peer is None or not peer.there:
+            return
+        peer.there = False
+        self._unmatched.pop(publisher.handle, None)
+        while len(self._lost) >= _MOST_PUBLISHERS:
+            del self._lost[next(iter(self._lost))]
+        self._lost[peer.id] = peer.last
+        if not any(each.there and each.topic == peer.topic for each in self._peers.values()):
+            self._mailbox.tell(Problem(_no_publisher(peer.topic)))
+
+    def _open(self, topic: str, offer: Offer) -> None:
+        """A reader for publishers of a kind that is new."""
+        definition = _definition(offer)
+        channel = Channel(topic, "cdr", offer.type, "", b"")
+        if definition is not None:
+            channel = Channel(topic, "cdr", offer.type, "ros2msg", definition.encode())
+        else:
+            self._tell_once(topic, _no_definition(topic, offer))
+        kind = self._kinds[topic, offer] = _Kind(None, channel)
+        if sum(each == topic for each, _ in self._kinds) > MOST_KINDS:
+            self._tell_once(topic, _not_read(topic, f"they are of more than {MOST_KINDS} kinds"))
+            return
+        try:
+            kind.reader = self._domain.reader(topic, offer, definition)
+        except UnreadableError as error:
+            self._tell_once(topic, _not_read(topic, str(error)))
+
+    def _miss_matches(self) -> None:
+        """A reader and a publisher that do not agree: of the type, say."""
+        for handle, since in tuple(self._unmatched.items()):
+            peer = self._peers.get(handle)
+            reader = self._kinds[peer.topic, peer.offer].reader if peer is not None else None
+            if peer is None or reader is None or reader.matches(handle):
+                del self._unmatched[handle]
+            elif self._mailbox.now - since > _SOON:
+                del self._unmatched[handle]
+                why = f"the fields or the encoding of its `{peer.offer.type}` are others"
+                self._tell_once(peer.topic, _not_read(peer.topic, why))
+
+    def _tell_once(self, topic: str, problem: Diagnostic) -> None:
+        if (problem.code, topic) not in self._known:
+            self._known.add((problem.code, topic))
+            self._mailbox.tell(Problem(problem))
+
+
+class _Diagnosing:
+    """`diagnostic_msgs/DiagnosticArray` on `/diagnostics`, as a node of ROS 2 sends it."""
+
+    def __init__(self, domain: Domain) -> None:
+        self._domain = domain
+        self._writer: Writer | None = None
+        self._last = float("-inf")
+
+    def publish(self, statuses: Sequence[Status]) -> None:
+        """Twice a second, where there are any."""
+        if not statuses or time.monotonic() - self._last < _PERIOD:
+            return
+        self._last = time.monotonic()
+        if self._writer is None:
+            digest, definition = [*ros2_types.definitions(_ARRAY).items()][-1]
+            offer = Offer(_ARRAY, digest, reliable=True)
+            self._writer = self._domain.writer("/diagnostics", offer, definition)
+        with suppress(UnreadableError):  # who reads it is too slow; there will be another one
+            self._writer.write(_array(statuses, time.time_ns()))
+
+
+def _array(statuses: Sequence[Status], now: int) -> bytes:
+    """As CDR."""
+    store = ros2_types.latest()
+    own = {name.rpartition("/")[2]: type_ for name, type_ in store.types.items() if name in _PARTS}
+
+    def text(said: str) -> str:
+        return said.encode(errors="replace").decode()
+
+    found = [
+        own["DiagnosticStatus"](
+            level=each.level,
+            name=text(each.name),
+            message=text(each.message),
+            hardware_id="",
+            values=[own["KeyValue"](key=text(k), value=text(v)) for k, v in each.values],
+        )
+        for each in statuses
+    ]
+    seconds, rest = divmod(now, 10**9)
+    header = own["Header"](stamp=own["Time"](sec=seconds, nanosec=rest), frame_id="")
+    return bytes(store.serialize_cdr(own["DiagnosticArray"](header=header, status=found), _ARRAY))
+
+
+def _definition(offer: Offer) -> str | None:
+    """That of its hash; where it tells none, the only one that there is."""
+    found = ros2_types.definitions(offer.type)
+    if offer.hash is not None:
+        return found.get(offer.hash)
+    return next(iter(found.values())) if len(found) == 1 else None
+
+
+def _no_definition(topic: str, offer: Offer) -> Diagnostic:
+    found = ros2_types.definitions(offer.type)
+    if not found:
+        why = "is none of ROS 2's own, and DDS does not say what is in it"
+    elif offer.hash is None:
+        why = "is not the same in all releases of ROS 2, and its publisher does not say which it is"
+    else:
+        why = "is defined otherwise by its publisher: the type hash is another one"
+    return Diagnostic(
+        Code.NO_DEFINITION,
+        f"what `{topic}` sends cannot be decoded: `{offer.type}` {why}",
+        help="watch through foxglove_bridge, which sends definitions, or follow a log of rosbag2",
+    )
+
+
+def _not_read(topic: str, why: str) -> Diagnostic:
+    return Diagnostic(
+        Code.PUBLISHER_NOT_READ,
+        f"a publisher of `{topic}` is not read: {why}",
+        help="what it sends is not known; `fretc explain` says what it must offer",
+    )
+
+
+def _no_publisher(topic: str) -> Diagnostic:
+    return Diagnostic(
+        Code.PUBLISHER_GONE,
+        f"nobody publishes `{topic}` any more",
+        help="`max_age` says for how long its last message counts",
+        severity=Severity.WARNING,
+    )
+
+
+def _several_publishers(topic: str, number: int) -> Diagnostic:
+    return Diagnostic(
+        Code.SEVERAL_PUBLISHERS,
+        f"{number} nodes publish `{topic}`",
+        help="each message counts, whoever sent it; end what should not publish",
+        severity=Severity.WARNING,
+    )
+
+
+def _broken(error: Exception) -> Diagnostic:
+    return Diagnostic(
+        Code.ROBOT_NOT_REACHED,
+        f"Cyclone DDS fails: {type(error).__name__}: {error}",
+        help="the domain is joined once more",
+    )
