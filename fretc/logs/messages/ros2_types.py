@@ -39,6 +39,21 @@ def standard(name: str) -> str | None:
     return next(iter(found.values())) if len(found) == 1 else None
 
 
+def classes() -> Mapping[str, Any]:
+    """The types of the newest release as Python's, by name: `diagnostic_msgs/msg/KeyValue`.
+
+    Raises:
+        ModuleNotFoundError: rosbags is not installed.
+    """
+    found: Mapping[str, Any] = _stores()[-1].types
+    return found
+
+
+def encoded(message: object, name: str) -> bytes:
+    """An object of one of these classes as CDR, with its head of four bytes."""
+    return bytes(_stores()[-1].serialize_cdr(message, name))
+
+
 @cache
 def _stores() -> tuple[Any, ...]:
     from rosbags.typesys import Stores, get_typestore

@@ -7,6 +7,8 @@ send. Times of arrival are when the message has reached this thread.
 
 from __future__ import annotations
 
+import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from fretc.logs.messages import ros2_types
@@ -16,6 +18,7 @@ from fretc.watch.sources.mailbox import WAIT, Mailbox
 from fretc.watch.sources.middleware import Middleware, simulated_time
 from fretc.watch.sources.source import Channel, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from monitors.guard import Status
 
 MOST_KINDS = 20
 """Kinds of publishers of a topic; who makes more of them is not read."""
@@ -32,6 +35,12 @@ class Dds(Middleware):
     def __init__(self) -> None:
         """Nothing is opened yet."""
         super().__init__("dds")
+        self._statuses: Sequence[Status] | None = None
+        """What is to be published; None: nothing ever is."""
+
+    def diagnose(self, statuses: Sequence[Status]) -> None:
+        """Publish them when the thread next looks, twice a second at most."""
+        self._statuses = statuses
 
     def _listen(self, topics: list[str]) -> bool:
         """What comes of the topics; one that begins with no slash is a topic of DDS."""
@@ -42,9 +51,12 @@ class Dds(Middleware):
         try:
             self._opened(f"domain {domain.number} of DDS")
             listening = _Listening(domain, frozenset(topics), self._mailbox)
+            diagnoses = None if self._statuses is None else _Diagnoses(domain)
             while not self._closed.is_set():
                 domain.wait(WAIT)
                 listening.look()
+                if diagnoses is not None and self._statuses:
+                    diagnoses.publish(self._statuses)
         except Exception as error:  # what Cyclone DDS raises of what strangers send, it may be
             self._lost(_broken(error))
         finally:
@@ -181,6 +193,48 @@ class _Listening:
         if (problem.code, topic) not in self._known:
             self._known.add((problem.code, topic))
             self._mailbox.tell(Problem(problem))
+
+
+class _Diagnoses:
+    """What is published on `/diagnostics`."""
+
+    def __init__(self, domain: Domain) -> None:
+        digest, definition = [*ros2_types.definitions(_ARRAY).items()][-1]
+        offer = Offer(_ARRAY, digest, reliable=True)
+        self._writer = domain.writer("/diagnostics", offer, definition)
+        self._last = float("-inf")
+
+    def publish(self, statuses: Sequence[Status]) -> None:
+        """A message, unless there was one just now."""
+        if time.monotonic() - self._last < _PERIOD:
+            return
+        self._last = time.monotonic()
+        self._writer.write(_encoded(statuses, time.time_ns()))
+
+
+_ARRAY, _STATUS = (f"diagnostic_msgs/msg/Diagnostic{name}" for name in ("Array", "Status"))
+_PERIOD = 0.45
+"""Seconds between two messages of diagnostics; new statuses come every half a second."""
+
+
+def _encoded(statuses: Sequence[Status], now: int) -> bytes:
+    types = ros2_types.classes()
+    pair, status = types["diagnostic_msgs/msg/KeyValue"], types[_STATUS]
+    stamp = types["builtin_interfaces/msg/Time"](*divmod(now, 10**9))
+    message = types[_ARRAY](
+        types["std_msgs/msg/Header"](stamp, ""),
+        [
+            status(
+                each.level,
+                f"fretc watch: {each.name}",
+                each.message,
+                "",
+                [pair(key, value) for key, value in each.values],
+            )
+            for each in statuses
+        ],
+    )
+    return ros2_types.encoded(message, _ARRAY)
 
 
 def _definition(offer: Offer) -> str | None:
