@@ -49,7 +49,7 @@ from fretc.report.sections.signatures import idle_signatures, signatures
 from fretc.report.set_analysis.assembly import in_front, in_overall, set_analysis
 from fretc.report.situations import situations
 from fretc.report.traceability.acceptances import warnings
-from fretc.report.traceability.artefacts import shared_products
+from fretc.report.traceability.artefacts import joint_monitors, shared_products
 from fretc.report.traceability.lock import Lock, withdrawn_requirements
 from fretc.report.traceability.waivers import Waiver
 from fretc.verification.ajpf_results import merged
@@ -91,6 +91,8 @@ def report(
     withdrawn = withdrawn_requirements(project.requirements, chains, lock)
     anchors = {assessment.id: assessment.anchor for assessment in reversed(assessed)}
     shared = shared_products(project.declarations) if all_proofs else ()
+    proved_files = {name for proof in all_proofs for name in proof.artefacts}
+    joint = joint_monitors(project.rules, proved_files)
     exercised = situations(assessed, evidence)
     sections = tuple(
         section(
@@ -101,6 +103,7 @@ def report(
             evidence is not None,
             all_proofs,
             shared,
+            joint,
             book,
             exercised.get(assessment.id),
         )

@@ -18,8 +18,8 @@ Line = tuple[str, str | None]
 
 
 def lines(proofs: Sequence[Proof]) -> Iterator[Line]:
-    """All of it, in the order of the proofs."""
-    numbers = _numbers(proofs)
+    """All of it, in the order of the proofs; why something is not checked is said once."""
+    numbers, reasons = _numbers(proofs), dict[tuple[str, ...], str]()
     widths = [
         max(len(proof.requirement) for proof in proofs),
         max(len(proof.layer) for proof in proofs),
@@ -27,7 +27,11 @@ def lines(proofs: Sequence[Proof]) -> Iterator[Line]:
     for proof in proofs:
         sign = SIGNS[proof.result]
         head = f"{sign.glyph} {proof.requirement:<{widths[0]}}  {proof.layer:<{widths[1]}}"
-        yield f"{head}  {_outcome(proof, numbers)}", sign.colour
+        outcome = _outcome(proof, numbers)
+        if proof.result is Result.NOT_CHECKED:
+            first = reasons.setdefault((proof.layer, outcome), proof.requirement)
+            outcome = outcome if first == proof.requirement else f"not checked: as {first}"
+        yield f"{head}  {outcome}", sign.colour
         if proof.run is not None:
             for row in table(proof.run):
                 yield f"    {row}", None

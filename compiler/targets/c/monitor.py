@@ -77,10 +77,15 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
 
 
 def _apart(rules: Sequence[Formalized]) -> Iterator[tuple[str, str, Formalized]]:
-    """The name of the files of each rule, and what its names begin with."""
+    """The name of the files of each rule, and what its names begin with.
+
+    `r1_sample_init` is of the signal `init` of R1: names of R1_sample begin with `r1_sample_`, and
+    go on with another `_`, which no name of a signal begins with.
+    """
     bases = prefixes_of([rule.id for rule in rules])
     for rule in rules:
-        yield f"{module(stem(rule))}_monitor", bases[rule.id], rule
+        base = re.sub(r"_sample(?=_|$)", "_sample_", bases[rule.id])
+        yield f"{module(stem(rule))}_monitor", base, rule
 
 
 @dataclass(frozen=True, slots=True)

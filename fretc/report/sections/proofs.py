@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from compiler.formalization.formalized import Formalized
@@ -23,7 +23,10 @@ SHARED = ("interceptor", "agent")
 
 
 def proof_views(
-    proofs: Iterable[Proof], products: Iterable[Product], rule: Formalized | None = None
+    proofs: Iterable[Proof],
+    products: Iterable[Product],
+    rule: Formalized | None = None,
+    joint: Collection[str] = (),
 ) -> tuple[ProofView, ...]:
     """The view of each proof.
 
@@ -31,13 +34,16 @@ def proof_views(
         proofs: about one requirement, or about shared parts.
         products: what the targets make now; a proof about another text is suspect.
         rule: the requirement; None where it cannot be read, and of shared parts.
+        joint: SHA-256 of the monitors of all requirements that are made now.
     """
     now = {product.file: product.sha256 for product in products if product.sha256}
-    return tuple(_view(proof, now, rule) for proof in proofs)
+    return tuple(_view(proof, now, rule, joint) for proof in proofs)
 
 
-def _view(proof: Proof, now: Mapping[str, str], rule: Formalized | None) -> ProofView:
-    suspicions = tuple(_suspicions(proof, now, rule))
+def _view(
+    proof: Proof, now: Mapping[str, str], rule: Formalized | None, joint: Collection[str]
+) -> ProofView:
+    suspicions = tuple(_suspicions(proof, now, rule, joint))
     return ProofView(
         requirement=proof.requirement,
         layer=str(proof.layer),
@@ -51,13 +57,16 @@ def _view(proof: Proof, now: Mapping[str, str], rule: Formalized | None) -> Proo
     )
 
 
-def _suspicions(proof: Proof, now: Mapping[str, str], rule: Formalized | None) -> Iterator[str]:
+def _suspicions(
+    proof: Proof, now: Mapping[str, str], rule: Formalized | None, joint: Collection[str]
+) -> Iterator[str]:
     """Why a proof is about other texts than those of now; only texts that fretc makes count."""
     for name, examined in proof.artefacts.items():
         if name in now and now[name] != examined:
             what = "is not what it was" if name == ASSUMED else "is not made like that any more"
             yield f"{name} {what}"
-    if proof.layer in OF_MONITOR and not _is_of_monitor(proof, now, rule):
+    is_joint = any(examined in joint for examined in proof.artefacts.values())
+    if proof.layer in OF_MONITOR and not (is_joint or _is_of_monitor(proof, now, rule)):
         yield "it is about another monitor than the one that is made now"
 
 

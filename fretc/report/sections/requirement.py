@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -53,6 +53,7 @@ def section(
     audited: bool,
     proofs: Sequence[Proof] = (),
     shared_products: Sequence[Product] = (),
+    joint: Collection[str] = (),
     book: SignatureBook = NO_SIGNATURES,
     situations: SituationsView | None = None,
 ) -> RequirementView:
@@ -66,13 +67,14 @@ def section(
         audited: whether there is any evidence.
         proofs: about all requirements, and about shared parts.
         shared_products: what targets make from the bindings alone.
+        joint: SHA-256 of the monitors of all requirements together.
         book: who signed what.
         situations: that runs have shown; None where no run has been audited.
     """
     requirement, rule = assessment.requirement, assessment.rule
     products = (*assessment.products, *shared_products)
     own = (proof for proof in proofs if proof.requirement == assessment.id)
-    own_proofs = proof_views(own, products, rule)
+    own_proofs = proof_views(own, products, rule, joint)
     shared_proofs = proof_views((p for p in proofs if p.requirement in SHARED), shared_products)
     clock = project.declarations.clock if project.declarations else None
     return RequirementView(

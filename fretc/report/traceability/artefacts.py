@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
 
@@ -10,7 +11,7 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.project.interceptor_options import ASSUMED, assumed
 from compiler.targets.python import interceptor
-from compiler.targets.target import Target
+from compiler.targets.target import Options, Target
 from fretish.bindings.declarations import Declarations
 
 
@@ -56,6 +57,26 @@ def compiled_monitor(rule: Formalized, file: str) -> str:
             made = _of_target(TARGETS[target], rule)
             return next((one.sha256 for one in made if PurePath(one.file).name == file), "")
     return ""
+
+
+_JOINT = {"monitors.py": "monitor", "monitors.c": "c", "lib.rs": "rust", "monitors.mjs": "js"}
+"""The names of files with the monitor of many requirements, and their target."""
+
+
+def joint_monitors(rules: Sequence[Formalized], files: Collection[str]) -> frozenset[str]:
+    """SHA-256 of each file that has one monitor for all of the rules.
+
+    Args:
+        rules: all of a project, in its order; those that a target refuses are in no file.
+        files: their names, among others.
+    """
+    found = set[str]()
+    for file, target in _JOINT.items():
+        accepted = [each for each in rules if TARGETS[target].refuse(each) is None]
+        if file in files and accepted:
+            made = TARGETS[target].emit(accepted, Options(one_file=True))
+            found.add(next(sha256(each.text) for each in made if each.path.name == file))
+    return frozenset(found)
 
 
 def _of_target(target: Target, rule: Formalized) -> tuple[Product, ...]:

@@ -17,6 +17,7 @@ FLAGS = (
     "-fPIC",
     "-shared",
     "-s",
+    "-ftrapv",  # else gcc takes `x + 1 > x` for true, and the sum for none that can overflow
     "-fsanitize=undefined",
     "-fsanitize-undefined-trap-on-error",
 )

@@ -48,6 +48,11 @@ _POINTED = frozenset("* [ <<".split())
 """Only what fretc writes for rings, and where it declares `reading`, has these."""
 
 
+_POINTER = re.compile(r"\w+ -> ")
+_SUM = re.compile(r"(?:^|(?<=[?:] ))(?P<open>\( )?(?!\d+ . \d)\w+ [+-] \w+(?(open) \))(?= :|$)")
+_NEGATIVE = re.compile(r"(?:^|(?<=[?:=(] ))- \d+\b")
+
+
 def formed(text: str, written: str, base: str, cells: Sequence[str], inputs: Sequence[str]) -> Form:
     """The form of a text of a C file.
 
@@ -145,6 +150,24 @@ class _Step(Flow):
         """
         if not (self._branch(statement) or self._assignment(statement) or self._fixed(statement)):
             raise strange(statement)
+
+    def names(self, value: Sequence[str], statement: Sequence[str]) -> frozenset[str]:
+        """The names in an expression.
+
+        A sum is the whole value, or what a condition chooses for it. An operand that overflows may
+        be dropped by a compiler before it looks for overflows, as of `x + 1 - 1` or of `x + 1 > x`.
+
+        Raises:
+            StrangeTextError: there is anything else in it.
+        """
+        text = _NEGATIVE.sub("", _POINTER.sub("", " ".join(value)))
+        for each in _SUM.finditer(text):
+            before = text[: each.start()]
+            if before.count("(") != before.count(")"):
+                raise strange(statement)
+        if not {"+", "-"}.isdisjoint(_SUM.sub("", text)):
+            raise strange(statement)
+        return super().names(value, statement)
 
     def _branch(self, statement: Tokens) -> bool:
         match statement:

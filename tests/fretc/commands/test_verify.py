@@ -172,6 +172,18 @@ def test_a_monitor_of_another_requirement_is_not_checked(fretc: Fretc, r1: str, 
     assert run == Run(3, told, WROTE)
 
 
+def test_why_a_file_is_not_checked_is_told_once(fretc: Fretc, r1: str) -> None:
+    write("r2.fret", R1)
+    file = "build/monitors.mjs"
+    assert fretc(r1, "r2.fret", "--emit", "js", "--one-file").status == 0
+    edited(file, "rail.signals = [", "globalThis.x = 1; rail.signals = [")
+    first, second = fretc("verify", "--file", file, r1, "r2.fret").out.splitlines()
+    assert first.startswith(f"? r1  monitor  not checked: {CLAIM}; ")
+    assert second == "? r2  monitor  not checked: as r1"
+    one, other = told(fretc("verify", "--file", file, r1, "r2.fret", "--format", "json"))
+    assert (one["result"], one["detail"]) == (other["result"], other["detail"])
+
+
 def test_the_worst_of_several_is_the_exit_status(fretc: Fretc, r1: str, made: str) -> None:
     write("r2.fret", R1)
     edited(made, "oldest_1 >= 2", "oldest_1 >= 3")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,8 +11,15 @@ import pytest
 from compiler.project.folder import load
 from compiler.targets.c.monitor import TARGET
 from compiler.targets.target import Options
+from fretish import expressions as e
+from fretish.bindings.declarations import Declarations, Proposition, Signal
+from fretish.bindings.declarations import Path as Place
+from fretish.clock import Clock
+from fretish.diagnostics.source import Source
+from fretish.units import ONE
 from tests.c_monitors import STRICT, compiler
 from tests.each import each
+from tests.emitting import rule
 
 ROOT = Path(__file__).parents[4]
 
@@ -46,3 +54,26 @@ def test_inexact_arithmetic_is_no_text_that_compiles(flag: str, tmp_path: Path) 
     done = subprocess.run(compile_, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode != 0
     assert "#error" in done.stderr
+
+
+def test_names_of_one_requirement_are_no_names_of_another(tmp_path: Path) -> None:
+    """In one program, with each header in one file: a function is of a signal, or of a monitor."""
+    names = ("init", "step", "state", "inputs", "motor_init", "motor_step", "x_sample_init")
+    place, declared = Place("/t", ("f",)), e.Or(tuple(map(e.Name, names)))
+    signals = {name: Signal(name, place, ONE, "") for name in names}
+    bound = {"p": Proposition("p", declared)}
+    declarations = Declarations(Source("bindings.toml", ""), Clock(10**8), signals, bound)
+    ids = ("R1", "R1_sample", "R1_sample_motor", "R1_sample_x_sample", "R1_step", "R1_samples")
+    subjects = [rule("the sw shall always satisfy p", id) for id in ids]
+    rules = [replace(subject, declarations=declarations) for subject in subjects]
+    apart = [file for alone in rules for file in TARGET.emit([alone])]
+    assert [*TARGET.emit(rules)] == apart
+    for file in apart:
+        tmp_path.joinpath(str(file.path)).write_text(file.text, encoding="utf-8")
+    headers = sorted(path.name for path in tmp_path.glob("*.h"))
+    includes = "".join(f'#include "{name}"\n' for name in headers)
+    tmp_path.joinpath("main.c").write_text(f"{includes}int main(void) {{ return 0; }}\n")
+    sources = sorted(path.name for path in tmp_path.glob("*.c"))
+    compile_ = [compiler("gcc"), *STRICT, *sources, "-o", "main"]
+    done = subprocess.run(compile_, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[:2000]

@@ -1,4 +1,5 @@
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -10,6 +11,7 @@ from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
+from compiler.targets.target import Options
 from fretc.cli import cli
 from fretc.report.forms.junit import junit
 from fretc.report.make import ReportBuild, make
@@ -47,9 +49,18 @@ def proof(known: Project, outcome: str = "proved", **changes: Any) -> dict[str, 
     }
 
 
-def reported(folder: Path, *lines: dict[str, Any], verify: list[str]) -> ReportBuild:
-    """The report about R1, satisfied in one run, and what was proved of it."""
-    known = project(folder, requirement("R1", SENTENCE, verify=verify))
+def reported(
+    folder: Path, *lines: dict[str, Any], verify: list[str], beside: Sequence[str] = ()
+) -> ReportBuild:
+    """The report about R1, satisfied in one run, and what was proved of it.
+
+    Args:
+        folder: for its files.
+        lines: what differs in each proof.
+        verify: the planned methods.
+        beside: further requirements.
+    """
+    known = project(folder, requirement("R1", SENTENCE, verify=verify), *beside)
     path, proofs = folder / "evidence.json", folder / "verification.json"
     audited = evidence(known, result(known, "satisfied", latencies_s=[]))
     path.write_text(json.dumps(audited), encoding="utf-8")
@@ -146,12 +157,29 @@ def test_a_proof_of_the_monitor_in_another_language_stands(
     """If it is about the text that is made now; the same header says nothing."""
     folder = tmp_path_factory.mktemp(kind)
     (rule,) = project(folder, requirement("R1", SENTENCE, verify=["verify"])).rules
-    files = {file.path.name: sha256(file.text) for file in TARGETS[kind].emit([rule])}
+    made = reversed(TARGETS[kind].emit([rule]))  # a crate of samples has a `lib.rs` as well
+    files = {file.path.name: sha256(file.text) for file in made}
     (name,) = files.keys() & {"r1_monitor.c", "lib.rs", "r1_monitor.mjs"}
     for artefacts, doubts in ((files, 0), ({**files, name: "0" * 64}, 1)):
         report = reported(folder, {"artefacts": artefacts}, verify=["verify"])
         (view,) = as_json(report)["requirements"][0]["proofs"]
         assert len(view["suspicions"]) == doubts
+
+
+@each("kind", ["monitor", "c", "rust", "js"])
+def test_a_proof_of_the_monitor_of_all_requirements_stands(
+    tmp_path_factory: pytest.TempPathFactory, kind: str
+) -> None:
+    """Until one of them changes."""
+    folder = tmp_path_factory.mktemp(kind)
+    beside = [requirement(id, SENTENCE.replace("30", ticks)) for id, ticks in (("R2", "5"),)]
+    rules = project(folder, requirement("R1", SENTENCE, verify=["verify"]), *beside).rules
+    made = TARGETS[kind].emit(rules, Options(one_file=True))
+    files = {file.path.name: sha256(file.text) for file in reversed(made)}
+    for others, doubts in ((beside, 0), ([beside[0].replace("5", "6")], 1)):
+        report = reported(folder, {"artefacts": files}, verify=["verify"], beside=others)
+        (view,) = as_json(report)["requirements"][0]["proofs"]
+        assert len(view["suspicions"]) == doubts, view["suspicions"]
 
 
 def test_a_prover_is_found_by_its_engine(tmp_path: Path) -> None:

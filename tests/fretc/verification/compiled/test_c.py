@@ -175,3 +175,26 @@ def test_undefined_behaviour_ends_the_process_and_proves_nothing() -> None:
     ((_, outcome, _, _),) = verified([one], wrong, c, CC, LIMITS)
     assert outcome.result is Result.NOT_CHECKED
     assert "crashed" in outcome.detail
+
+
+@pytest.mark.slow
+def test_an_overflow_that_a_compiler_need_not_see_proves_nothing() -> None:
+    """Without it, the text would mean the same."""
+    one = rule(WITHIN)
+    counted = "(rail->oldest_1 < 4) ? (rail->oldest_1 + 1) : 4"
+    twice, harmless = f"{counted} : {counted}", "rail->oldest_1 < 9"
+    fine = edited(given_c(one), counted, f"({harmless}) ? {twice}")
+    ((_, outcome, _, _),) = verified([one], fine, c, CC, LIMITS)
+    assert outcome.result is Result.PROVED, outcome.detail
+    for overflow in (
+        "2147483643 + rail->oldest_1 + 1 > 2147483643 + rail->oldest_1",
+        "(2147483643 + rail->oldest_1) - 2147483643 == rail->oldest_1",
+        "2147483643 + rail->oldest_1 > rail->oldest_1",
+        "((rail->oldest_1 < 9) ? (2147483643 + rail->oldest_1) : 4) > 0",
+        "2147483647 + 1 < 0",
+        "0 - 2147483647 - 2 < 0",
+    ):
+        wrong = edited(given_c(one), counted, f"({overflow}) ? {twice}")
+        ((_, outcome, _, _),) = verified([one], wrong, c, CC, LIMITS)
+        assert outcome.result is Result.NOT_CHECKED, overflow
+        assert "not laid out" in outcome.detail, (overflow, outcome.detail)
