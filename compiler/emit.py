@@ -23,6 +23,7 @@ _MODULES: Mapping[str, str] = {
     "interceptor": "python.interceptor",
     "ros1-package": "ros.ros1",
     "ros2-package": "ros.ros2",
+    "ros2-cpp-package": "ros.ros2cpp",
     "dafny": "dafny",
     "smv": "automata.smv",
     "hoa": "automata.hoa",

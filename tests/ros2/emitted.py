@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from compiler.emit import TARGETS
 from compiler.project.folder import load
 from compiler.project.paths import listed
-from compiler.targets.ros.ros2 import TARGET
 from compiler.targets.target import Options
 from tests.ros2.messages import message_class
 from tests.ros2.world import Process, World
@@ -18,14 +18,15 @@ FORWARD = 0.4
 """Metres per second that the planner wants."""
 
 
-def write(requirements: Path, folder: Path) -> Path:
+def write(requirements: Path, folder: Path, kind: str = "ros2-package") -> Path:
     """The package of a folder of requirements; its folder."""
+    target = TARGETS[kind]
     paths = listed([str(requirements)])
     assert isinstance(paths, list)
     project = load(paths)
     assert len(project.rules) == len(paths), project.diagnostics
-    assert [refusal for rule in project.rules if (refusal := TARGET.refuse(rule))] == []
-    artifacts = TARGET.emit(project.rules, Options(declarations=project.declarations))
+    assert [refusal for rule in project.rules if (refusal := target.refuse(rule))] == []
+    artifacts = target.emit(project.rules, Options(declarations=project.declarations))
     for artifact in artifacts:
         path = folder / artifact.path
         path.parent.mkdir(parents=True, exist_ok=True)

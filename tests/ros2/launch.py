@@ -9,10 +9,14 @@ handler was not registered is lost.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import Any
+
+import pytest
 
 from tests.ros2.rclpy import LifecycleNode
 
@@ -125,3 +129,14 @@ class Launch:
             for action in self.of("LifecycleNode"):
                 if event.lifecycle_node_matcher(action):
                     self.change(action, _TRANSITIONS[event.transition_id])
+
+
+def launched(package: Path) -> Launch:
+    """The launch file of an emitted package, executed."""
+    text = (package / f"launch/{package.name}.launch.py").read_text()
+    with pytest.MonkeyPatch.context() as patched:
+        for name, module in modules().items():
+            patched.setitem(sys.modules, name, module)
+        space: dict[str, Any] = {}
+        exec(compile(text, "launch.py", "exec"), space)
+        return Launch(space["generate_launch_description"]())

@@ -17,7 +17,7 @@ from typing import Any
 
 from rosbags.typesys import Stores, get_typestore
 
-_STORE = get_typestore(Stores.ROS2_HUMBLE)
+STORE = get_typestore(Stores.ROS2_HUMBLE)
 _CODES = {
     "float32": "f",
     "float64": "d",
@@ -72,7 +72,7 @@ def message_class(name: str) -> type[Any]:
         KeyError: no such type is known.
     """
     package, _, short = name.partition("/")
-    constants, fields = _STORE.fielddefs[f"{package}/msg/{short}"]
+    constants, fields = STORE.fielddefs[f"{package}/msg/{short}"]
     values = {
         constant: bytes([int(value)]) if kind == "byte" else value
         for constant, kind, value in constants

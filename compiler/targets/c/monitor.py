@@ -20,6 +20,7 @@ from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.program.program import Counter
 from compiler.program.rails import Reading, Ring, rail
+from compiler.signals.functions import Functions, functions
 from compiler.targets.c import signals
 from compiler.targets.c.printer import Printer
 from compiler.targets.comparison_names import comparison_names, in_words
@@ -123,7 +124,7 @@ def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact,
     header = render(
         "c/monitor.h.j2",
         **values,
-        guard=_guard(name),
+        guard=signals.guard(name),
         rules=[described(rule) for rule in rules],
         tick=str(rules[0].clock) if rules[0].clock else "not declared",
         version=__version__,
@@ -135,9 +136,34 @@ def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact,
         Artifact(PurePosixPath(f"{name}.{ending}"), text)
         for ending, text in (("c", source), ("h", header))
     )
+    return (*monitor, *signals.files(name, base, rules, printer.names, _reserved_by(rules)))
+
+
+def _reserved_by(rules: Sequence[Formalized]) -> frozenset[str]:
+    """What no name of a signal may be."""
     read = {n for rule in rules if rule.declarations for n in rule.declarations.signals}
-    reserved = _RESERVED | {*filter(_TAKEN.fullmatch, read)}
-    return (*monitor, *signals.files(name, base, rules, printer.names, reserved))
+    return _RESERVED | {*filter(_TAKEN.fullmatch, read)}
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """What a caller of one monitor for all rules names; all names begin with `monitors`."""
+
+    inputs: Mapping[str, str]
+    """Proposition → the member of the inputs."""
+    outcomes: tuple[str, ...]
+    """The member of each rule."""
+    signals: Functions
+    """From samples to the inputs."""
+
+
+@deep
+def joined(rules: Sequence[Formalized]) -> Joined:
+    """Of `emit` with `one_file`, for rules with bindings."""
+    printer = printed("monitors", rules)
+    found = functions(rules, printer.names, signals.LANGUAGE, _reserved_by(rules))
+    assert found is not None, "there are bindings"
+    return Joined(printer.names, tuple(each.prefix for each in printer.rail.readings), found)
 
 
 def printed(name: str, rules: Sequence[Formalized]) -> Printer:
@@ -149,16 +175,12 @@ def printed(name: str, rules: Sequence[Formalized]) -> Printer:
     """
     propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
     spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
-    reserved = _RESERVED | {_guard(name), *filter(_TAKEN.fullmatch, propositions)}
+    reserved = _RESERVED | {signals.guard(name), *filter(_TAKEN.fullmatch, propositions)}
     names = legal_names(propositions, reserved, names=spoken)
     prefixes = prefixes_of([rule.id for rule in rules])
     members = legal_names(prefixes, reserved, names=prefixes)
     made = rail(program({rule.id: rule.watch for rule in rules}), members)
     return Printer.of(made, names)
-
-
-def _guard(name: str) -> str:
-    return f"{name.upper()}_H"
 
 
 def _values(printer: Printer) -> dict[str, Any]:

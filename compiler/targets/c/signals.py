@@ -35,7 +35,7 @@ def files(
         names: the monitor's input of each proposition.
         reserved: what no name may be.
     """
-    found = functions(rules, names, _LANGUAGE, reserved)
+    found = functions(rules, names, LANGUAGE, reserved)
     if found is None:
         return ()
     file = file_name(name)
@@ -44,7 +44,7 @@ def files(
     header = render(
         "c/signals.h.j2",
         **common,
-        guard=f"{file.upper()}_H",
+        guard=guard(file),
         monitor=f"{name}.h",
         kernel=render("c/numbers.h.j2"),
     )
@@ -52,6 +52,11 @@ def files(
         Artifact(PurePosixPath(f"{file}.{ending}"), text)
         for ending, text in (("c", source), ("h", header))
     )
+
+
+def guard(file: str) -> str:
+    """The macro that a header of this name defines; a file may begin with a digit, as an id."""
+    return f"{'FRETC_' if file[:1].isdigit() else ''}{file.upper()}_H"
 
 
 def _double(value: float) -> str:
@@ -83,7 +88,7 @@ def _scale(value: Fraction) -> str:
     return ", ".join(map(_double, parts(value)))
 
 
-_LANGUAGE = Language(
+LANGUAGE = Language(
     prefix="fretc_",
     truths={True: "FRETC_TRUE", False: "FRETC_FALSE", None: "FRETC_UNKNOWN"},
     signs={sign: f"FRETC_{name}" for sign, name in _SIGNS.items()},

@@ -112,7 +112,7 @@ def setting(rules: Sequence[Formalized]) -> Setting:
         declared.clock.phase,
         declared.clock.patience or 0,
         declared.clock.time is TimeSource.HEADER_STAMP,
-        tuple(f"({rule.id!r}, {_topics(rule)!r})" for rule in rules),
+        tuple(f"({rule.id!r}, {topics_of(rule)!r})" for rule in rules),
     )
 
 
@@ -129,7 +129,8 @@ class Setting:
     reads: tuple[str, ...]
 
 
-def _topics(rule: Formalized) -> tuple[str, ...]:
+def topics_of(rule: Formalized) -> tuple[str, ...]:
+    """The topics that its propositions read."""
     found = instant([rule])
     assert found is not None, "it is refused"
     return tuple(dict.fromkeys(policy.signal.path.topic for policy in found.policies))
@@ -203,8 +204,8 @@ def _meaning(meaning: Meaning) -> str:
         for text, (_, duration) in zip(asked, meaning.held, strict=True)
     )
     parts: dict[str, object] = {
-        "outer": tuple(_places(meaning.truth)),
-        "lookback": _lookback(meaning.truth, meaning),
+        "outer": tuple(places(meaning.truth)),
+        "lookback": lookback(meaning.truth, meaning),
         "on_unknown": meaning.on_unknown,
     }
     texts = {name: repr(part) for name, part in parts.items() if part not in (None, (), 0)}
@@ -213,7 +214,7 @@ def _meaning(meaning: Meaning) -> str:
     if held:
         texts["held"] = f"({held.strip()})"
     texts["aggregate"] = repr(str(meaning.aggregate))
-    signals = tuple(dict.fromkeys(_signals(meaning)))
+    signals = tuple(dict.fromkeys(signals_of(meaning)))
     head = [repr(meaning.name), repr(signals), f"lambda row, held: {_truth(meaning.truth)}"]
     return f"Meaning({', '.join([*head, *_named(texts)])})"
 
@@ -222,25 +223,27 @@ def _named(texts: dict[str, str]) -> Iterator[str]:
     return (f"{name}={text}" for name, text in texts.items())
 
 
-def _lookback(tree: n.Truth, meaning: Meaning) -> int:
+def lookback(tree: n.Truth, meaning: Meaning) -> int:
     """The durations within each other, added up."""
     return max(
         (
-            meaning.held[place][1] + _lookback(meaning.held[place][0], meaning)
-            for place in _places(tree)
+            meaning.held[place][1] + lookback(meaning.held[place][0], meaning)
+            for place in places(tree)
         ),
         default=0,
     )
 
 
-def _signals(meaning: Meaning) -> Iterator[str]:
+def signals_of(meaning: Meaning) -> Iterator[str]:
+    """The signals that it reads, some more than once."""
     for tree in (meaning.truth, *(part for part, _ in meaning.held)):
         for part in _parts(tree):
             if isinstance(part, n.Flag | n.Given):
                 yield part.name
 
 
-def _places(tree: n.Truth) -> list[int]:
+def places(tree: n.Truth) -> list[int]:
+    """Of what has to hold for a duration, that it asks for."""
     return [part.place for part in _parts(tree) if isinstance(part, n.Held)]
 
 

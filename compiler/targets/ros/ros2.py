@@ -79,13 +79,14 @@ def _values(package: Package) -> dict[str, Any]:
     lines = sorted((*_NODE.items(), *messages.items()))
     return {
         "package": package,
+        "apart": False,
         "version": __version__,
         "dependencies": sorted({*_NEEDED, *package.dependencies}),
         "imports": [
             f"from {at} import {names}" if names else f"import {at}" for at, names in lines
         ],
         "sources": [
-            (topic.name, f"{topic.package}.msg.{topic.message}", _qos(topic))
+            (topic.name, f"{topic.package}.msg.{topic.message}", qos(topic))
             for topic in package.topics
         ],
         "parameters": [
@@ -100,7 +101,8 @@ def _literal(value: float | Sequence[str]) -> str:
     return repr(value) if isinstance(value, float) else json.dumps(list(value))
 
 
-def _qos(topic: Topic) -> str:
+def qos(topic: Topic) -> str:
+    """How the node subscribes to it, in Python."""
     return "qos_profile_sensor_data" if topic.package in _SENSORS else "10"
 
 

@@ -10,8 +10,9 @@ from compiler.project.folder import load
 from compiler.targets.target import Options
 from tests.emitting import emitted
 
-SHARED = ("monitor.py", "perception.py", "interceptor.py", "test_monitor.py")
-"""What packages of ROS carry and other targets make, or other tests run."""
+SHARED = {"monitor.py", "perception.py", "interceptor.py", "test_monitor.py", "perception.hpp"}
+SHARED |= {f"monitors{part}.{kind}" for part in ("", "_signals") for kind in ("c", "h")}
+"""What packages of ROS carry that is in all of them, or that other targets make."""
 R1 = Path(__file__).parent.parent.parent.parent / "requirements"
 
 

@@ -8,7 +8,6 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 import yaml
@@ -16,7 +15,7 @@ from catkin_pkg.package import parse_package
 
 from tests.ros1 import PYTHON
 from tests.ros2.emitted import Robot, write
-from tests.ros2.launch import Launch, modules
+from tests.ros2.launch import launched
 
 ROOT = Path(__file__).parents[4]
 BIN = Path(sys.executable).parent
@@ -134,16 +133,6 @@ def test_ros_2s_linters_find_nothing(subject: str, tmp_path: Path) -> None:
 
 
 # The launch file ----------------------------------------------------------------------------------
-
-
-def launched(package: Path) -> Launch:
-    text = (package / f"launch/{package.name}.launch.py").read_text()
-    with pytest.MonkeyPatch.context() as patched:
-        for name, module in modules().items():
-            patched.setitem(sys.modules, name, module)
-        space: dict[str, Any] = {}
-        exec(compile(text, "launch.py", "exec"), space)
-        return Launch(space["generate_launch_description"]())
 
 
 def test_each_start_of_the_monitor_makes_it_active_and_nothing_else_does(package: Path) -> None:

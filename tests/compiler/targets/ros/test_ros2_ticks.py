@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import math
+import subprocess
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from hypothesis import strategies as st
 from fretc.api.requirements import read_project
 from fretc.audit.plan import Plan, planned
 from fretc.watch.sources.source import Arrival
+from tests.c_monitors import CHECKED, compiler
 from tests.fretc.watch.sent import MS, START, Sent
 from tests.fretc.watch.test_session import audited_rows, recorded
 from tests.ros2.emitted import write
@@ -83,9 +85,17 @@ class Posed(Sent):
         return found
 
 
+@dataclass(frozen=True)
+class Subject:
+    """The emitted package of a setting, and the plan of an audit."""
+
+    package: Path
+    plan: Plan = field(repr=False)
+
+
 @pytest.fixture(scope="module")
-def subjects(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, int], tuple[Path, Plan]]:
-    """Of each setting the emitted package, and the plan of an audit."""
+def subjects(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, int], Subject]:
+    """Of each setting."""
     found = {}
     for time, lateness in SETTINGS:
         folder = tmp_path_factory.mktemp("requirements")
@@ -94,7 +104,7 @@ def subjects(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, int], 
         (folder / "bindings.toml").write_text(BINDINGS.format(time=time, lateness=lateness))
         plan = planned(read_project(folder))
         assert isinstance(plan, Plan), plan
-        found[time, lateness] = write(folder, folder / "src"), plan
+        found[time, lateness] = Subject(write(folder, folder / "src"), plan)
     return found
 
 
@@ -120,17 +130,150 @@ def node(package: Path, some: Sequence[Posed], idle: int) -> Any:
 @pytest.mark.slow
 @given(st.sampled_from(SETTINGS), messages, st.sampled_from([0, 3, 40]))
 def test_every_tick_is_that_of_the_audit(
-    subjects: dict[tuple[str, int], tuple[Path, Plan]],
+    subjects: dict[tuple[str, int], Subject],
     setting: tuple[str, int],
     some: list[Sent],
     idle: int,
 ) -> None:
-    package, plan = subjects[setting]
+    subject = subjects[setting]
     ordered = sorted(some, key=lambda each: each.arrival.log_time)
     posed = [Posed(**vars(each), rank=rank) for rank, each in enumerate(ordered)]
-    ledger = node(package, posed, idle)._voice._guard._judging.ledger
-    _, _, recording = recorded(plan, posed, idle)
-    rows = audited_rows(plan, recording)
+    ledger = node(subject.package, posed, idle)._voice._guard._judging.ledger
+    _, _, recording = recorded(subject.plan, posed, idle)
+    rows = audited_rows(subject.plan, recording)
     live = [(ledger.time(i), dict(ledger.row(i))) for i in range(len(ledger))]
     assert live == rows[: len(live)]
     assert len(rows) - len(live) <= 12
+
+
+# The same in C++ ---------------------------------------------------------------------------------
+
+DRIVER = """
+#include <cstdio>
+#include <iostream>
+#include <string>
+#include "setting.hpp"
+#include "guard.hpp"
+
+struct Point { double x, y, z; };
+struct Posed { Point point; };
+
+static void tell(fretc::Guard<fretc::Machine> & guard, double steady)
+{
+  std::printf("%s", guard.stop(steady) ? "[true" : "[false");
+  for (const std::string & line : guard.news()) { std::printf(", %s", line.c_str()); }
+  std::printf("]\\n");
+}
+
+int main()
+{
+  fretc::Setting setting = fretc::setting();
+  long long lateness, topic, stamp, arrival;
+  std::cin >> setting.stamped >> lateness;
+  setting.lateness = lateness;
+  fretc::Guard<fretc::Machine> guard(setting, {0, 1}, 0.02);
+  std::string value;
+  while (std::cin >> topic >> stamp >> arrival >> value) {
+    const Posed message{{std::stod(value), 0.0, 0.0}};
+    const double steady = static_cast<double>(arrival) / 1e9;
+    if (topic < 0) {
+      guard.pass_to(arrival);
+    } else {
+      guard.arrive(topic, stamp, arrival, steady,
+        topic == 0 ? fretc::read_0(message) : fretc::read_1(message));
+    }
+    tell(guard, steady);
+  }
+  for (const auto & tick : guard.judging().ticks()) {
+    std::printf("[%lld", static_cast<long long>(tick.time));
+    for (const auto truth : tick.row) { std::printf(", %d", truth); }
+    std::printf("]\\n");
+  }
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Judges arrivals by the emitted headers in C++ and the monitors in C."""
+    folder = tmp_path_factory.mktemp("cpp")
+    for i, sentence in enumerate(SENTENCES):
+        (folder / f"R{i}.fret").write_text(sentence)
+    (folder / "bindings.toml").write_text(BINDINGS.format(time="header.stamp", lateness=5))
+    source = write(folder, folder / "package", "ros2-cpp-package") / "src"
+    (folder / "driver.cpp").write_text(DRIVER)
+    strict = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split()
+    objects = []
+    for name in ("monitors", "monitors_signals"):
+        objects.append(str(folder / f"{name}.o"))
+        command = [compiler("gcc"), "-std=c99", "-c", str(source / f"{name}.c"), "-o", objects[-1]]
+        subprocess.run([*command, *CHECKED], check=True)
+    command = [
+        compiler("g++"),
+        "-std=c++17",
+        *strict,
+        *CHECKED,
+        f"-I{source}",
+        "-Wno-float-conversion",
+    ]
+    command += [str(folder / "driver.cpp"), *objects, "-o", str(folder / "driver")]
+    subprocess.run(command, check=True)
+    return folder / "driver"
+
+
+@pytest.mark.slow
+@given(st.sampled_from(SETTINGS), messages, st.sampled_from([0, 3, 40, 5000]))
+def test_the_package_in_cpp_says_the_same(
+    program: Path,
+    subjects: dict[tuple[str, int], Subject],
+    setting: tuple[str, int],
+    some: list[Sent],
+    idle: int,
+) -> None:
+    package = subjects[setting].package
+    module = World().process().load(package, "perception")
+    monitors = World().process().load(package, "monitor")
+    guard = module.Guard(monitors.MONITOR, module.SETTING, (), 0.02)
+    ordered = sorted(some, key=lambda each: each.arrival.log_time)
+    posed = [Posed(**vars(each), rank=rank) for rank, each in enumerate(ordered)]
+    lines = [f"{int(module.SETTING.stamped)} {module.SETTING.lateness}"]
+    expected = []
+    for each in posed:
+        arrival = each.arrival.log_time
+        guard.arrive(each.topic, each.message, arrival, arrival / 1e9)
+        expected.append([guard.stop(arrival / 1e9), *_states(guard)])
+        value = "nan" if each.value is None else each.value
+        topic = module.SETTING.topics.index(each.topic)
+        lines.append(f"{topic} {START + each.at * MS} {arrival} {value}")
+    end = posed[-1].arrival.log_time + idle * MS
+    guard.pass_to(end)
+    expected.append([guard.stop(end / 1e9), *_states(guard)])
+    lines.append(f"-1 0 {end} 0")
+    ran = subprocess.run(
+        [program], input="\n".join(lines), capture_output=True, text=True, check=False
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    told = [json.loads(line) for line in ran.stdout.splitlines()]
+    known: dict[str, Any] = {}
+    for expectation, (stop, *news) in zip(expected, told, strict=False):
+        known |= {line["requirement"]: line for line in news}
+        found = [tuple(known[id][name] for name in STATE) for id in ("R0", "R1")]
+        assert [stop, *found] == expectation
+    ledger = guard._judging.ledger
+    names = [meaning.name for meaning in module.SETTING.meanings]
+    rows = [
+        [ledger.time(i), *(_code(ledger.row(i)[name]) for name in names)]
+        for i in range(len(ledger))
+    ]
+    assert told[len(expected) :] == rows
+
+
+STATE = ("verdict", "owed", "triggered_ns", "violated_ns")
+
+
+def _states(guard: Any) -> list[tuple[Any, ...]]:
+    return [tuple(getattr(state, name) for name in STATE) for state in guard.states()]
+
+
+def _code(truth: bool | None) -> int:
+    return 2 if truth is None else int(truth)

@@ -1,0 +1,225 @@
+"""`--emit ros2-cpp-package`: a package of ROS 2 around the monitor in C (`ament_cmake`, rclcpp).
+
+It watches beside the package in Python, by other texts: its requests to stop are on a topic of its
+own, until somebody remaps it.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import PurePosixPath
+from textwrap import wrap
+from typing import Any
+
+from compiler.files.artifact import Artifact
+from compiler.files.edition import __version__
+from compiler.files.templating import render
+from compiler.formalization.formalized import Formalized
+from compiler.signals.functions import SignalFunction
+from compiler.signals.policies import Meaning, Policy, instant
+from compiler.signals.printing import parts
+from compiler.targets.c import monitor
+from compiler.targets.c.monitor import Joined, joined
+from compiler.targets.python import perception
+from compiler.targets.python.monitor import described
+from compiler.targets.ros import package as shared
+from compiler.targets.ros.package import Package
+from compiler.targets.ros.ros2 import qos
+from compiler.targets.target import DEFAULT, Options, Target
+from compiler.targets.words import Ticks, words
+from fretish.bindings.declarations import Reading, Reduce
+from fretish.clock import TimeSource
+from fretish.diagnostics.diagnostic import Diagnostic
+
+_TEMPLATES = {
+    "package.xml": "package.xml.j2",
+    "CMakeLists.txt": "CMakeLists.txt.j2",
+    "src/perception.hpp": "perception.hpp.j2",
+    "src/guard.hpp": "guard.hpp.j2",
+    "src/setting.hpp": "setting.hpp.j2",
+    "src/node.cpp": "node.cpp.j2",
+    "test/test_monitors.cpp": "test_monitors.cpp.j2",
+    "README.md": "README.md.j2",
+}
+
+
+def refuse(rule: Formalized) -> Diagnostic | None:
+    """F312 and F601: what no monitor in C, and no node of ROS, can be made of."""
+    return shared.refuse(rule) or monitor.refuse(rule)
+
+
+def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+    """A folder with the name of the package.
+
+    Raises:
+        AssertionError: some rules were to be refused.
+    """
+    whole = shared.package(rules, options)
+    package = replace(whole, name=f"{whole.name}_cpp", interception=None)
+    values = _values(package) | {"whole": whole}
+    files = {
+        place.format(name=package.name): render(f"ros2cpp/{template}", **values)
+        for place, template in _TEMPLATES.items()
+    }
+    documents = shared.documents(package, 2)
+    files |= {name: documents[name] for name in ("LICENSE", "CHANGELOG.rst")}
+    files[f"config/{package.name}.yaml"] = render("ros2/config.yaml.j2", **values)
+    files[f"launch/{package.name}.launch.py"] = render("ros2/launch.py.j2", **values)
+    for artifact in monitor.emit(rules, Options(one_file=True)):
+        files[f"src/{artifact.path}"] = artifact.text
+    folder = PurePosixPath(package.name)
+    return tuple(Artifact(folder / path, text) for path, text in files.items())
+
+
+def _values(package: Package) -> dict[str, Any]:
+    found = instant(package.rules)
+    assert found is not None, "it is refused"
+    names = joined(package.rules)
+    places = {policy.signal.name: place for place, policy in enumerate(found.policies)}
+    topics = [topic.name for topic in package.topics]
+    signals = [
+        _signal(policy, each)
+        for policy, each in zip(found.policies, names.signals.signals, strict=True)
+    ]
+    order = {meaning.name: place for place, meaning in enumerate(found.meanings)}
+    return {
+        "package": package,
+        "apart": True,
+        "version": __version__,
+        "stamped": package.time is TimeSource.HEADER_STAMP,
+        "messages": sorted({"rcl_interfaces", *package.dependencies}),
+        "headers": sorted(
+            {f"{each.package}/msg/{snake(each.message)}.hpp" for each in package.topics}
+            - {"std_msgs/msg/bool.hpp", "std_msgs/msg/string.hpp"}
+        ),
+        "topics": [
+            {
+                "name": topic.name,
+                "package": topic.package,
+                "message": topic.message,
+                "is_sensor": qos(topic) != "10",
+                "signals": [each for each in signals if each["topic"] == topic.name],
+            }
+            for topic in package.topics
+        ],
+        "outlines": [each for each in signals if each["outline"]],
+        "samples": [each["name"] for each in signals],
+        "policies": [
+            {
+                "topic": topics.index(policy.signal.path.topic),
+                "max_age": _optional(policy.signal.max_age),
+            }
+            for policy in found.policies
+        ],
+        "any_held": any(meaning.held for meaning in found.meanings),
+        "meanings": _meanings(found.meanings, names, places),
+        "inputs": [(member, order[name]) for name, member in names.inputs.items()],
+        "requirements": [
+            {
+                "id": rule.id,
+                "member": member,
+                "topics": [topics.index(name) for name in perception.topics_of(rule)],
+                "described": described(rule),
+            }
+            for rule, member in zip(package.rules, names.outcomes, strict=True)
+        ],
+        "words": [
+            (place, word.name, [_ticks(each, order) for each in word.ticks])
+            for place, rule in enumerate(package.rules)
+            for word in words(rule)
+        ],
+        "parameters": [
+            (each, _literal(each.value), wrap(each.text, 80, drop_whitespace=False))
+            for each in package.parameters
+        ],
+    }
+
+
+def _ticks(ticks: Ticks, order: Mapping[str, int]) -> dict[str, Any]:
+    return {
+        "count": ticks.count,
+        "values": [(order[name], str(value).lower()) for name, value in ticks.values.items()],
+        "verdict": f"FRETC_{ticks.verdict.upper()}",
+        "finite": _TRUTHS[ticks.finite],
+    }
+
+
+def _signal(policy: Policy, function: SignalFunction) -> dict[str, Any]:
+    signal = policy.signal
+    return {
+        "name": function.name,
+        "form": function.form,
+        "fields": function.fields,
+        "parameters": "".join(f", double f_{each}" for each in function.fields),
+        "valid": function.valid,
+        "invalid": ", ".join(map(_MEANINGS.__getitem__, function.invalid)),
+        "numbers": function.numbers,
+        "topic": signal.path.topic,
+        "path": ".".join(signal.path.fields),
+        "place": signal.path.index,
+        "outline": signal.reduce is Reduce.OUTLINE,
+        "beside": [f", static_cast<double>(message.{field})" for field in policy.fields],
+        "footprint": signal.footprint,
+        "sensor": signal.sensor,
+        "scale": ", ".join(float(part).hex() for part in parts(signal.unit.factor)),
+    }
+
+
+_MEANINGS = {
+    Reading.DROP: "FRETC_DROP",
+    Reading.FAR: "FRETC_FAR",
+    Reading.NEAR: "FRETC_NEAR",
+    Reading.UNKNOWN: "FRETC_UNKNOWABLE",
+}
+
+
+def _meanings(
+    meanings: Sequence[Meaning], names: Joined, places: Mapping[str, int]
+) -> list[dict[str, Any]]:
+    held = iter(names.signals.held)
+    return [
+        {
+            "name": names.inputs[meaning.name],
+            "text": meaning.name,
+            "held": [next(held).name for _ in meaning.held],
+            "durations": [duration for _, duration in meaning.held],
+            "signals": sorted({places[name] for name in perception.signals_of(meaning)}),
+            "outer": sorted({*perception.places(meaning.truth)}),
+            "lookback": perception.lookback(meaning.truth, meaning),
+            "aggregate": str(meaning.aggregate).upper(),
+            "on_unknown": _TRUTHS[meaning.on_unknown],
+        }
+        for meaning in meanings
+    ]
+
+
+_TRUTHS = {True: "FRETC_TRUE", False: "FRETC_FALSE", None: "FRETC_UNKNOWN"}
+
+
+def _optional(value: int | None) -> str:
+    return "std::nullopt" if value is None else str(value)
+
+
+def _literal(value: float | Sequence[str]) -> str:
+    return repr(value) if isinstance(value, float) else json.dumps(list(value))
+
+
+def snake(name: str) -> str:
+    """`LaserScan` → `laser_scan`, as rosidl names headers."""
+    text = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
+    return re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", text).lower()
+
+
+TARGET = Target(
+    "ros2-cpp-package",
+    "a package of ROS 2 around the monitor in C, with a lifecycle node in C++",
+    emit,
+    refuse,
+    monitor.TARGET.remark,
+    per_rule=False,
+    together=True,
+    next_step="`colcon build` builds it; fill in the maintainer and the license of `{}`",
+)

@@ -1,0 +1,81 @@
+"""Messages of ROS 2 as structs of C++, for the node in C++ beside `tests/ros2/rclcpp/fake.hpp`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from tests.ros2.messages import STORE
+
+_BASES = {"float32": "float", "float64": "double", "string": "std::string", "byte": "uint8_t"}
+_BASE, _NAME, _ARRAY = 1, 2, 3
+
+
+def write_headers(
+    folder: Path, types: list[str], fields: dict[str, str], snake: Callable[[str], str]
+) -> None:
+    """The headers that the node includes; each includes `fake.hpp`.
+
+    Args:
+        folder: where they go.
+        types: of messages, `std_msgs/Bool`.
+        fields: of a type that the node hears, what fills a message `m` from the stream `text`; of
+            one that it publishes, what a line says of a message `m`.
+        snake: `LaserScan` → `laser_scan`.
+    """
+    known: dict[str, str] = {}
+    for name in types:
+        _define(name.replace("/", "/msg/"), known)
+    tells = "".join(
+        f"inline std::string tell(const {_cpp(name)} & m) {{{body}}}\n"
+        if "return" in body
+        else f"template<> inline {_cpp(name)} made<{_cpp(name)}>(std::istream & text) "
+        f"{{{_cpp(name)} m; {body} return m;}}\n"
+        for name, body in fields.items()
+    )
+    (folder / "messages.hpp").write_text(
+        "#pragma once\n#include <array>\n#include <cstdint>\n#include <memory>\n"
+        "#include <sstream>\n#include <string>\n#include <vector>\n"
+        + "".join(known.values())
+        + "template<class Message> Message made(std::istream & text);\n"
+        + tells
+    )
+    headers = [f"{name.split('/')[0]}/msg/{snake(name.split('/')[1])}.hpp" for name in types]
+    headers += [
+        "rclcpp/rclcpp.hpp",
+        *(f"rclcpp_lifecycle/lifecycle_{x}.hpp" for x in ("node", "publisher")),
+    ]
+    for header in headers:
+        path = folder / header
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text('#include "fake.hpp"\n')
+
+
+def _cpp(name: str) -> str:
+    package, _, short = name.partition("/")
+    return f"{package}::msg::{short.removeprefix('msg/')}"
+
+
+def _define(name: str, known: dict[str, str]) -> None:
+    """The struct, after those of its parts."""
+    if name in known:
+        return
+    members = "".join(
+        f"  {_type(kind, known)} {field}{{}};\n" for field, kind in STORE.fielddefs[name][1]
+    )
+    package, _, short = name.partition("/msg/")
+    pointer = f"  using ConstSharedPtr = std::shared_ptr<const {short}>;\n"
+    known[name] = f"namespace {package}::msg {{ struct {short} {{\n{pointer}{members}}}; }}\n"
+
+
+def _type(described: Any, known: dict[str, str]) -> str:
+    kind, inner = int(described[0]), described[1]
+    if kind == _NAME:
+        _define(inner, known)
+        return str(inner).replace("/", "::")
+    if kind == _BASE:
+        base = inner[0]
+        return _BASES.get(base, base if base == "bool" else f"{base}_t")
+    element = _type(inner[0], known)
+    return f"std::array<{element}, {inner[1]}>" if kind == _ARRAY else f"std::vector<{element}>"
