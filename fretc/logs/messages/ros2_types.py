@@ -39,19 +39,13 @@ def standard(name: str) -> str | None:
     return next(iter(found.values())) if len(found) == 1 else None
 
 
-def classes() -> Mapping[str, Any]:
-    """The types of the newest release as Python's, by name: `diagnostic_msgs/msg/KeyValue`.
+def latest() -> Any:
+    """The types of the latest release as a `rosbags` typestore: it makes messages, and their CDR.
 
     Raises:
         ModuleNotFoundError: rosbags is not installed.
     """
-    found: Mapping[str, Any] = _stores()[-1].types
-    return found
-
-
-def encoded(message: object, name: str) -> bytes:
-    """An object of one of these classes as CDR, with its head of four bytes."""
-    return bytes(_stores()[-1].serialize_cdr(message, name))
+    return _stores()[-1]
 
 
 @cache

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from fretc.logs.messages import ros2_types
-from fretc.watch.sources.dds_domain import Domain, Publisher, Reader, join
+from fretc.watch.sources.dds_domain import Domain, Publisher, Reader, Writer, join
 from fretc.watch.sources.dds_types import Offer, UnreadableError
 from fretc.watch.sources.mailbox import WAIT, Mailbox
 from fretc.watch.sources.middleware import Middleware, simulated_time
@@ -27,6 +28,16 @@ _MOST_PUBLISHERS = 10_000
 _SOON = 3 * 10**9
 """Nanoseconds in which a reader and a publisher find together."""
 _CLOCK = "/clock"
+_PERIOD = 0.5
+"""Seconds from one publication of what is known to the next."""
+_ARRAY = "diagnostic_msgs/msg/DiagnosticArray"
+_PARTS = {
+    _ARRAY,
+    "diagnostic_msgs/msg/DiagnosticStatus",
+    "diagnostic_msgs/msg/KeyValue",
+    "std_msgs/msg/Header",
+    "builtin_interfaces/msg/Time",
+}
 
 
 class Dds(Middleware):
@@ -35,11 +46,10 @@ class Dds(Middleware):
     def __init__(self) -> None:
         """Nothing is opened yet."""
         super().__init__("dds")
-        self._statuses: Sequence[Status] | None = None
-        """What is to be published; None: nothing ever is."""
+        self._statuses: Sequence[Status] = ()
 
     def diagnose(self, statuses: Sequence[Status]) -> None:
-        """Publish them when the thread next looks, twice a second at most."""
+        """The thread publishes them, twice a second."""
         self._statuses = statuses
 
     def _listen(self, topics: list[str]) -> bool:
@@ -51,12 +61,11 @@ class Dds(Middleware):
         try:
             self._opened(f"domain {domain.number} of DDS")
             listening = _Listening(domain, frozenset(topics), self._mailbox)
-            diagnoses = None if self._statuses is None else _Diagnoses(domain)
+            diagnosing = _Diagnosing(domain)
             while not self._closed.is_set():
                 domain.wait(WAIT)
                 listening.look()
-                if diagnoses is not None and self._statuses:
-                    diagnoses.publish(self._statuses)
+                diagnosing.publish(self._statuses)
         except Exception as error:  # what Cyclone DDS raises of what strangers send, it may be
             self._lost(_broken(error))
         finally:
@@ -195,46 +204,48 @@ class _Listening:
             self._mailbox.tell(Problem(problem))
 
 
-class _Diagnoses:
-    """What is published on `/diagnostics`."""
+class _Diagnosing:
+    """`diagnostic_msgs/DiagnosticArray` on `/diagnostics`, as a node of ROS 2 sends it."""
 
     def __init__(self, domain: Domain) -> None:
-        digest, definition = [*ros2_types.definitions(_ARRAY).items()][-1]
-        offer = Offer(_ARRAY, digest, reliable=True)
-        self._writer = domain.writer("/diagnostics", offer, definition)
+        self._domain = domain
+        self._writer: Writer | None = None
         self._last = float("-inf")
 
     def publish(self, statuses: Sequence[Status]) -> None:
-        """A message, unless there was one just now."""
-        if time.monotonic() - self._last < _PERIOD:
+        """Twice a second, where there are any."""
+        if not statuses or time.monotonic() - self._last < _PERIOD:
             return
         self._last = time.monotonic()
-        self._writer.write(_encoded(statuses, time.time_ns()))
+        if self._writer is None:
+            digest, definition = [*ros2_types.definitions(_ARRAY).items()][-1]
+            offer = Offer(_ARRAY, digest, reliable=True)
+            self._writer = self._domain.writer("/diagnostics", offer, definition)
+        with suppress(UnreadableError):  # who reads it is too slow; there will be another one
+            self._writer.write(_array(statuses, time.time_ns()))
 
 
-_ARRAY, _STATUS = (f"diagnostic_msgs/msg/Diagnostic{name}" for name in ("Array", "Status"))
-_PERIOD = 0.45
-"""Seconds between two messages of diagnostics; new statuses come every half a second."""
+def _array(statuses: Sequence[Status], now: int) -> bytes:
+    """As CDR."""
+    store = ros2_types.latest()
+    own = {name.rpartition("/")[2]: type_ for name, type_ in store.types.items() if name in _PARTS}
 
+    def text(said: str) -> str:
+        return said.encode(errors="replace").decode()
 
-def _encoded(statuses: Sequence[Status], now: int) -> bytes:
-    types = ros2_types.classes()
-    pair, status = types["diagnostic_msgs/msg/KeyValue"], types[_STATUS]
-    stamp = types["builtin_interfaces/msg/Time"](*divmod(now, 10**9))
-    message = types[_ARRAY](
-        types["std_msgs/msg/Header"](stamp, ""),
-        [
-            status(
-                each.level,
-                f"fretc watch: {each.name}",
-                each.message,
-                "",
-                [pair(key, value) for key, value in each.values],
-            )
-            for each in statuses
-        ],
-    )
-    return ros2_types.encoded(message, _ARRAY)
+    found = [
+        own["DiagnosticStatus"](
+            level=each.level,
+            name=text(each.name),
+            message=text(each.message),
+            hardware_id="",
+            values=[own["KeyValue"](key=text(k), value=text(v)) for k, v in each.values],
+        )
+        for each in statuses
+    ]
+    seconds, rest = divmod(now, 10**9)
+    header = own["Header"](stamp=own["Time"](sec=seconds, nanosec=rest), frame_id="")
+    return bytes(store.serialize_cdr(own["DiagnosticArray"](header=header, status=found), _ARRAY))
 
 
 def _definition(offer: Offer) -> str | None:
