@@ -28,6 +28,7 @@ from compiler.targets.target import (
     DEFAULT,
     Options,
     Target,
+    identifier,
     not_expressible,
     stem,
     too_long,
@@ -105,7 +106,12 @@ def _files(rule: Formalized) -> Iterator[Artifact]:
         (name, meanings.get(proposition, proposition), chances[name], modules[name])
         for proposition, name in names.items()
     ]
-    values = {"id": rule.id, "sentence": wording(rule.requirement), "inputs": inputs}
+    values = {
+        "id": rule.id,
+        "identifier": identifier(rule),
+        "sentence": wording(rule.requirement),
+        "inputs": inputs,
+    }
     values["impossible"] = impossible(rule, names)
     for ending, more in (("props", {"property": property_(rule.pctl, names)}), ("prism", {})):
         text = render(f"prism/requirement.{ending}.j2", stem=stem(rule), **values, **more)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -76,6 +77,12 @@ class Target:
 def stem(rule: Formalized) -> str:
     """The name of the rule's files, without their ending: the id in lower case."""
     return rule.id.lower()
+
+
+def identifier(rule: Formalized) -> str:
+    """Its id in languages whose names begin with a letter: an id may begin with a digit."""
+    plain = re.sub(r"\W", "_", stem(rule))
+    return f"r{plain}" if plain[:1].isdigit() else plain
 
 
 def not_expressible(target: str, rule: Formalized, what: str, mend: str) -> Diagnostic:

@@ -137,7 +137,9 @@ def _recorded(
         stop(*plan)
     say([*plan.refusals])
     for log in logs:
-        yield _good(of_log(known, plan, log))
+        found = _good(of_log(known, plan, log))
+        say(found.findings)
+        yield found
 
 
 def of_files(

@@ -171,7 +171,8 @@ def test(
     elif output == "-" or form == "json":
         click.echo(text, nl=False)
     else:
-        all_lines = [(visible(text), colour) for text, colour in _lines(suite, rules, show)]
+        found = _lines(suite, rules, show, of_file=saved is not None)
+        all_lines = [(visible(text), colour) for text, colour in found]
         click.echo(coloured(all_lines), nl=False)
     outputs: dict[Path, str] = {} if saved or output == "-" else {Path(output): text}
     if emitted is not None and on_stage is None:
@@ -183,7 +184,7 @@ def test(
         status = test_staging.staged(project, suite, on_stage, emit_to, runs, jobs)
         if status != SHOWN:
             raise SystemExit(status)
-    raise SystemExit(SHOWN if suite.is_complete else NOT_SHOWN)
+    raise SystemExit(SHOWN if saved or suite.is_complete else NOT_SHOWN)
 
 
 def _check_shown(id: str, known: Sequence[str]) -> None:
@@ -256,13 +257,15 @@ def _files(
     return {Path(output) / emitted / each.path: each.text for each in artifacts}
 
 
-def _lines(suite: Suite, rules: Sequence[Formalized], show: str | None) -> Iterator[Line]:
+def _lines(
+    suite: Suite, rules: Sequence[Formalized], show: str | None, *, of_file: bool
+) -> Iterator[Line]:
     from fretc.testing.bench import demands
-    from fretc.testing.text_output import lines, shown
+    from fretc.testing.text_output import lines, lines_of_file, shown
     from fretish.bindings.declarations import Role
 
     if show is None:
-        yield from lines(suite)
+        yield from lines_of_file(suite) if of_file else lines(suite)
         return
     rule = next(each for each in rules if each.id == show)
     roles = {name: Role(own) for name, own in suite.roles.items()}

@@ -147,7 +147,7 @@ def verify(
         layers=[Layer(name) for name in layer_names],
         limits=Limits(seconds=limit),
         monitor=(text := _read(monitor_file)),
-        header=_header(text, layer_names),
+        header=(header := _header(text, layer_names)),
         interceptor=_read(interceptor),
         agent=_read(agent),
         properties=_read(properties),
@@ -160,7 +160,8 @@ def verify(
     if mistakes:
         stop(*mistakes)
     proofs = _proofs(project, request)
-    options = (monitor_file, interceptor, agent, properties, bindings, *results)
+    own = header.name if header else None
+    options = (monitor_file, own, interceptor, agent, properties, bindings, *results)
     sources = [requirement.wording.source.name for requirement in project.requirements]
     inputs = [*sources, *companions(sources), *(name for name in options if name is not None)]
     _print_and_write(proofs, form, output, traces, inputs)

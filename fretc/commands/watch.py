@@ -113,6 +113,10 @@ def watch(
     protect(outputs, [*inputs, *words])
     if record == evidence and record is not None:
         stop(not_written(record, "two outputs would go there"))
+    if record == "-":
+        stop(not_written(record, "a recording is a file"))
+    if evidence is not None and Path(evidence).is_dir():  # not after a night of watching
+        stop(not_written(evidence, "there is a directory of that name"))
     publishers = _opened(publish, source)
     try:
         run = Watch(plan, Path(record) if record is not None else None)

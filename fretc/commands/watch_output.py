@@ -161,6 +161,21 @@ def watched(
     Raises:
         OSError: nobody reads any more what is shown.
     """
+    try:
+        _watched(watch, source, output, reaction, publishing, stopped)
+    finally:
+        if reaction is not None:
+            reaction.end()
+
+
+def _watched(
+    watch: Watch,
+    source: Source,
+    output: Output,
+    reaction: Reaction | None,
+    publishing: Publishing,
+    stopped: Flag,
+) -> None:
     broken: OSError | None = None
     try:
         for item in source.arrivals(watch.topics):

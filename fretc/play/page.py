@@ -89,6 +89,7 @@ def inset(
         "play/page.html.j2",
         title=visible(", ".join(rule.id for rule in now[:_TITLED]) + _more(len(now))),
         notes=[visible(note) for note in notes],
+        is_compared=bool(before),
         tick=str(rules[0].clock) if rules[0].clock else "",
         left_out=[(visible(id), visible(why)) for id, why in left_out],
         labels=[visible(rule.id) for rule in rules],

@@ -44,6 +44,8 @@ class Recorded:
     starts: tuple[Start, ...]
     notes: tuple[str, ...]
     """What is not, in words."""
+    findings: tuple[Diagnostic, ...] = ()
+    """What is wrong with the log."""
     sha256: str = ""
     """Of the one log that it is of."""
 
@@ -65,14 +67,18 @@ def of_log(rules: Sequence[Formalized], plan: Plan, log: str) -> Recorded | Diag
     truths = trace(plan.declarations, recording, tuple(names))
     starts: list[Start] = []
     notes: list[str] = []
+    violations = 0
     for rule in chosen:
         columns = {name: truths.columns[name] for name in rule.watched}
         run = Run(rule, columns, truths.timeline, recording.name)
         starts += run.starts()
         notes += run.notes()
-    if not starts:
+        violations += run.violations
+    if not violations:
         notes.append(f"{recording.name}: no whole tick of it violates a requirement")
-    return Recorded(tuple(starts), tuple(notes), recording.sha256)
+    if not recording.intact:
+        notes.append(f"{recording.name}: messages of it may be lost: what is not known is unknown")
+    return Recorded(tuple(starts), tuple(notes), recording.findings, recording.sha256)
 
 
 def of_evidence(rules: Sequence[Formalized], plan: Plan, evidence: EvidenceSource) -> Recorded:

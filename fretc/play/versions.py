@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import comparisons
 from fretc.play.starts import MOST, Start
 from fretc.testing.runs import Absence, difference
 from fretish.bindings.canonical import bound, clock
@@ -135,6 +136,8 @@ def _pair(new: Formalized, old: Formalized, seconds: float) -> Pair:
         else:
             note = "written in another way; all finite runs without unknown values have the same"
             note += " verdicts: proved"
+            if _has_numbers(new) or _has_numbers(old):
+                note += ", of exact numbers; floats round, which is not seen"
         return Pair(new, old, f"{new.id}: {note}", None)
     word = found.word
     count = f"{word.ticks} tick{'' if word.ticks == 1 else 's'}"
@@ -145,6 +148,14 @@ def _pair(new: Formalized, old: Formalized, seconds: float) -> Pair:
     if word.ticks > MOST:
         return Pair(new, old, f"{about}, and this page takes {MOST}", None)
     return Pair(new, old, about, start)
+
+
+def _has_numbers(rule: Formalized) -> bool:
+    """Whether it compares some, itself or by what the bindings say of its propositions."""
+    declared = rule.declarations.propositions if rule.declarations else {}
+    return bool(comparisons(rule)) or any(
+        declared[name].signals for name in rule.watched if name in declared
+    )
 
 
 def side_by_side(versions: Versions, rules: Sequence[Formalized]) -> Iterator[Formalized]:

@@ -33,13 +33,23 @@ def lines(suite: Suite) -> Iterator[Line]:
         yield from remarks
 
 
+def lines_of_file(suite: Suite) -> Iterator[Line]:
+    """The summary of tests that somebody else has made: what they show was not looked into."""
+    yield f"{signs.GOOD.glyph} {_size(suite)}; the monitors say what they expect", signs.GOOD.colour
+    yield "", None
+    yield from ((row, None) for row in _table(suite, columns=3))
+
+
 def _headline(suite: Suite) -> str:
+    if not suite.is_complete:
+        return f"{_size(suite)}; not all was searched"
+    return f"{_size(suite)}; each situation is met or cannot be, no mutant survives"
+
+
+def _size(suite: Suite) -> str:
     ticks = sum(test.ticks for test in suite.tests)
     size = f"{_some(len(suite.tests), 'test')} of {_some(ticks, 'tick')} together"
-    for_all = f"{_some(len(suite.requirements), 'requirement')}: {size}"
-    if not suite.is_complete:
-        return f"{for_all}; not all was searched"
-    return f"{for_all}; each situation is met or cannot be, no mutant survives"
+    return f"{_some(len(suite.requirements), 'requirement')}: {size}"
 
 
 def _some(count: int, what: str) -> str:
@@ -49,7 +59,7 @@ def _some(count: int, what: str) -> str:
 _HEAD = ("", "tests", "ticks", "situations", "mutants")
 
 
-def _table(suite: Suite) -> Iterator[str]:
+def _table(suite: Suite, columns: int = len(_HEAD)) -> Iterator[str]:
     rows = [_HEAD]
     for each in suite.requirements:
         own = [test for test in suite.tests if test.requirement == each.id]
@@ -73,7 +83,7 @@ def _table(suite: Suite) -> Iterator[str]:
             met.ljust(widths[3]),
             killed,
         )
-        yield f"  {'  '.join(cells)}".rstrip()
+        yield f"  {'  '.join(cells[:columns])}".rstrip()
 
 
 def _counts(outcomes: Sequence[str], kinds: type[Met] | type[Fate]) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from threading import Thread
 from typing import Any
 
@@ -18,7 +20,7 @@ PATIENCE = 60
 MOST = 8
 """Commands that run at once; a violation beyond them starts none, and that is said."""
 _LAST = 5
-"""Seconds that the end of a watch waits for commands that still run."""
+"""Seconds that commands still have when a watch has ended."""
 
 
 class Reaction:
@@ -28,6 +30,8 @@ class Reaction:
         """Of the command and its options, which no shell sees."""
         self._command = tuple(command)
         self._threads: list[Thread] = []
+        self._processes: set[subprocess.Popen[bytes]] = set()
+        self._is_over = False
         self._problems: deque[Diagnostic] = deque()
 
     def start(self, facts: Mapping[str, Any]) -> None:
@@ -46,9 +50,18 @@ class Reaction:
             yield self._problems.popleft()
 
     def wait(self) -> None:
-        """Give commands that still run a little time."""
+        """Give commands that still run a little time, and end them."""
         for thread in self._threads:
             thread.join(_LAST / len(self._threads))
+        self.end()
+        for thread in self._threads:
+            thread.join(_LAST)
+
+    def end(self) -> None:
+        """Kill what still runs, with all that it started."""
+        self._is_over = True
+        for process in [*self._processes]:
+            _kill(process)
 
     def _run(self, facts: Mapping[str, Any]) -> None:
         shield()
@@ -58,21 +71,34 @@ class Reaction:
             if value is not None
         }
         try:
-            done = subprocess.run(
+            process = subprocess.Popen(
                 self._command,
-                input=f"{to_json(facts)}\n".encode(),
+                stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 env={**os.environ, **named},
-                timeout=PATIENCE,
-                check=False,
+                start_new_session=True,  # Ctrl-C is for the watch
             )
-        except subprocess.TimeoutExpired:
-            self._failed(f"took longer than {PATIENCE} s")
         except (OSError, ValueError) as error:
             self._failed(f"cannot be started: {getattr(error, 'strerror', None) or error}")
+            return
+        self._processes.add(process)
+        if self._is_over:
+            _kill(process)
+        self._follow(process, f"{to_json(facts)}\n".encode())
+        self._processes.discard(process)
+
+    def _follow(self, process: subprocess.Popen[bytes], facts: bytes) -> None:
+        try:
+            process.communicate(facts, PATIENCE)
+        except subprocess.TimeoutExpired:
+            _kill(process)
+            process.communicate()
+            self._failed(f"took longer than {PATIENCE} s, and was ended")
         else:
-            if done.returncode:
-                self._failed(f"ended with exit status {done.returncode}")
+            if self._is_over and process.returncode == -signal.SIGKILL:
+                self._failed(f"was ended: it still ran {_LAST} s after the watch")
+            elif process.returncode:
+                self._failed(f"ended with exit status {process.returncode}")
 
     def _failed(self, how: str) -> None:
         self._problems.append(
@@ -83,3 +109,9 @@ class Reaction:
                 severity=Severity.WARNING,
             )
         )
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """With its group, in which is what it has started, unless that has left it."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)

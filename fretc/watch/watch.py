@@ -25,6 +25,9 @@ from monitors.guard import State
 
 MOST_RUNS = 100
 """After so many a clock that is set back again and again is two clocks."""
+LOOK = 50 * 10**6
+"""Nanoseconds of receive time after which it is looked again what is owed, if not even a tick was
+judged: to look costs as much as a tick."""
 SILENCE = 5 * 10**9
 """Nanoseconds after which a topic that has not begun is told of."""
 
@@ -52,6 +55,10 @@ class Watch:
         self._states: dict[str, State] = {}
         self._late = 0
         self._began: int | None = None
+        self._looked = 0
+        """The receive time at which it was last looked what is owed."""
+        self._judged = 0, 0
+        """The ticks of the run that were judged then, and those that had become unknown."""
         self._silent: set[str] = set()
         self._lost_since: int | None = None
         self._recorder = self._new_recorder()
@@ -113,12 +120,21 @@ class Watch:
             found = self.session.arrive(arrival)
             assert not isinstance(found, Jump), "the first message of a run has none before it"
         yield from self._recorded(arrival)
-        yield from self._passed(found)
+        if found is not None or self._is_due(arrival.log_time):
+            yield from self._passed(found)
         for problem in self.session.problems:
             yield Found(problem)
         self.session.problems.clear()
         if arrival.log_time - self._began > SILENCE:
             yield from self._silences(arrival.log_time)
+
+    def _is_due(self, now: int) -> bool:
+        """Whether there can be news: a tick more, or another look after some time."""
+        judged = self.session.ticks, self.session.late_ticks
+        if judged == self._judged and now - self._looked < LOOK:
+            return False
+        self._looked, self._judged = now, judged
+        return True
 
     def _passed(self, wrong: Diagnostic | None) -> Iterator[News]:
         if wrong is not None:
@@ -157,6 +173,7 @@ class Watch:
         if self._lost_since is not None:
             self.session.interrupt()
         self._states, self._late, self._began = {}, 0, arrival.log_time
+        self._looked, self._judged = 0, (0, 0)
         self._silent = set()
         try:
             self._recorder = self._new_recorder()

@@ -8,7 +8,6 @@ Source of the language: Cavada et al., NuSMV 2.6 User Manual, chapters 2 and 3.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
@@ -25,7 +24,7 @@ from compiler.logic.orders import Exclusion
 from compiler.targets.automata.expressibility import no_automaton
 from compiler.targets.automata.smv_symbols import monitor
 from compiler.targets.comparison_names import comparison_names, in_words
-from compiler.targets.target import DEFAULT, Options, Target, stem
+from compiler.targets.target import DEFAULT, Options, Target, identifier, stem
 from fretish.checking import RESERVED
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import deep
@@ -60,7 +59,7 @@ class Spec:
 
 def _text(rule: Formalized) -> str:
     demanded = obligation(rule.sentence, rule.ticks or 0)
-    plain = re.sub(r"\W", "_", stem(rule))
+    plain = identifier(rule)
     monitor_name = f"monitor_{plain}"
     instance = f"the_{monitor_name}"
     # Formulas may lack some propositions: `only after m` drops m where it demands nothing.

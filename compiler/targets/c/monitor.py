@@ -124,7 +124,7 @@ def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact,
     header = render(
         "c/monitor.h.j2",
         **values,
-        guard=_guard(name),
+        guard=signals.guard(name),
         rules=[described(rule) for rule in rules],
         tick=str(rules[0].clock) if rules[0].clock else "not declared",
         version=__version__,
@@ -175,16 +175,12 @@ def printed(name: str, rules: Sequence[Formalized]) -> Printer:
     """
     propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
     spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
-    reserved = _RESERVED | {_guard(name), *filter(_TAKEN.fullmatch, propositions)}
+    reserved = _RESERVED | {signals.guard(name), *filter(_TAKEN.fullmatch, propositions)}
     names = legal_names(propositions, reserved, names=spoken)
     prefixes = prefixes_of([rule.id for rule in rules])
     members = legal_names(prefixes, reserved, names=prefixes)
     made = rail(program({rule.id: rule.watch for rule in rules}), members)
     return Printer.of(made, names)
-
-
-def _guard(name: str) -> str:
-    return f"{name.upper()}_H"
 
 
 def _values(printer: Printer) -> dict[str, Any]:

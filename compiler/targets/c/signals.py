@@ -44,7 +44,7 @@ def files(
     header = render(
         "c/signals.h.j2",
         **common,
-        guard=f"{file.upper()}_H",
+        guard=guard(file),
         monitor=f"{name}.h",
         kernel=render("c/numbers.h.j2"),
     )
@@ -52,6 +52,11 @@ def files(
         Artifact(PurePosixPath(f"{file}.{ending}"), text)
         for ending, text in (("c", source), ("h", header))
     )
+
+
+def guard(file: str) -> str:
+    """The macro that a header of this name defines; a file may begin with a digit, as an id."""
+    return f"{'FRETC_' if file[:1].isdigit() else ''}{file.upper()}_H"
 
 
 def _double(value: float) -> str:

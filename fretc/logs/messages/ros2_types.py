@@ -39,6 +39,15 @@ def standard(name: str) -> str | None:
     return next(iter(found.values())) if len(found) == 1 else None
 
 
+def latest() -> Any:
+    """The types of the latest release as a `rosbags` typestore: it makes messages, and their CDR.
+
+    Raises:
+        ModuleNotFoundError: rosbags is not installed.
+    """
+    return _stores()[-1]
+
+
 @cache
 def _stores() -> tuple[Any, ...]:
     from rosbags.typesys import Stores, get_typestore

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import PurePosixPath
 from typing import assert_never
@@ -61,7 +62,8 @@ def files(
             sentences = {each.id: each.sentence for each in suite.requirements}
             for rule in tested:
                 own = [test for test in tests if test.requirement == rule.id]
-                made.append(pytest_file(rule, sentences[rule.id], own, languages))
+                test_file = pytest_file(rule, sentences[rule.id], own, languages)
+                made.append(_apart(test_file, {each.path for each in made}))
         case Form.CSV:
             tables = {test.name: table(by_id[test.requirement], test) for test in tests}
             made = [*emitted.emit(tested), *(_csv(name, each) for name, each in tables.items())]
@@ -75,6 +77,14 @@ def files(
     return tuple(made), left
 
 
+def _apart(file: Artifact, taken: Set[PurePosixPath]) -> Artifact:
+    """Where its name is that of a monitor: `x_monitor` is tested beside the monitor of `test_x`."""
+    path = file.path
+    while path in taken:
+        path = path.with_stem(f"{path.stem}_")
+    return replace(file, path=path)
+
+
 def _refusal(rule: Formalized, test: Test, form: Form, languages: Sequence[Language]) -> str | None:
     """Why a test cannot be written so, as where there is no monitor; None: it can."""
     match form:
@@ -83,6 +93,8 @@ def _refusal(rule: Formalized, test: Test, form: Form, languages: Sequence[Langu
         case Form.C:
             languages = (Language.C,)
         case Form.CSV:
+            if f"{test.name}.csv" == INDEX:
+                return f"`{INDEX}` is the table of all tests"
             languages = (Language.PYTHON,)
         case Form.PYTEST:
             pass

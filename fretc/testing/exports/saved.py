@@ -7,6 +7,7 @@ monitors read, and the monitor of its requirement gives the verdict that it expe
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -55,11 +56,11 @@ def saved(suite: Suite, rules: Sequence[Formalized]) -> Saved:
     tests = tuple(test for test in suite.tests if test.requirement in same)
     if sum(test.ticks for test in tests) > MOST:
         raise WrongError(f"its tests have more than {MOST} ticks")
-    names = [test.name for test in tests]
+    names = Counter(test.name for test in tests)
     for test in tests:
         if not _NAME.fullmatch(test.name) or len(test.name) > _LONGEST:
             raise WrongError(f"`{test.name}` cannot name a test: small letters, digits and `-` can")
-        if names.count(test.name) > 1:
+        if names[test.name] > 1:
             raise WrongError(f"the name `{test.name}` comes twice")
     for id in same:
         monitor = load(f"{id}.py", emitted.text(known[id]))

@@ -57,7 +57,11 @@ def compiled(
             if end.status != 0:
                 lines = (line for line in end.text.splitlines() if "error" in line)
                 raise ToolError(f"{known} does not compile it: {next(lines, 'it gives no reason')}")
-        return Binary((folder / result).read_bytes(), f"{known} {' '.join(flags)}")
+        try:
+            data = (folder / result).read_bytes()
+        except OSError:
+            raise ToolError(f"{known} compiles it, and writes no `{result}`") from None
+        return Binary(data, f"{known} {' '.join(flags)}")
 
 
 def version(program: str) -> str:

@@ -15,7 +15,7 @@ from compiler.targets.javascript.monitor import text
 from fretc.verification.compiled.plan import Checked, Given, Prepared, implemented
 from fretc.verification.compiled.tools import version
 from fretc.verification.javascript.form import formed
-from fretc.verification.javascript.node import FLAGS, Module
+from fretc.verification.javascript.node import FLAGS, Module, placed
 
 _IDS = re.compile(r'^[ \t]*\{ id: ("(?:[^"\\]|\\.)*"), sentence: ', re.MULTILINE)
 
@@ -46,7 +46,8 @@ def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prep
     """
     made = _program(checked.rules)
     ages = {place: _ages(each) for place, each in enumerate(made.requirements)}
-    module = Module(program, given.text, checked.cells, _windows(made), ages)
+    placed(given.text, folder)
+    module = Module(program, folder, checked.cells, _windows(made), ages)
     return Prepared(module, f"Node {version(program)} {' '.join(FLAGS)}", {})
 
 

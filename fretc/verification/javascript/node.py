@@ -17,7 +17,6 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from itertools import product
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 from compiler.formalization.letters import Valuation
@@ -138,7 +137,8 @@ class Module:
     """A module that was checked."""
 
     program: str
-    text: str
+    folder: Path
+    """Of the one who asks: it is gone at the end, even where Node and we are killed."""
     cells: tuple[str, ...]
     """All of a rail."""
     windows: Mapping[str, int]
@@ -153,25 +153,25 @@ class Module:
         Raises:
             ToolError: Node cannot be started, or ends.
         """
-        with TemporaryDirectory(prefix="fretc-") as name:
-            folder = Path(name)
-            (folder / "monitor.mjs").write_text(self.text, encoding="utf-8")
-            (folder / "explorer.mjs").write_text(_EXPLORER, encoding="utf-8")
-            with (
-                (folder / "errors.txt").open("wb") as errors,
-                _started(self, folder, errors) as node,
-            ):
-                yield Node(self, plan, node, folder / "errors.txt")
+        complaints = self.folder / "errors.txt"
+        with complaints.open("wb") as errors, _started(self, errors) as node:
+            yield Node(self, plan, node, complaints)
+
+
+def placed(text: str, folder: Path) -> None:
+    """The text and its explorer, where Node runs them."""
+    (folder / "monitor.mjs").write_text(text, encoding="utf-8")
+    (folder / "explorer.mjs").write_text(_EXPLORER, encoding="utf-8")
 
 
 @contextmanager
-def _started(module: Module, folder: Path, errors: Any) -> Iterator[subprocess.Popen[bytes]]:
+def _started(module: Module, errors: Any) -> Iterator[subprocess.Popen[bytes]]:
     """Node, without options of the user's: `NODE_OPTIONS` can load modules."""
     plain = {name: value for name, value in os.environ.items() if not name.startswith("NODE_")}
     try:
         process = subprocess.Popen(
             [module.program, *FLAGS, "explorer.mjs"],
-            cwd=folder,
+            cwd=module.folder,
             env=plain,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,

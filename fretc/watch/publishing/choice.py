@@ -35,7 +35,7 @@ def _publisher(word: str, source: Source) -> Publisher | Diagnostic:
         return Diagnostic(
             Code.BAD_USAGE,
             f"`--publish diagnostics` goes through what is watched, and `{source.name}` takes none",
-            help="watch `ros1`; or publish to Foxglove: `--publish foxglove`",
+            help="watch `dds` or `ros1`; or publish to Foxglove: `--publish foxglove`",
         )
     server = _SERVER.fullmatch(word)
     if server is None or int(server["port"] or 0) > 65535:

@@ -7,15 +7,19 @@ send. Times of arrival are when the message has reached this thread.
 
 from __future__ import annotations
 
+import time
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from fretc.logs.messages import ros2_types
-from fretc.watch.sources.dds_domain import Domain, Publisher, Reader, join
+from fretc.watch.sources.dds_domain import Domain, Publisher, Reader, Writer, join
 from fretc.watch.sources.dds_types import Offer, UnreadableError
 from fretc.watch.sources.mailbox import WAIT, Mailbox
 from fretc.watch.sources.middleware import Middleware, simulated_time
 from fretc.watch.sources.source import Channel, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from monitors.guard import Status
 
 MOST_KINDS = 20
 """Kinds of publishers of a topic; who makes more of them is not read."""
@@ -24,6 +28,16 @@ _MOST_PUBLISHERS = 10_000
 _SOON = 3 * 10**9
 """Nanoseconds in which a reader and a publisher find together."""
 _CLOCK = "/clock"
+_PERIOD = 0.5
+"""Seconds from one publication of what is known to the next."""
+_ARRAY = "diagnostic_msgs/msg/DiagnosticArray"
+_PARTS = {
+    _ARRAY,
+    "diagnostic_msgs/msg/DiagnosticStatus",
+    "diagnostic_msgs/msg/KeyValue",
+    "std_msgs/msg/Header",
+    "builtin_interfaces/msg/Time",
+}
 
 
 class Dds(Middleware):
@@ -32,6 +46,11 @@ class Dds(Middleware):
     def __init__(self) -> None:
         """Nothing is opened yet."""
         super().__init__("dds")
+        self._statuses: Sequence[Status] = ()
+
+    def diagnose(self, statuses: Sequence[Status]) -> None:
+        """The thread publishes them, twice a second."""
+        self._statuses = statuses
 
     def _listen(self, topics: list[str]) -> bool:
         """What comes of the topics; one that begins with no slash is a topic of DDS."""
@@ -42,9 +61,11 @@ class Dds(Middleware):
         try:
             self._opened(f"domain {domain.number} of DDS")
             listening = _Listening(domain, frozenset(topics), self._mailbox)
+            diagnosing = _Diagnosing(domain)
             while not self._closed.is_set():
                 domain.wait(WAIT)
                 listening.look()
+                diagnosing.publish(self._statuses)
         except Exception as error:  # what Cyclone DDS raises of what strangers send, it may be
             self._lost(_broken(error))
         finally:
@@ -181,6 +202,50 @@ class _Listening:
         if (problem.code, topic) not in self._known:
             self._known.add((problem.code, topic))
             self._mailbox.tell(Problem(problem))
+
+
+class _Diagnosing:
+    """`diagnostic_msgs/DiagnosticArray` on `/diagnostics`, as a node of ROS 2 sends it."""
+
+    def __init__(self, domain: Domain) -> None:
+        self._domain = domain
+        self._writer: Writer | None = None
+        self._last = float("-inf")
+
+    def publish(self, statuses: Sequence[Status]) -> None:
+        """Twice a second, where there are any."""
+        if not statuses or time.monotonic() - self._last < _PERIOD:
+            return
+        self._last = time.monotonic()
+        if self._writer is None:
+            digest, definition = [*ros2_types.definitions(_ARRAY).items()][-1]
+            offer = Offer(_ARRAY, digest, reliable=True)
+            self._writer = self._domain.writer("/diagnostics", offer, definition)
+        with suppress(UnreadableError):  # who reads it is too slow; there will be another one
+            self._writer.write(_array(statuses, time.time_ns()))
+
+
+def _array(statuses: Sequence[Status], now: int) -> bytes:
+    """As CDR."""
+    store = ros2_types.latest()
+    own = {name.rpartition("/")[2]: type_ for name, type_ in store.types.items() if name in _PARTS}
+
+    def text(said: str) -> str:
+        return said.encode(errors="replace").decode()
+
+    found = [
+        own["DiagnosticStatus"](
+            level=each.level,
+            name=text(each.name),
+            message=text(each.message),
+            hardware_id="",
+            values=[own["KeyValue"](key=text(k), value=text(v)) for k, v in each.values],
+        )
+        for each in statuses
+    ]
+    seconds, rest = divmod(now, 10**9)
+    header = own["Header"](stamp=own["Time"](sec=seconds, nanosec=rest), frame_id="")
+    return bytes(store.serialize_cdr(own["DiagnosticArray"](header=header, status=found), _ARRAY))
 
 
 def _definition(offer: Offer) -> str | None:

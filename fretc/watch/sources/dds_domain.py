@@ -86,10 +86,10 @@ def _joined(number: int) -> Domain | Diagnostic:
 
     try:
         return Domain(number)
-    except DDSException as error:
+    except DDSException:
         return Diagnostic(
             Code.ROBOT_NOT_REACHED,
-            f"domain {number} of DDS cannot be joined: {error.msg}",
+            f"domain {number} of DDS cannot be joined",
             help="Cyclone DDS has printed why: no network, or a mistake in CYCLONEDDS_URI",
         )
 

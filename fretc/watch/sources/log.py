@@ -26,6 +26,8 @@ from fretish.diagnostics.source import Span
 
 _WAIT = 0.05
 """Seconds between two looks at a file that has not grown."""
+_KNOWN = 256
+"""Bytes before the place of reading that are looked at again."""
 _MOST = 2**16
 """Channels of a log; what declares more is damaged."""
 
@@ -42,6 +44,8 @@ class Log:
         self._channels: dict[int, Channel] = {}
         self._wanted: frozenset[str] = frozenset()
         self._latest = 0
+        self._before = b""
+        """The last bytes that were read: a file that is written over has others there."""
 
     def close(self) -> None:
         """Look no further."""
@@ -89,11 +93,17 @@ class Log:
     ) -> Generator[Event | Idle, None, bytes | None]:
         """So many bytes, once they are there."""
         while True:
-            stream.seek(at)
-            data = stream.read(length)
-            if len(data) == length:
+            # a stream would give again what it has in its buffer, whatever the file has now
+            file, size = stream.fileno(), len(self._before)
+            known = os.pread(file, size, at - size)
+            is_there = os.fstat(file).st_size >= at + length
+            data = os.pread(file, length, at) if is_there else b""
+            if known == self._before and len(data) == length:
+                self._before = (known + data[-_KNOWN:])[-_KNOWN:]
                 return data
             changed = self._changed(stream, at)
+            if changed is None and len(known) == size and known != self._before:
+                changed = "another log has been written over it"
             if changed is not None:
                 yield Problem(_broken(at, changed, place))
                 return None

@@ -150,6 +150,14 @@ def test_the_frame_says_that_it_is_one() -> None:
     assert "//   prism r1.prism r1.props -const p_p=0.5,p_q=0.5\n" in text
 
 
+@each("names", [("1.main-x", "r1_main_x"), ("R-1.2", "r_1_2")])
+def test_a_property_has_a_name_that_prism_reads(names: tuple[str, str]) -> None:
+    """An identifier in quotes: it begins with a letter."""
+    id, name = names
+    files = emitted("prism", PROBABLE, id)
+    assert f'\n"{name}": P>=1 [ ' in next(text for path, text in files.items() if ".props" in path)
+
+
 def test_names_of_chances_are_no_names_of_propositions() -> None:
     text = emitted("prism", PROBABLE.replace("q", "p_p & init_ & draw_p"))["r1.prism"]
     names = re.findall(r"(?:const double|module|label) \"?(\w+)", text.split("dtmc")[1])

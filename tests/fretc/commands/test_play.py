@@ -9,6 +9,8 @@ from typing import Any
 import pytest
 
 from tests.command import Fretc
+from tests.fretc.logs.logs import MS, S, chunk_starts, damaged, number
+from tests.fretc.logs.logs import write as log_of
 
 ROOT = Path(__file__).parents[3]
 NEAR = "whenever near the robot shall within 2 ticks satisfy stopped"
@@ -121,6 +123,50 @@ def test_a_page_against_what_requirements_were(fretc: Fretc) -> None:
     missing = fretc("play", "--against", "none")
     assert missing.status == 2
     assert missing.err.startswith("F901")
+
+
+BINDINGS = """
+[clock]
+tick = "100 ms"
+[signal.gap]
+path = "/gap.data"
+[proposition.near]
+expr = "gap < 5"
+[proposition.stopped]
+expr = "gap < 1"
+"""
+
+
+def run_of(path: str, count: int) -> Path:
+    """An obstacle is near at the first tick, and the robot never stops."""
+    sent = [number(9.0 if i else 3.0, 1000 * S + i * 100 * MS, "/gap") for i in range(count)]
+    return log_of(Path(path), sent, per_chunk=5)
+
+
+def test_a_violation_that_no_page_takes_is_no_run_without_one(fretc: Fretc) -> None:
+    write("requirements/r.fret", NEAR.replace("2 ticks", "2500 ticks"))
+    write("requirements/bindings.toml", BINDINGS)
+    run_of("a.mcap", 2600)
+    run_of("b.mcap", 20)
+    run = fretc("play", "--log", "a.mcap", "--log", "b.mcap")
+    assert (run.status, run.err) == (0, "wrote build/play.html\n")
+    page = Path("build/play.html").read_text("utf-8")
+    assert "<li>r: violation 1 of a.mcap is not here: what led to it takes more than" in page
+    assert "a.mcap: no whole tick" not in page
+    assert "<li>b.mcap: no whole tick of it violates a requirement</li>" in page
+
+
+def test_what_a_damaged_run_has_lost_is_said(fretc: Fretc) -> None:
+    write("requirements/r.fret", NEAR)
+    write("requirements/bindings.toml", BINDINGS)
+    log = run_of("<img src=x>.mcap", 40)
+    damaged(log, chunk_starts(log)[1] + 60)
+    run = fretc("play", "--log", str(log))
+    assert run.status == 0
+    assert run.err.startswith("F404 warning: the log is damaged near byte ")
+    page = Path("build/play.html").read_text("utf-8")
+    assert "mcap: messages of it may be lost: what is not known is unknown</li>" in page
+    assert "<img" not in page
 
 
 @pytest.mark.slow

@@ -162,6 +162,8 @@ def test_tests_of_a_file_are_written_again_as_they_are(fretc: Fretc, folder: Pat
     )
     assert (again.status, Path("build/tests/suite.json").exists()) == (0, False)
     assert {path.name: path.read_text() for path in Path("again/csv").iterdir()} == made
+    assert again.out.splitlines()[0].endswith(" together; the monitors say what they expect")
+    assert again.out.splitlines()[2].split() == ["tests", "ticks"]  # the rest nobody has checked
     text = Path("kept.json").read_text()
     Path("kept.json").write_text(text.replace('"verdict": "violated"', '"verdict": "satisfied"', 1))
     wrong = fretc("test", str(folder), "--suite", "kept.json", "--emit", "csv", "--emit-to", "new")

@@ -1,6 +1,11 @@
 """`fretc verify --file` of monitors in C, Rust and JavaScript."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -128,9 +133,49 @@ def test_a_text_of_another_kind_is_not_run(fretc: Fretc, made: Made) -> None:
 def test_a_monitor_in_c_needs_its_header(fretc: Fretc) -> None:
     write("r1.fret", R1)
     assert fretc("r1.fret", "--emit", "c", "-o", ".").status == 0
+    header = Path("r1_monitor.h").read_bytes()
+    run = fretc("verify", "--file", "r1_monitor.c", "r1.fret", "-o", "r1_monitor.h")
+    assert (run.status, Path("r1_monitor.h").read_bytes()) == (2, header)
+    assert "F905 `r1_monitor.h` cannot be written: it is `r1_monitor.h`, which is read" in run.err
     Path("r1_monitor.h").unlink()
     assert fretc("verify", "--file", "r1_monitor.c", "r1.fret").err.startswith("F901")
     write("other.c", "int x;\n")
     run = fretc("verify", "--file", "other.c", "r1.fret")
     assert run.status == 2
     assert run.err.startswith("F602 `other.c` is no generated monitor: it includes no header")
+
+
+@pytest.mark.slow
+def test_ctrl_c_leaves_no_file_and_no_process(fretc: Fretc, made: Made, tmp_path: Path) -> None:
+    """In the midst of the exploration: the bound takes minutes."""
+    Path("r1.fret").write_text(R1.replace("2 ticks", "1000000 ticks"), encoding="utf-8")
+    assert fretc("r1.fret", "--emit", made.emit, "-o", ".").status == 0
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    running = subprocess.Popen(
+        [
+            sys.executable,
+            "-c",
+            "from fretc.cli import main; main()",
+            "verify",
+            "--file",
+            made.file,
+            "r1.fret",
+        ],
+        env={**os.environ, "TMPDIR": str(temporary)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    explored = "errors.txt" if made.emit == "js" else "monitor.so"
+    deadline = time.monotonic() + 60
+    while not [*temporary.glob(f"*/{explored}")] and time.monotonic() < deadline:
+        time.sleep(0.05)
+    time.sleep(0.5)
+    os.killpg(running.pid, signal.SIGINT)
+    out, err = running.communicate(timeout=30)  # a process that is left would hold the pipes
+    assert (running.returncode, out) == (130, "")
+    assert err.startswith("stopped")
+    assert not Path("build/verification.json").exists()
+    assert [*temporary.iterdir()] == []

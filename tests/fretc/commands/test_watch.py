@@ -118,6 +118,8 @@ def test_a_clock_by_stamps_asks_for_a_lateness(fretc: Fretc) -> None:
         (["run.mcap", "--record", "run.mcap"], "F905"),
         (["run.mcap", "--record", "there.mcap"], "F905"),
         (["run.mcap", "--record", "no/such/folder.mcap"], "F905"),
+        (["run.mcap", "--record", "-"], "F905"),
+        (["run.mcap", "--record", "new.mcap", "--evidence", "requirements"], "F905"),
         (["requirements/r1.fret"], "F402"),
     ],
 )
@@ -129,6 +131,7 @@ def test_bad_use_and_bad_input(fretc: Fretc, arguments: list[str], code: str) ->
     assert run.err.splitlines()[0].startswith(code)
     assert Path("run.mcap").read_bytes() == log
     assert Path("there.mcap").read_text() == "mine"
+    assert not Path("new.mcap").exists()
 
 
 def test_a_log_that_breaks_off_satisfies_nothing(fretc: Fretc) -> None:
@@ -177,6 +180,27 @@ def test_a_command_that_fails_is_told_and_changes_nothing(fretc: Fretc, command:
     run = fretc("watch", recorded("run.mcap", stops=False), "--on-violation", command)
     assert run.status == 1
     assert run.err.startswith("F954 warning: ")
+
+
+def test_a_command_that_hangs_ends_with_the_watch_and_with_all_that_it_started(
+    fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("fretc.watch.reaction._LAST", 1)
+    write("hang.sh", "sleep 60 & echo $! $$ > pids.new; mv pids.new pids; wait\n")
+    log = recorded("run.mcap", stops=False)
+    run = fretc("watch", log, "--on-violation", "/bin/sh hang.sh")
+    assert run.status == 1
+    assert run.err.startswith("F954 warning: `/bin/sh` was ended: it still ran 1 s after the watch")
+    for pid in map(int, Path("pids").read_text().split()):
+        assert not _is_running(pid)
+
+
+def _is_running(pid: int) -> bool:
+    """Killed and not yet waited for by anybody (`Z`) is not."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
 
 
 @pytest.mark.slow

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import random
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from importlib import resources
 from itertools import product
 from pathlib import Path
@@ -23,104 +24,26 @@ from compiler.formalization.reference import (
     template,
 )
 from compiler.targets.python.monitor import text as monitor_text
-from fretc.play.page import html
 from fretc.play.starts import Start, of_suite
 from fretc.testing.exports.files import Form, files
 from fretc.testing.reader import read
 from fretc.testing.suite import Suite
+from monitors.kernel.tables import placed_rows
 from monitors.loading import load
 from tests.meaning import SCOPES
 from tests.monitoring import rule
+from tests.play_pages import HOSTILE, Open, address, everything, expected_to, lane, told
 from tests.strategies import templates
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Locator, Page
+    from playwright.sync_api import FilePayload, Locator
 
 pytestmark = pytest.mark.slow
 WITHIN = "whenever near the robot shall within 2 ticks satisfy stopped"
 BATTERY = "whenever battery < 20 the agv shall within 1 ticks satisfy docking | speed <= 0.5"
-HOSTILE = "</script><script>document.title='broken'</script>\u202e"
-Open = Callable[..., "Page"]
-
-
-@pytest.fixture
-def opened(browser: Browser, tmp_path: Path) -> Iterator[Open]:
-    """Opens a page; at the end nothing was asked of the network and nothing complained."""
-    messages: list[str] = []
-    asked: list[str] = []
-    contexts: list[Any] = []
-
-    def open_it(
-        *sentences: str,
-        starts: Sequence[Start] = (),
-        before: Mapping[str, str] | None = None,
-        address: str = "",
-        **options: Any,
-    ) -> Page:
-        path = tmp_path / f"{len(contexts)}.html"
-        rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences, 1)]
-        path.write_text(
-            html(rules, [(HOSTILE, HOSTILE)], starts, before, [HOSTILE]), encoding="utf-8"
-        )
-        contexts.append(browser.new_context(offline=True, **options))
-        page: Page = contexts[-1].new_page()
-        page.on("console", lambda message: messages.append(message.text))
-        page.on("pageerror", lambda error: messages.append(str(error)))
-        page.on("request", lambda request: asked.append(request.url))
-        page.goto(f"{path.as_uri()}{address}")
-        return page
-
-    yield open_it
-    for context in contexts:
-        context.close()
-    assert messages == []
-    assert not [url for url in asked if not url.startswith(("file:", "blob:"))]
-
-
-def expected_to(subject: Any) -> Any:
-    """What waits for it to come true."""
-    from playwright.sync_api import expect
-
-    return expect(subject)
-
-
-def lane(page: Page, label: str, note: str = "") -> Locator:
-    """The cells of a lane."""
-    name = f"{label} {note}".strip()
-    return (
-        page.locator("#grid tbody tr")
-        .filter(has=page.get_by_role("rowheader", name=name, exact=True))
-        .locator("td")
-    )
-
-
-def told(page: Page, label: str, note: str = "") -> list[str]:
-    """What a lane says to who hears it, tick by tick."""
-    labels = [cell.get_attribute("aria-label") or "" for cell in lane(page, label, note).all()]
-    assert all(f"at tick {t}: " in text for t, text in enumerate(labels))
-    return [text.split(": ", 1)[1] for text in labels]
-
-
-def everything(page: Page) -> dict[str, list[str]]:
-    """All lanes at once: their heads, and what each cell says."""
-    found: dict[str, list[str]] = page.evaluate(
-        "Object.fromEntries([...document.querySelectorAll('#grid tbody tr')].map(row =>"
-        " [row.cells[0].textContent.trim(), [...row.cells].slice(1)"
-        ".map(cell => cell.ariaLabel.split(': ').slice(1).join(': '))]))"
-    )
-    return found
 
 
 # Verdicts -------------------------------------------------------------------------------------
-
-
-def address(rows: Sequence[Mapping[str, bool | None]]) -> str:
-    names = rows[0]
-    values = {
-        name: "_".join("u" if row[name] is None else str(int(bool(row[name]))) for row in rows)
-        for name in names
-    }
-    return f"#ticks={len(rows)}" + "".join(f"&v.{name}={text}" for name, text in values.items())
 
 
 def judged(automaton: Automaton, rows: Sequence[Mapping[str, bool]]) -> Iterator[tuple[str, str]]:
@@ -340,12 +263,18 @@ def test_saved_tests_pass_with_the_monitor_and_give_the_trace_again(
     again = opened(BATTERY, WITHIN, starts=[*of_suite(suite, rules)])
     again.locator("#which").select_option("")
     assert everything(again) == shown
+    for beyond in ("inf", "1e20"):  # JSON has no infinite number, and no other writing of 1e20
+        lane(page, "battery").nth(2).click()
+        page.keyboard.press("Enter")
+        page.keyboard.type(beyond)
+        page.keyboard.press("Enter")
+        page.get_by_role("button", name="Save tests").click()
+        assert "takes no infinite number" in page.locator("#status").inner_text()
     lane(page, "battery").nth(2).click()
     page.keyboard.press("Enter")
-    page.keyboard.type("inf")
+    page.keyboard.type("9007199254740993")  # another number in JavaScript
     page.keyboard.press("Enter")
-    page.get_by_role("button", name="Save tests").click()
-    assert "takes no infinite number" in page.locator("#status").inner_text()
+    assert "is no number" in page.locator("#status").inner_text()
 
 
 def test_both_versions_stand_side_by_side(opened: Open) -> None:
@@ -378,6 +307,11 @@ BAD_TABLES = (
     ("near,near\n1,1\n", "`near` comes twice in the header"),
     ("near,stopped\n1,0\n1\n", "row 2 has 1 cells for 2 names"),
     ("near\n1\n2\n", "row 2: `near` cannot be `2`"),
+    ('near,stopped\n0,1\n"0"1,0\n', "row 2: a quote is open, or stands within a cell"),
+    ('near,stopped\n0"1,0\n', "row 1: a quote is open, or stands within a cell"),
+    ('near,stopped\n"0,1\n' + '"1,0\n' * 100_000, "row 1: a quote is open"),
+    ("near,stopped\n=1+0,0\n", "row 1: `near` cannot be `=1+0`"),
+    ("tick,near\n3,1\n5,1\n", "row 2: `5` is not the next `tick`"),
     ("near\n" + "1\n" * 2001, "the table has 2001 rows, and a page takes 2000: cut a part out"),
 )
 
@@ -390,6 +324,36 @@ def test_a_table_that_cannot_be_taken_changes_nothing(opened: Open, tmp_path: Pa
         page.locator("#load").set_input_files(tmp_path / "bad.csv")
         expected_to(page.locator("#status")).to_contain_text(f"bad.csv: {message}")
         assert everything(page) == before
+
+
+TABLES = {
+    "one": ("\nnear\n1\n\n0\n\n", ["true", "unknown", "false", "unknown"]),
+    "no last line": ("near\n1\n\n0", ["true", "unknown", "false"]),
+    "in quotes": ('"near"\r\n"1"\r\n""', ["true", "unknown"]),
+    "counted": ("\ufefftick,near\r\n-1,1\r\n\r\n0,\r\n", ["true", "unknown"]),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_has_the_ticks_that_a_monitor_reads(opened: Open, name: str) -> None:
+    """Where a table has one column, an empty line is an unknown value."""
+    table, expected = TABLES[name]
+    read = [row for _, row in placed_rows(io.StringIO(table, newline=""), ("near",), "t.csv")]
+    assert [{"1": "true", "0": "false", "": "unknown"}[row["near"]] for row in read] == expected
+    page = opened("the robot shall never satisfy near")
+    page.locator("#load").set_input_files([as_csv(table)])
+    expected_to(page.locator("#status")).to_contain_text(f"t.csv: {len(expected)} tick")
+    assert told(page, "near") == expected
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Save CSV").click()
+    page.get_by_role("button", name="Clear").click()
+    page.locator("#load").set_input_files(download.value.path())
+    expected_to(page.locator("#status")).to_contain_text(f": {len(expected)} tick")
+    assert told(page, "near") == expected
+
+
+def as_csv(text: str) -> FilePayload:
+    return {"name": "t.csv", "mimeType": "text/csv", "buffer": text.encode()}
 
 
 def test_a_start_gets_numbers_that_make_its_comparisons_true(opened: Open) -> None:

@@ -7,14 +7,17 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from compiler.formalization.formalized import Formalized
 from compiler.project.folder import load
+from compiler.targets.python.monitor import text
 from fretc.play.versions import Side, Versions, side_by_side, versions
 from fretc.testing.runs import Absence, Difference, difference
 from fretish.diagnostics.diagnostic import has_errors
+from monitors.loading import load as monitor
 from tests.monitoring import rule
 from tests.strategies import Template, templates
 
@@ -94,6 +97,22 @@ def test_what_became_of_each_requirement() -> None:
 def test_only_ones_are_held_against_each_other_whatever_their_ids_are() -> None:
     (pair,) = of({"A": WITHIN.format(2)}, {"B": WITHIN.format(3)}).pairs
     assert (pair.new.id, pair.old.id) == ("A", "A before")
+
+
+ROUNDED = "the robot shall always satisfy 0.1 + x > 0.3", "the robot shall always satisfy x > 0.2"
+
+
+def test_a_proof_about_numbers_says_that_floats_round() -> None:
+    """At `x = 0.2` a monitor says that the one is kept and the other is not."""
+    new, old = (named(each, "A") for each in ROUNDED)
+    finite = []
+    for each in (new, old):
+        machine: Any = monitor("m.py", text(each))
+        machine.take([(0.2,)])
+        finite.append(machine.standings()[0].finite)
+    assert finite == [True, False]
+    (pair,) = versions(Side([new], {}, None), Side([old], {}, None), SECONDS).pairs
+    assert pair.note.endswith("proved, of exact numbers; floats round, which is not seen")
 
 
 def test_an_id_that_is_taken_gets_a_mark() -> None:

@@ -21,7 +21,7 @@ from fretc.watch.sources.source import (
     Problem,
     Reconnected,
 )
-from fretc.watch.watch import SILENCE, Watch
+from fretc.watch.watch import LOOK, SILENCE, Watch
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.fretc.watch.sent import MS, START, Sent, Setting, plan_of
 from tests.json_schemas import validate
@@ -66,6 +66,27 @@ def test_each_change_of_a_requirement_is_news_once(plan: Plan) -> None:
     assert states[-1].verdict == "violated"
     assert runs(news)[0].verdicts["R0"] == "violated"
     assert all(one != other for one, other in pairwise(states))
+
+
+@pytest.mark.parametrize("last", ["message", "idle"])
+def test_what_is_owed_is_news_before_the_tick_and_soon(last: str) -> None:
+    """The grid ticks every 10 ms and waits for 200: what comes is not judged for long."""
+    watch = Watch(plan_of(Setting(slow="y < 5", lateness=200)))
+    for each in steady(0, 300):
+        list(watch.take(each))
+    ticks, near = watch.session.ticks, Sent("/x", 1.0, 291).arrival
+    first = [*watch.take(near)]
+    received = near.log_time + LOOK
+    more: Item = Sent("/x", 1.0, 291 + LOOK // MS).arrival if last == "message" else Idle(received)
+    owed = [
+        each.state.owed
+        for each in [*first, *watch.take(more)]
+        if isinstance(each, Changed) and each.state.requirement == "R0"
+    ]
+    assert owed[-1] is True
+    assert ticks > 5
+    judged = watch.session.states(ahead=False)
+    assert {each.requirement: each.owed for each in judged}["R0"] is False
 
 
 def test_a_clock_that_is_set_back_begins_a_run_with_a_recording_of_its_own(

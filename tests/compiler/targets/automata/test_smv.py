@@ -312,7 +312,7 @@ def test_many_propositions_are_an_expression() -> None:
     read(text_of(f"whenever {MANY} the sw shall within 3 ticks satisfy p0 xor p1"))
 
 
-@pytest.mark.parametrize("id", ["R-1.2", "G", "x.y-z"])
+@pytest.mark.parametrize("id", ["R-1.2", "G", "x.y-z", "1.main-x"])
 def test_an_id_becomes_a_legal_name(id: str) -> None:
     (text,) = emitted("smv", "whenever p the sw shall always satisfy q", id).values()
     read(text)

@@ -199,7 +199,7 @@ DIALECTS = {
 def test_every_dialect_takes_it_without_a_warning_and_needs_nothing_else(
     dialect: str, tmp_path: Path
 ) -> None:
-    sources = [Source.of(*of_requirements()), *map(clashing, ("C1", "class", "fretc"))]
+    sources = [Source.of(*of_requirements()), *map(clashing, ("C1", "class", "fretc", "1.main-x"))]
     files = write(tmp_path, *sources)
     cc = compiler(dialect.split()[0])
     objects = [path.with_suffix(".o") for path in files]
@@ -207,6 +207,13 @@ def test_every_dialect_takes_it_without_a_warning_and_needs_nothing_else(
         subprocess.run([cc, *DIALECTS[dialect], "-c", path, "-o", made], check=True)
     undefined = subprocess.run([compiler("nm"), "-u", *objects], capture_output=True, check=True)
     assert not re.search(rb"\bU\b", undefined.stdout), undefined.stdout.decode()
+
+
+@each("name", ["1.main-x", "int", "G-2"])
+def test_any_id_gives_a_header_that_compiles(name: str, tmp_path: Path) -> None:
+    files = write(tmp_path, Source.of(rule(WITHIN, name)))
+    command = [compiler("gcc"), *STRICT, "-fsyntax-only", *map(str, files)]
+    subprocess.run(command, check=True)
 
 
 def test_headers_stand_side_by_side(tmp_path: Path) -> None:

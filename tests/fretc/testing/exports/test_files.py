@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from compiler.files.records import replace
 from compiler.formalization.formalized import Formalized
 from fretc.testing.assembly import suite
 from fretc.testing.exports.files import INDEX, Form, files
@@ -24,6 +25,7 @@ from fretc.testing.suite import Polarity, Suite
 from monitors.loading import executed, load
 from tests.each import each
 from tests.effort import some
+from tests.monitoring import rule
 from tests.requirement_sets import rules
 
 SENTENCES = (
@@ -95,6 +97,27 @@ def test_pytest_runs_them_from_anywhere(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)]
     ran = subprocess.run(command, cwd="/", capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stdout
+
+
+def test_no_file_of_a_test_is_that_of_a_monitor(tmp_path: Path) -> None:
+    """The tests of `x_monitor` are in `test_x_monitor.py`, and so is the monitor of `test_x`."""
+    every = rule(SENTENCES[0], "x_monitor"), rule(SENTENCES[2], "test_x")
+    found = suite(every, (), [batch(each, (), 60) for each in every])
+    artifacts, _ = files(found, every, Form.PYTEST)
+    assert len({each.path for each in artifacts}) == len(artifacts) == 4
+    for artifact in artifacts:
+        (tmp_path / artifact.path).write_text(artifact.text)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)]
+    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert f"{len(found.tests)} passed" in ran.stdout
+
+
+def test_no_table_of_a_test_is_the_index() -> None:
+    found, every = made(SENTENCES[0])
+    named = replace(found, tests=(replace(found.tests[0], name="tests"), *found.tests[1:]))
+    artifacts, left = files(named, every, Form.CSV)
+    assert len({each.path for each in artifacts}) == len(artifacts)
+    assert left == {"tests": "`tests.csv` is the table of all tests"}
 
 
 FAULTS = (

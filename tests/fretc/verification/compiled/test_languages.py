@@ -9,18 +9,22 @@ from tempfile import mkdtemp
 
 import pytest
 
+from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Result
 from compiler.targets.python.monitor import text
 from fretc.verification.compiled.readings import PythonRail
+from fretc.verification.compiled.text import StrangeTextError
 from fretc.verification.compiled.verifying import explored, verified
 from fretc.verification.engines.sandbox import Limits
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from tests import meaning
 from tests.c_monitors import of_python
+from tests.compiled_edits import EDITS, Edit, Edits
 from tests.compiled_monitors import (
     FOR,
     KINDS,
+    REFUSED,
     REFUTED,
     RING,
     SAME,
@@ -29,6 +33,7 @@ from tests.compiled_monitors import (
     WITHIN,
     Checker,
     Tongue,
+    edited,
 )
 from tests.each import each
 from tests.effort import FULL
@@ -144,6 +149,69 @@ def test_the_reference_tells_what_the_monitor_in_python_tells(sentence: str) -> 
 
 
 # What is wrong --------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def edits(tongue: Tongue) -> Edits:
+    return EDITS[tongue.name]
+
+
+@pytest.mark.slow
+def test_a_fault_comes_to_what_is_written_beside_it(
+    tongue: Tongue, checker: Checker, edits: Edits
+) -> None:
+    for sentence, old, new, expected in edits.faults:
+        one = rule(sentence)
+        assert checker.kind(edited(tongue.given(one), old, new), one) == expected, (old, new)
+
+
+def test_what_may_do_more_is_not_run(tongue: Tongue, edits: Edits) -> None:
+    one = rule(WITHIN)
+    assert [each for each in edits.further if is_formed(tongue, one, each)] == []
+
+
+def test_what_keeps_a_number_of_ticks_is_as_fretc_writes_it(tongue: Tongue, edits: Edits) -> None:
+    one = rule(edits.keeping)
+    tongue.language.checked(tongue.given(one), [one])
+    assert [each for each in edits.kept if is_formed(tongue, one, each)] == []
+
+
+def is_formed(tongue: Tongue, one: Formalized, edit: Edit) -> bool:
+    """Whether the changed text has a form that is compiled or run."""
+    monitor = edited(tongue.given(one), *edit)
+    try:
+        tongue.language.checked(monitor, [one])
+    except StrangeTextError:
+        return False
+    return True
+
+
+def test_what_is_no_text_of_the_language_is_not_proved(
+    tongue: Tongue, checker: Checker, edits: Edits
+) -> None:
+    one, edit = rule(WITHIN), (edits.since, edits.uncompiled)
+    assert is_formed(tongue, one, edit)
+    assert checker.kind(edited(tongue.given(one), *edit), one) == REFUSED
+
+
+def test_a_monitor_of_other_requirements_is_refused(tongue: Tongue) -> None:
+    one, other = rule(WITHIN), rule(FOR, "R2")
+    for rules, reason in (((), "R2"), ((other,), "other requirements")):
+        with pytest.raises(StrangeTextError, match=reason):
+            tongue.language.checked(tongue.given(other), (one, *rules)).plan(one)
+
+
+def test_what_a_requirement_does_not_speak_of_has_no_part_in_it(
+    tongue: Tongue, edits: Edits
+) -> None:
+    one, other = rule(WITHIN), rule("whenever r the sw shall immediately satisfy s", "R2")
+    monitor, rules = tongue.given(one, other), [one, other]
+    for each_ in rules:
+        tongue.language.checked(monitor, rules).plan(each_)
+    checked = tongue.language.checked(edited(monitor, edits.since, edits.foreign), rules)
+    checked.plan(other)
+    with pytest.raises(StrangeTextError, match="R1 depends on what its sentence does not speak of"):
+        checked.plan(one)
 
 
 def test_drawn_faults_are_refuted_or_refused(tongue: Tongue, checker: Checker) -> None:

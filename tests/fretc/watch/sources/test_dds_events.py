@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from fretc.logs.messages.ros2_types import definitions
+from fretc.logs.messages.ros2_types import definitions, latest
 from fretc.watch.sources.choice import chosen
 from fretc.watch.sources.dds import MOST_KINDS, Dds
 from fretc.watch.sources.dds_domain import Domain, Writer, join
@@ -25,9 +25,10 @@ from fretc.watch.sources.dds_types import (
     ros_topic,
     ros_type,
 )
-from fretc.watch.sources.source import Arrival, Opened, Problem, Reconnected
+from fretc.watch.sources.source import Arrival, Diagnosing, Opened, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
+from monitors.guard import Status
 from tests.dds import domain, environment, missing
 from tests.ros1 import until
 
@@ -187,6 +188,22 @@ def test_what_a_publisher_sent_while_it_was_out_of_reach_was_missed(here: int) -
     arrived = [each.log_time for each in listening.messages()]
     assert gap.since <= arrived[before - 1] + 10**6
     assert arrived[before - 1] < gap.until <= arrived[before]
+
+
+def test_what_is_known_is_published_as_a_node_does(here: int) -> None:
+    said = Status(2, "fretc watch: R1", "violated \udc80", (("owed", "True"),))
+    with Listening("/stop") as listening, Listening("/diagnostics") as hearing:
+        listening.source.diagnose([said])
+        hearing.hears(2)
+    (channel,) = {each.channel for each in hearing.messages()}
+    assert channel.schema_name == "diagnostic_msgs/msg/DiagnosticArray"
+    assert channel.schema
+    found = latest().deserialize_cdr(hearing.messages()[0].payload, channel.schema_name)
+    assert found.header.stamp.sec * 10**9 <= hearing.messages()[0].log_time
+    (status,) = found.status
+    assert (status.level, status.name, status.message) == (2, said.name, "violated ?")
+    assert [(each.key, each.value) for each in status.values] == [*said.values]
+    assert isinstance(listening.source, Diagnosing)
 
 
 # Strangers

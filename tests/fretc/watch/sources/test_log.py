@@ -59,9 +59,24 @@ def _shorter(log: Path) -> None:
     os.truncate(log, 20)
 
 
-@pytest.mark.parametrize("change", [_gone, _another, _shorter])
+def _over(log: Path) -> None:
+    """The same file, with the messages of another run: it is longer at once."""
+    other = log.with_name("other")
+    write(other, [number(i / 7, 2000 * S + i, "/x") for i in range(100)], per_chunk=5)
+    log.write_bytes(other.read_bytes())
+
+
+CHANGES: list[tuple[Callable[[Path], None], str]] = [
+    (_gone, "it is gone"),
+    (_another, "another file has taken its place"),
+    (_shorter, "it has become shorter than what was read of it"),
+    (_over, "another log has been written over it"),
+]
+
+
+@pytest.mark.parametrize(("change", "why"), CHANGES)
 def test_a_file_that_is_no_more_what_it_was_ends_the_source(
-    log: Path, change: Callable[[Path], None]
+    log: Path, change: Callable[[Path], None], why: str
 ) -> None:
     log.write_bytes(log.read_bytes()[:700])
     last = None
@@ -71,6 +86,7 @@ def test_a_file_that_is_no_more_what_it_was_ends_the_source(
         last = item
     assert isinstance(last, Problem)
     assert last.diagnostic.code is Code.UNREADABLE_LOG
+    assert last.diagnostic.message.endswith(why)
 
 
 def test_what_is_damaged_is_missed_and_the_rest_comes(log: Path) -> None:

@@ -1,0 +1,287 @@
+# ruff: noqa: E501
+"""Changes of a monitor's text in each language, and what comes of them.
+
+No two languages have the same text, so each has changes of its own; what must come of them is one law.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from tests.compiled_monitors import FOR, REFUSED, REFUTED, SAME, WITHIN
+
+Edit = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Edits:
+    """Of one language."""
+
+    faults: Sequence[tuple[str, str, str, str]]
+    """A sentence, an edit of its monitor, and what comes of it."""
+    further: Sequence[Edit]
+    """Of the monitor of `WITHIN`: what may do more than a step does, and is not run."""
+    keeping: str
+    """A sentence whose monitor keeps a number of ticks."""
+    kept: Sequence[Edit]
+    """Of its statements that fretc alone writes, and of readings of what they keep."""
+    uncompiled: str
+    """In the place of a local truth value: the form is right, and the language has no such text."""
+    foreign: str
+    """The same: a truth value of another requirement."""
+    since: str
+    """That local truth value."""
+
+
+_C_BEGIN = "    fretc_reading *reading;\n"
+_C_SINCE = "const bool since_1 = rail->oldest_1 >= 3;"
+C = Edits(
+    (
+        (WITHIN, "rail->oldest_1 >= 3", "rail->oldest_1 >= 2", REFUTED),
+        (WITHIN, "rail->oldest_1 >= 3", "rail->oldest_1 > 2", SAME),
+        (
+            WITHIN,
+            "reading->trigger = now->is_m & now->is_p;",
+            "reading->trigger = now->is_p;",
+            REFUTED,
+        ),
+        (WITHIN, "reading->open = since_2;", "reading->open = since_1;", REFUTED),
+        (WITHIN, "reading->answer = now->is_m & now->is_q;", "", REFUTED),
+        (
+            WITHIN,
+            "    rail->oldest_1 = -1;\n    rail->r1_broken",
+            "    rail->oldest_1 = 0;\n    rail->r1_broken",
+            REFUTED,
+        ),
+        (
+            WITHIN,
+            "reading->answer = now->is_m & now->is_q;",
+            "reading->answer = now->is_q;",
+            REFUTED,
+        ),
+        (WITHIN, "(3 - rail->oldest_1)", "(4 - rail->oldest_1)", REFUTED),
+        (WITHIN, "reading->left = (since_2 & (rail", "reading->left = (since_1 & (rail", REFUTED),
+        (FOR, "reading->settled = false;", "reading->settled = since_1;", REFUTED),
+        (WITHIN, "reading->open = since_2;", "reading->open = &since_2 > &since_1;", REFUSED),
+        (
+            WITHIN,
+            "reading->open = since_2;",
+            "reading->open = since_1 | & rail->oldest_1;",
+            REFUSED,
+        ),
+        (
+            WITHIN,
+            "now.is_q = inputs->q != FRETC_FALSE;",
+            "now.is_q = inputs->q == FRETC_TRUE;",
+            REFUSED,
+        ),
+        (
+            WITHIN,
+            "outcome->verdict = FRETC_PENDING;",
+            "outcome->verdict = FRETC_SATISFIED;",
+            REFUSED,
+        ),
+    ),
+    [
+        (_C_BEGIN, f'{_C_BEGIN}    system("true");\n'),
+        (_C_BEGIN, f"{_C_BEGIN}    static int n;\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    r1_init(0);\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    for (;;) {{ }}\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    while (true) {{ }}\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    rail = rail + 1;\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    rail[1].oldest_1 = 0;\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    *rail = *rail;\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    goto end; end:\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    return;\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    /* \\\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    // \n"),
+        (_C_BEGIN, f"{_C_BEGIN}#include <stdlib.h>\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    const bool n = rail->oldest_1 <: 1 :> ;\n"),
+        (_C_BEGIN, f"{_C_BEGIN}    const bool \u00e9 = true;\n"),
+        (_C_SINCE, "const bool since_1 = possible;"),
+        (_C_SINCE, "const bool since_1 = since_2;"),
+        (_C_SINCE, "const bool since_1 = (rail->oldest_1 = 3);"),
+        (_C_SINCE, "const bool since_1 = (rail->oldest_1++ >= 3);"),
+        (_C_SINCE, "const bool since_1 = --rail->oldest_1 >= 2;"),
+        (_C_SINCE, "const bool since_1 = rail->oldest_1-- >= 3;"),
+        (_C_SINCE, "const bool since_1 = (rail->oldest_1 >>= 1) >= 3;"),
+        (_C_SINCE, "const bool since_1 = (rail->oldest_1 -= 1) >= 2;"),
+        (_C_SINCE, "const bool since_1 = rail->oldest_1 >= 3 ??! false;"),
+        (
+            _C_SINCE,
+            f"{_C_SINCE} if (since_1) {{ const bool since_1 = since_1; rail->r1_broken = since_1; }}",
+        ),
+        (_C_SINCE, "const bool since_1 = (abort(), true);"),
+        (_C_SINCE, "const bool since_1 = sizeof(rail) > 4;"),
+        (_C_SINCE, "const bool since_1 = rail > now;"),
+        (_C_SINCE, "bool since_1 = rail->oldest_1 >= 3;"),
+        (_C_SINCE, "const bool since_1 = rail->oldest_1 >= 3"),
+        ("    rail->oldest_1 = -1;\n    rail->r1_broken", "    rail->r1_broken"),
+        ("    rail->r1_broken = false;\n", ""),
+        ("r1_clear(&state->possible);", ""),
+        ("r1_judge(&outcomes->r1);", ""),
+        ("bool is_m;", "int is_m;"),
+        (
+            "rail->oldest_1 = -1;\n    rail->r1_broken",
+            "rail->oldest_1 = rail->r1_broken;\n    rail->r1_broken",
+        ),
+    ],
+    "whenever p the sw shall immediately satisfy occurred(33, 35, q)",
+    (
+        ("/ 32u]", "/ 31u]"),
+        ("[word] = 0u", "[word] = 1u"),
+        ("word < 2u", "word < 3u"),
+        ("reading->settled = false;", "reading->settled = rail->ring_since_1 > 0;"),
+        ("reading->settled = false;", "reading->settled = rail->ring_since_1_at > 0;"),
+        ("    if (past_since_1) {", "    rail->ring_since_1_at = 99u;\n    if (past_since_1) {"),
+    ),
+    "const bool since_1 = 3 3;",
+    "const bool since_1 = now->is_r;",
+    _C_SINCE,
+)
+_RUST_BEGIN = "-> [Reading; 1] {\n"
+_RUST_SINCE = "let since_1 = self.oldest_1 >= 3;"
+RUST = Edits(
+    (
+        (WITHIN, "self.oldest_1 >= 3;", "self.oldest_1 >= 2;", REFUTED),
+        (WITHIN, "self.oldest_1 >= 3;", "self.oldest_1 > 2;", SAME),
+        (WITHIN, "open: since_2,", "open: since_1,", REFUTED),
+        (WITHIN, "trigger: now.is_m & now.is_p,", "trigger: now.is_p,", REFUTED),
+        (WITHIN, "oldest_1: -1,", "oldest_1: 0,", REFUTED),
+        (WITHIN, "u32::try_from(3 -", "u32::try_from(4 -", REFUTED),
+        (WITHIN, "left: if since_2", "left: if since_1", REFUTED),
+        (FOR, "settled: false,", "settled: since_1,", REFUTED),
+        (WITHIN, "is_q: inputs.q != Some(false),", "is_q: inputs.q == Some(true),", REFUSED),
+        (WITHIN, "Verdict::Pending\n", "Verdict::Satisfied\n", REFUSED),
+    ),
+    [
+        (_RUST_BEGIN, f"{_RUST_BEGIN} std::process::abort();"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} loop {{}}"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} while true {{}}"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} unsafe {{}}"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} return [];"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} let mut n = true;"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} let n: bool = true;"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} static N: u8 = 0;"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} *self = Rail::new();"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} self.oldest_1 += 1;"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} #[allow(warnings)]"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} /* a /* comment */ in */ another */"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} // a line \r that ends\n"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} let n = include!();"),
+        (_RUST_BEGIN, f'{_RUST_BEGIN} let n = include_str!("/etc/passwd") == "";'),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} let \u00e9 = true;"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} let n = 'a' == 'b';"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} }}"),
+        (_RUST_BEGIN, f"{_RUST_BEGIN} if true {{"),
+        (_RUST_SINCE, "let cfg = true; let since_1 = cfg!(true);"),
+        (_RUST_SINCE, "let since_1 = since_2;"),
+        (_RUST_SINCE, "let since_1 = { self.oldest_1 = 3; true };"),
+        (_RUST_SINCE, "let since_1 = self.advance(now);"),
+        (_RUST_SINCE, "let since_1 = now.is_m as u8 > 0;"),
+        (_RUST_SINCE, "let since_1 = self.oldest_1 / 0 > 1;"),
+        (_RUST_SINCE, "let since_1 = u32::try_from(3).ok();"),
+        ("#![forbid(unsafe_code)]", ""),
+        ("#![forbid(unsafe_code)]", "#![allow(unsafe_code)]"),
+        ("            oldest_1: -1,", "            oldest_1: { abort() },"),
+        ("            oldest_1: -1,", "            oldest_1: i32::MAX,"),
+        ("            oldest_1: -1,", ""),
+        ("answer: now.is_m & now.is_q,", "answer: now.is_m & now.is_q, ..panic()"),
+        ("Reading {\n                left", "Reading {\n                breach: false, left"),
+        ("is_m: bool,", "is_m: u8,"),
+    ],
+    "whenever p the sw shall immediately satisfy occurred(33, 35, q)",
+    (
+        ("|= 1 <<", "|= 2 <<"),
+        ("ring_since_1_at == 32 {", "ring_since_1_at == 99 {"),
+        ("ring_since_1: [0; 2],", "ring_since_1: [1; 2],"),
+        ("settled: false,", "settled: self.ring_since_1_at > 0,"),
+        (
+            "        if past_since_1 {",
+            "        self.ring_since_1_at = 99;\n        if past_since_1 {",
+        ),
+    ),
+    "let since_1 = 3 3;",
+    "let since_1 = now.is_r;",
+    _RUST_SINCE,
+)
+_JAVASCRIPT_BEGIN = "function advance(rail, tick, truths) {\n"
+_JAVASCRIPT_SINCE = "const since_1 = rail.oldest_1 >= 3;"
+JAVASCRIPT = Edits(
+    (
+        (WITHIN, "rail.oldest_1 >= 3;", "rail.oldest_1 >= 2;", REFUTED),
+        (WITHIN, "rail.oldest_1 >= 3;", "rail.oldest_1 > 2;", SAME),
+        (WITHIN, "owed: since_2,", "owed: since_1,", REFUTED),
+        (WITHIN, "trigger: is_m && is_p,", "trigger: is_p,", REFUTED),
+        (WITHIN, "answer: is_m && is_q,", "answer: 1,", REFUTED),
+        (WITHIN, "oldest_1: -1,", "oldest_1: 0,", REFUTED),
+        (WITHIN, "rail.oldest_1 + 1 : 3;", "rail.oldest_1 + 1 + true : 3;", REFUTED),
+        (WITHIN, "rail.oldest_1 = 0;", "rail.oldest_1 = -0;", SAME),
+        (FOR, "settled: false,", "settled: since_1,", REFUTED),
+        (WITHIN, "const since_1 = ", "const since_1 = (true)(false) && ", REFUSED),
+        (WITHIN, 'verdict: violated ? "violated"', 'verdict: violated ? "satisfied"', REFUSED),
+        (WITHIN, "if (now.trigger) marks.last = tick;", "", REFUSED),
+    ),
+    [
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} process.exit();"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} while (true) rail.oldest_1 = 1;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} for (;;) rail.oldest_1 = 1;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} return;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} let n = true;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} var n = true;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} if (true) const n = true;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} else rail.oldest_1 = 1;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} if (true) if (false) rail.oldest_1 = 1;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} rail.doubt = true;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} rail.marks = true;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} rail.more = true;"),
+        (_JAVASCRIPT_BEGIN, f'{_JAVASCRIPT_BEGIN} rail["oldest_1"] = 1;'),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} rail.oldest_1 += 1;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} rail.oldest_1 ++;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} const mark = true;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} // a comment \u2028 process.exit();\n"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} // a comment \r process.exit();\n"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} <!-- a comment\n"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} /r/;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} `${{process.exit()}}`;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} const n = rail.constructor;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} const \\u006e = true;"),
+        (_JAVASCRIPT_BEGIN, f"{_JAVASCRIPT_BEGIN} const n = true\n const m = true;"),
+        (_JAVASCRIPT_SINCE, "const since_1 = since_2;"),
+        (_JAVASCRIPT_SINCE, "const since_1 = tick > 3;"),
+        (_JAVASCRIPT_SINCE, "const since_1 = rail.doubt;"),
+        (_JAVASCRIPT_SINCE, "const since_1 = rail.tick > 3;"),
+        (_JAVASCRIPT_SINCE, "const since_1 = truths[0];"),
+        (_JAVASCRIPT_SINCE, "const since_1 = is_m(3);"),
+        (_JAVASCRIPT_SINCE, "const since_1 = rail.oldest_1 >= 3n;".replace("3n", '"3"')),
+        (_JAVASCRIPT_SINCE, "const since_1 = (rail.oldest_1 = 3);"),
+        (_JAVASCRIPT_SINCE, "const since_1 = rail?.oldest_1;"),
+        (_JAVASCRIPT_SINCE, "const since_1 = rail.oldest_1 >= 03;"),
+        (_JAVASCRIPT_SINCE, "const since_1 = typeof rail;"),
+        (_JAVASCRIPT_SINCE, "const since_1 = [true];"),
+        ("truths[0] === null ? rail.doubt", "truths[1] === null ? rail.doubt"),
+        ("oldest_1: -1,", "oldest_1: process.exit(),"),
+        ("oldest_1: -1,", "get oldest_1() { return 0; },"),
+        ("oldest_1: -1,", "oldest_1: -1, more: 0,"),
+        ("mark(rail.marks[0], tick,", "mark(rail.marks[0], tick + 1,"),
+        ("mark(rail.marks[0]", "rail.oldest_1 = 0;\n  mark(rail.marks[0]"),
+        ("return certain === possible", "return\n certain === possible"),
+        ("return certain === possible", "return // a comment\n certain === possible"),
+        ("return certain === possible", "return /* a\ncomment */ certain === possible"),
+        ("return { broken: -1", "return\n{ broken: -1"),
+        ("export {", "export default process.exit(); export {"),
+    ],
+    "only in p mode the sw shall after 2 ticks satisfy q",
+    (
+        ("tick, 2, 2, not_q && not_p", "tick, 2, 3, not_q && not_p"),
+        ("tick, 2, 2, not_q && not_p", "tick, 2, 2, not_q"),
+        ("{ runs: [], first: 0 }", "{ runs: [], first: 1 }"),
+        ("settled: false,", "settled: rail.kept_since_1,"),
+        ("  const since_1 = slide(", "  rail.kept_since_1 = 0;\n  const since_1 = slide("),
+    ),
+    "const since_1 = 3 3;",
+    "const since_1 = is_r;",
+    _JAVASCRIPT_SINCE,
+)
+EDITS = {"c": C, "rust": RUST, "javascript": JAVASCRIPT}
