@@ -26,6 +26,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 _HIGHEST = 232
 """Of the numbers of domains: a higher one has no ports."""
+_SPEAKS = 7
+"""What Cyclone DDS prints by itself: fatal errors, errors and warnings."""
 _AT_ONCE = 500
 """Samples that are taken by one call."""
 
@@ -83,15 +85,20 @@ def join() -> Domain | Diagnostic:
 
 def _joined(number: int) -> Domain | Diagnostic:
     from cyclonedds.core import DDSException
+    from cyclonedds.internal import DDS
 
+    library: Any = DDS._dll_handle
+    library.dds_set_log_mask(_SPEAKS)
     try:
-        return Domain(number)
+        domain = Domain(number)
     except DDSException:
         return Diagnostic(
             Code.ROBOT_NOT_REACHED,
             f"domain {number} of DDS cannot be joined",
             help="Cyclone DDS has printed why: no network, or a mistake in CYCLONEDDS_URI",
         )
+    library.dds_set_log_mask(0)  # from here on it speaks of packets of strangers, without end
+    return domain
 
 
 class Domain:

@@ -207,7 +207,8 @@ def _is_running(pid: int) -> bool:
 @pytest.mark.parametrize("number_", [signal.SIGINT, signal.SIGTERM])
 def test_a_watch_that_is_stopped_leaves_a_whole_recording_and_its_evidence(number_: int) -> None:
     data = Path(recorded("whole.mcap")).read_bytes()
-    Path("run.mcap").write_bytes(data[: len(data) - 100])
+    summary = int.from_bytes(data[-28:-20], "little")
+    Path("run.mcap").write_bytes(data[: summary - 9])  # within the head of its last record
     options = ("--record", "seen.mcap", "--evidence", "e.json", "--format", "jsonl", "--follow")
     with subprocess.Popen(
         [sys.executable, "-c", MAIN, "watch", "run.mcap", *options],

@@ -24,7 +24,7 @@ from compiler.formalization.reference import (
     template,
 )
 from compiler.targets.python.monitor import text as monitor_text
-from fretc.play.starts import Start, of_suite
+from fretc.play.starts import Start, Ticks, of_suite
 from fretc.testing.exports.files import Form, files
 from fretc.testing.reader import read
 from fretc.testing.suite import Suite
@@ -368,6 +368,15 @@ def test_a_start_gets_numbers_that_make_its_comparisons_true(opened: Open) -> No
     assert told(page, "speed <= 0.5") == [str(row["(speed <= 0.5)"]).lower() for row in given]
     assert page.locator("#status").inner_text() == "what it shows"
     assert page.locator("#hidden").inner_text().startswith("Not shown: 1 unknown")
+
+
+def test_a_start_begins_where_its_requirement_is_violated(opened: Open) -> None:
+    rows: tuple[Ticks, ...] = ((200, {"q": True}), (1, {"q": False}), (9, {"q": True}))
+    page = opened("the robot shall always satisfy q", starts=[Start("g", "n", "a", ("R1",), rows)])
+    cursor = page.locator("td.now[aria-label^='q at tick']")
+    assert cursor.get_attribute("aria-label") == "q at tick 200: false"
+    left = cursor.evaluate("cell => cell.getBoundingClientRect().left")
+    assert 0 <= left < page.viewport_size["width"]  # type: ignore[index]
 
 
 def test_what_is_not_shown_is_counted(opened: Open) -> None:

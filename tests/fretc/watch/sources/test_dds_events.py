@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -281,6 +282,30 @@ def test_no_payload_takes_the_watch_down(robot: Domain, described: bool) -> None
     ]
     assert padded == payloads
     assert not listening.problems()
+
+
+BROKEN = """
+from fretc.watch.sources.dds_domain import join
+from fretc.watch.sources.dds_types import Offer
+from tests.fretc.watch.sources.test_dds_events import BOOL, DEFINITION, HASH
+writer = join().writer("/stop", Offer(BOOL, HASH), DEFINITION)
+while not writer.readers:
+    pass
+for _ in range(20):
+    writer.write(bytes.fromhex("80ff000000000000"))
+"""
+
+
+def test_packets_that_are_broken_leave_the_terminal_and_others_alone(
+    robot: Domain, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with Listening("/stop") as listening:
+        around = {**os.environ, "PYTHONPATH": str(ROOT)}
+        subprocess.run([sys.executable, "-c", BROKEN], env=around, cwd=ROOT, check=True, timeout=60)
+        writer = robot.writer("/stop", Offer(BOOL, HASH, reliable=True), DEFINITION)
+        read(writer).write(TRUE)
+        until("the other is heard", lambda: TRUE in {each.payload for each in listening.messages()})
+    assert capfd.readouterr().err == ""
 
 
 NASTY = "\x1b[2Jwiped\r\n"
