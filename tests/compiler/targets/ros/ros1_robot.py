@@ -18,7 +18,7 @@ from nav_msgs.msg import Odometry  # type: ignore[import-not-found]
 from rosgraph_msgs.msg import Clock  # type: ignore[import-not-found]
 from sensor_msgs.msg import LaserScan  # type: ignore[import-not-found]
 
-BEAMS, PERIOD, FAR, SPEED = 720, 0.025, 1.2, 0.8
+BEAMS, PERIOD, FAR, WALL, SPEED = 720, 0.025, 0.8, 0.03, 0.3
 
 
 class Robot:
@@ -56,7 +56,7 @@ class Robot:
                 self.clocks.publish(rospy.Time.from_sec(self.time))
             if not self.stuck:
                 self.speed = self.wanted
-            self.clearance = max(0.03, self.clearance - self.speed * PERIOD)
+            self.clearance = max(WALL, self.clearance - self.speed * PERIOD)
             self.scan.header.stamp = rospy.get_rostime()
             self.scan.ranges = self.ranges()
             self.scans.publish(self.scan)

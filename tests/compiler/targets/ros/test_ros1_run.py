@@ -22,7 +22,8 @@ from compiler.files.text_files import write as deliver
 from tests.fretc.watch.watched import ROOT, Watched
 from tests.ros1 import PYTHON, Ended, Ros, ended, missing, ros, until
 
-NEAR = 0.4
+FAR, NEAR, WALL = 0.8, 0.4, 0.03
+"""Clearances of the robot, m: where it is put, where it must stop, where it can go no further."""
 BINDINGS = """
 [clock]
 time = "header.stamp"
@@ -192,7 +193,7 @@ def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path) -> None:
         robot.ask("go 3")
 
         robot.goes_to_the_wall()
-        assert robot.ask()[0] > NEAR / 2
+        assert robot.ask()[0] > WALL
         robot.goes_to_the_wall()
         robot.ask("away")
         until("it drives", robot.drives)
@@ -260,7 +261,7 @@ def test_what_can_go_wrong_around_the_node_stops_the_robot(here: Ros, tmp_path: 
     robot = Robot(here)
     robot.ask("go 1")
     until("scans come", lambda: robot.ask()[2] > 40)
-    assert robot.ask()[:2] == (1.2, 0.0)  # time has not begun
+    assert robot.ask()[:2] == (FAR, 0.0)  # time has not begun
     robot.ask("clock 1000")
     until("it drives", robot.drives)
     robot.ask("blind")
@@ -278,5 +279,5 @@ def test_what_can_go_wrong_around_the_node_stops_the_robot(here: Ros, tmp_path: 
     robot.ask("away")
     until("it is near", lambda: robot.ask()[0] < NEAR)
     until("it stands", robot.stands)
-    assert robot.ask()[0] > NEAR / 2
+    assert robot.ask()[0] > WALL
     assert ended(second, signal.SIGTERM) == Ended(0, "")
