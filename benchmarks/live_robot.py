@@ -32,28 +32,30 @@ def lidar(scans: int) -> None:
             seen.setdefault(kind, time.perf_counter())
 
     rospy.Subscriber("/stop", Bool, lambda m: note("stop", m.data), queue_size=10)
+    rospy.Subscriber("/by_hand", Bool, lambda m: note("by hand", m.data), queue_size=10)
     rospy.Subscriber("/wheels", Twist, lambda m: note("zero", m.linear.x == 0), queue_size=10)
     step = 2 * math.pi / BEAMS
     scan = LaserScan(angle_min=-math.pi, angle_increment=step, range_min=0.02, range_max=30.0)
     ranges = {near: [0.5 if near and i == 300 else 2.0 + i / BEAMS for i in range(BEAMS)]
               for near in (True, False)}  # fmt: skip
-    while publisher.get_num_connections() < 1 or commands.get_num_connections() < 1:
+    while publisher.get_num_connections() < 2 or commands.get_num_connections() < 1:
         time.sleep(0.01)
-    found: dict[str, list[float]] = {"stop": [], "zero": []}
+    found: dict[str, list[float]] = {"stop": [], "zero": [], "by hand": []}
     drive, moves = Twist(), Odometry()
     drive.linear.x = moves.twist.twist.linear.x = 0.5
     due, asked = time.monotonic() + 1.0, 0.0
     for k in range(-WARM, scans):
         time.sleep(max(0.0, due - time.monotonic()))
         due += PERIOD
-        moves.header.stamp = scan.header.stamp = rospy.get_rostime()
+        scan.header.stamp = rospy.get_rostime()
         scan.ranges = ranges[k % 2 == 1]
         if k == 0:
             print("begun", flush=True)
         if k % 2 == 0:
-            odometry.publish(moves)
             publisher.publish(scan)
             time.sleep(0.012)
+            moves.header.stamp = rospy.get_rostime()
+            odometry.publish(moves)
             commands.publish(drive)  # the robot may move, and does
             continue
         for kind, at in [*seen.items()]:
@@ -72,7 +74,7 @@ WARM = 80
 def by_hand(kind: str) -> None:
     """What somebody writes who needs no requirement: near stops, far does not."""
     rospy.init_node("by_hand")
-    publisher = rospy.Publisher("/stop", Bool, queue_size=10)
+    publisher = rospy.Publisher("/by_hand", Bool, queue_size=10)
     state = {"stop": True}
 
     def outline(scan: LaserScan) -> float:
@@ -104,5 +106,9 @@ def by_hand(kind: str) -> None:
 if __name__ == "__main__":
     if sys.argv[1] == "lidar":
         lidar(int(sys.argv[2]))
-    else:
+    elif sys.argv[1] == "by-hand":
         by_hand(sys.argv[2])
+    else:
+        rospy.init_node("listener")
+        rospy.Subscriber("/by_hand", Bool, lambda _: None)
+        rospy.spin()

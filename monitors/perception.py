@@ -267,6 +267,5 @@ class Judging:
         if not rows:
             return (None,) * len(self.monitor.REQUIREMENTS)
         if self._ahead is None or self._ahead[0] != rows:  # most messages change nothing
-            standings = self.monitor.standings_after(rows)
-            self._ahead = rows, tuple(standing.owed for standing in standings)
+            self._ahead = rows, self.monitor.owed_after(rows)
         return self._ahead[1]

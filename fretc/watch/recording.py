@@ -99,3 +99,8 @@ class Recorder:
     def abandon(self) -> None:
         """Leave the file as it is: what is in it can be read, and breaks off."""
         self._file.close()
+
+    def discard(self) -> None:
+        """Leave no file: nothing has come."""
+        self._file.close()
+        self.path.unlink(missing_ok=True)

@@ -61,6 +61,8 @@ class Watch:
         """The ticks of the run that were judged then, and those that had become unknown."""
         self._silent: set[str] = set()
         self._lost_since: int | None = None
+        self._has_begun = False
+        """Whether the source was ever there."""
         self._recorder = self._new_recorder()
 
     @property
@@ -89,7 +91,7 @@ class Watch:
             case Arrival():
                 yield from self._arrive(item)
             case Idle(now):
-                if now is not None:
+                if now is not None and self._has_begun:
                     yield from self._passed(self.session.idle(now))
                     yield from self._silences(now)
             case Missed(since, until):
@@ -105,6 +107,7 @@ class Watch:
                 yield item
                 yield from self._changes()
             case Opened():
+                self._has_begun = True
                 yield item
             case Problem(diagnostic):
                 self.failed |= diagnostic.is_error
@@ -112,6 +115,7 @@ class Watch:
 
     def _arrive(self, arrival: Arrival) -> Iterator[News]:
         self._began = self._began or arrival.log_time
+        self._has_begun = True
         found = self.session.arrive(arrival)
         if isinstance(found, Jump):
             yield from self._begin_anew(found, arrival)
@@ -201,7 +205,14 @@ class Watch:
         yield Found(_not_recorded(str(path), error.strerror or str(error)))
 
     def finish(self) -> Iterator[News]:
-        """The present run ends: its verdicts are those of an audit of its recording."""
+        """The present run ends: its verdicts are those of an audit of its recording.
+
+        Where the source was never there, there is neither.
+        """
+        if not self._has_begun:
+            if self._recorder is not None:
+                self._recorder.discard()
+            return
         if self._lost_since is not None:
             self.session.miss(self._lost_since, max(self._lost_since, self.session.received))
         found = self.session.end()

@@ -12,7 +12,7 @@ import itertools
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import itemgetter
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
 
 from monitors.kernel.columns import Column
 from monitors.kernel.verdicts import (
@@ -26,6 +26,9 @@ from monitors.kernel.verdicts import (
 
 Row = Sequence[Truth]
 """The truth of each proposition at one tick, in the order of `PROPOSITIONS`."""
+
+
+A = TypeVar("A")
 
 
 class Marks(NamedTuple):
@@ -307,11 +310,27 @@ class Monitor:
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
         """
+        return self._after(rows, self.standings)
+
+    def owed_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Truth, ...]:
+        """The `owed` of each of these standings, for less.
+
+        Raises:
+            KeyError, TypeError, ValueError: as `advance` does.
+        """
+        return self._after(rows, self._owed)
+
+    def _owed(self) -> tuple[Truth, ...]:
+        if self.tick < 0:
+            return (None,) * len(self.REQUIREMENTS)
+        return tuple(map(_owed, self.must.signals(), self.may.signals()))
+
+    def _after(self, rows: Iterable[Row | Mapping[str, Truth]], read: Callable[[], A]) -> A:
         kept = dict(vars(self))
         self.must, self.may = self._copies()
         try:
             self._advance(self._in_order([*rows]))
-            return self.standings()
+            return read()
         finally:
             vars(self).update(kept)
 
@@ -481,7 +500,6 @@ def _standing(
     deadline = None
     if opened is not None and requirement.horizon is not None:
         deadline = opened + requirement.horizon
-    owed = truth(certain.trigger or certain.owed, possible.trigger or possible.owed)
     return Standing(
         requirement.id,
         at_end(violated, truth(certain.owed, possible.owed), truth(must.last >= 0, may.last >= 0)),
@@ -489,8 +507,12 @@ def _standing(
         must.violated if must.violated >= 0 else None,
         opened,
         deadline,
-        owed,
+        _owed(certain, possible),
     )
+
+
+def _owed(certain: Signals[bool], possible: Signals[bool]) -> Truth:
+    return truth(certain.trigger or certain.owed, possible.trigger or possible.owed)
 
 
 def finite_verdict(broken: Truth, fails: Truth) -> Truth:

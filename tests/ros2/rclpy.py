@@ -374,6 +374,13 @@ class LifecycleNode(Node):
                 publisher.enabled = enabled
         return Return.SUCCESS
 
+    def __getattr__(self, name: str) -> Callable[[], Return]:
+        """`trigger_configure()` and so on: the same transitions, as calls of the node itself."""
+        transition = name.removeprefix("trigger_")
+        if name == transition or transition not in {each for _, each in _TRANSITIONS}:
+            raise AttributeError(name)
+        return lambda: Return.SUCCESS if self.change(transition) else Return.FAILURE
+
     def change(self, transition: str) -> bool:
         """What the service `change_state` answers; False, too, where it leads nowhere."""
         found = _TRANSITIONS.get((self.state, transition))

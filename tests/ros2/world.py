@@ -86,23 +86,31 @@ class Process:
                 patched.setitem(sys.modules, name, module)
             yield
 
-    def load(self, package: Path, module: str) -> Any:
-        """A module of an emitted Python package, with whatever it imports of its package."""
-        name = package.name
+    @contextmanager
+    def importing(self, package: Path) -> Iterator[None]:
+        """The same, and the modules of an emitted Python package; no trace of these is left."""
         with self.imports(), pytest.MonkeyPatch.context() as patched:
             patched.syspath_prepend(str(package))
-            for known in [each for each in sys.modules if each.partition(".")[0] == name]:
-                patched.delitem(sys.modules, known)
+            _forget(package.name)
             try:
-                return importlib.import_module(f"{name}.{module}")
+                yield
             finally:
-                for own in [each for each in sys.modules if each.partition(".")[0] == name]:
-                    del sys.modules[own]
+                _forget(package.name)
+
+    def load(self, package: Path, module: str) -> Any:
+        """A module of an emitted Python package, with whatever it imports of its package."""
+        with self.importing(package):
+            return importlib.import_module(f"{package.name}.{module}")
 
     def spun(self, run: Callable[[], object]) -> None:
         """Call what spins: the node is set up, and the world spins it."""
         with self.imports(), suppress(rclpy.Spinning):
             run()
+
+
+def _forget(package: str) -> None:
+    for name in [each for each in sys.modules if each.partition(".")[0] == package]:
+        del sys.modules[name]
 
 
 def _read(text: str) -> Any:
@@ -234,6 +242,7 @@ def _modules(process: Process) -> dict[str, ModuleType]:
             "ok": lambda: process.is_running,
             "shutdown": process.shutdown,
             "spin": process.spin,
+            "spin_once": lambda node, timeout_sec: rclpy.Executor(process).spin_once(timeout_sec),
             "create_node": node,
         },
         "rclpy.clock": {

@@ -159,7 +159,8 @@ def _policy(policy: Policy) -> str:
     measured = _measured(policy)
     if measured is not None:
         names = "".join(f", {name}" for name in _besides(policy).values())
-        each = f"x if -inf < x < inf and {measured} else meant(x)"
+        # The literals are infinities, and cost less than names: this runs for each beam.
+        each = f"x if -1e999 < x < 1e999 and {measured} else meant(x)"
         texts["quick"] = f"lambda xs, meant{names}: [{each} for x in xs]"
     head = [repr(signal.name), repr(signal.path.topic), repr(signal.path.fields)]
     return f"Policy({', '.join([*head, *_named(texts)])})"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from types import ModuleType
 from typing import Any
@@ -91,18 +91,20 @@ def head(text: str) -> Head | str:
 def otherwise(text: str, interception: Interception) -> str | None:
     """Why the file is of another interceptor than the bindings declare; None: it is of this one.
 
-    The core may be another: it is what is looked at. Its options and the node around it may not.
+    The core may be another: it is what is looked at. Its options and the node around it may not,
+    which is that of either ROS: a package of ROS 1 has that of ROS 1, whatever `ros` says.
     """
     try:
         options, node = _around(text)
     except (SyntaxError, ValueError, RecursionError) as error:
         return f"it is no Python: {error}"
-    declared, written = _around(interceptor.text(interception, "bindings.toml"))
+    of_both = (replace(interception, ros=ros) for ros in (1, 2))
+    written = [_around(interceptor.text(each, "bindings.toml")) for each in of_both]
     if (options, node) == ([], None):
         return None
-    if options != declared:
+    if options != written[0][0]:
         return "its options are not those that the bindings declare: emit it again"
-    if node != written:
+    if node not in [each for _, each in written]:
         return "its node is not one that fretc writes for these bindings: emit it again"
     return None
 

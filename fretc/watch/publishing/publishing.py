@@ -18,6 +18,10 @@ PERIOD = 0.5
 """Seconds from one time that all is published to the next, where nothing changes."""
 
 
+_WHO = "fretc watch"
+"""Before each name of a status, as nodes of ROS have theirs there."""
+
+
 class Publisher(Protocol):
     """Where verdicts go."""
 
@@ -44,7 +48,7 @@ class Diagnostics:
 
     def publish(self, states: Sequence[State], known: Sequence[Status], now: int) -> None:
         """The latest is what counts."""
-        self._middleware.diagnose(known)
+        self._middleware.diagnose([each._replace(name=f"{_WHO}: {each.name}") for each in known])
 
     def close(self) -> None:
         """Nothing: the middleware ends with the watch."""

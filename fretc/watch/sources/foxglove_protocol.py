@@ -183,6 +183,6 @@ def address(url: str) -> SplitResult | Diagnostic:
 def _no_url(text: str) -> Diagnostic:
     return Diagnostic(
         Code.BAD_USAGE,
-        f"`{text}` is no URL of a Foxglove server",
+        f"`{text}` is no URL of a Foxglove server" if text else "no Foxglove server is named",
         help="write `ws://HOST:PORT`, or `wss://HOST:PORT`; foxglove_bridge has port 8765",
     )

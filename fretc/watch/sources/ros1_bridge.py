@@ -171,7 +171,6 @@ def _publish(rospy: Any, frames: _Frames, diagnoses: queue.SimpleQueue[Any]) -> 
             message.header.stamp = rospy.Time.now()
             for level, name, text, values in statuses:
                 pairs = [KeyValue(key, value) for key, value in values]
-                name = f"fretc watch: {name}"
                 message.status.append(DiagnosticStatus(level, name, text, "", pairs))
             publisher.publish(message)
 

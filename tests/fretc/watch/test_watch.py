@@ -180,3 +180,13 @@ def test_a_problem_of_the_source_is_told_and_the_watch_goes_on(plan: Plan) -> No
     assert codes(news) == [Code.UNREADABLE]
     assert watch.failed
     assert runs(news)[0].ticks == 10
+
+
+def test_a_source_that_was_never_there_leaves_nothing(plan: Plan, tmp_path: Path) -> None:
+    """So the same command works once it is."""
+    watch = Watch(plan, tmp_path / "run.mcap")
+    news = told(watch, [Idle(START), Problem(BROKEN)])
+    assert codes(news) == [Code.UNREADABLE]
+    assert len(news) == 1
+    assert watch.failed
+    assert not [*tmp_path.iterdir()]

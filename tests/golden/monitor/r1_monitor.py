@@ -492,6 +492,9 @@ Row = Sequence[Truth]
 """The truth of each proposition at one tick, in the order of `PROPOSITIONS`."""
 
 
+A = TypeVar("A")
+
+
 class Marks(NamedTuple):
     """Ticks that a rail remembers of one requirement; -1: none."""
 
@@ -771,11 +774,27 @@ class Monitor:
         Raises:
             KeyError, TypeError, ValueError: as `advance` does.
         """
+        return self._after(rows, self.standings)
+
+    def owed_after(self, rows: Iterable[Row | Mapping[str, Truth]]) -> tuple[Truth, ...]:
+        """The `owed` of each of these standings, for less.
+
+        Raises:
+            KeyError, TypeError, ValueError: as `advance` does.
+        """
+        return self._after(rows, self._owed)
+
+    def _owed(self) -> tuple[Truth, ...]:
+        if self.tick < 0:
+            return (None,) * len(self.REQUIREMENTS)
+        return tuple(map(_owed, self.must.signals(), self.may.signals()))
+
+    def _after(self, rows: Iterable[Row | Mapping[str, Truth]], read: Callable[[], A]) -> A:
         kept = dict(vars(self))
         self.must, self.may = self._copies()
         try:
             self._advance(self._in_order([*rows]))
-            return self.standings()
+            return read()
         finally:
             vars(self).update(kept)
 
@@ -945,7 +964,6 @@ def _standing(
     deadline = None
     if opened is not None and requirement.horizon is not None:
         deadline = opened + requirement.horizon
-    owed = truth(certain.trigger or certain.owed, possible.trigger or possible.owed)
     return Standing(
         requirement.id,
         at_end(violated, truth(certain.owed, possible.owed), truth(must.last >= 0, may.last >= 0)),
@@ -953,8 +971,12 @@ def _standing(
         must.violated if must.violated >= 0 else None,
         opened,
         deadline,
-        owed,
+        _owed(certain, possible),
     )
+
+
+def _owed(certain: Signals[bool], possible: Signals[bool]) -> Truth:
+    return truth(certain.trigger or certain.owed, possible.trigger or possible.owed)
 
 
 def finite_verdict(broken: Truth, fails: Truth) -> Truth:

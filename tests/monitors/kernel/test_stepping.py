@@ -485,7 +485,9 @@ def test_a_look_ahead_says_what_would_be_and_changes_nothing(sentence: str) -> N
         copy = monitor(sentence)
         copy.restore(before)
         copy.advance(rows(machine, 4, 100 + seed))
-        assert machine.standings_after(rows(machine, 4, 100 + seed)) == copy.standings()
+        more = rows(machine, 4, 100 + seed)
+        assert machine.standings_after(more) == copy.standings()
+        assert machine.owed_after(more) == tuple(each.owed for each in copy.standings())
         assert machine.state() == before
         machine.advance(block)
         other.advance(block)
@@ -500,3 +502,4 @@ def test_a_look_ahead_that_fails_changes_nothing() -> None:
         machine.standings_after([("no truth", True)])  # type: ignore[list-item]
     assert machine.state() == before
     assert machine.standings_after([]) == machine.standings()
+    assert monitor(SENTENCES[0]).owed_after([]) == (None,)

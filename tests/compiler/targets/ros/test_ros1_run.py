@@ -14,6 +14,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
+from xmlrpc.client import ServerProxy
 
 import pytest
 
@@ -235,3 +236,47 @@ def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path) -> None:
         assert violated(said, id) == violated(live, id) == broken, id
     assert triggers(said, "EDGE") == triggers(live, "EDGE") == edges
     assert first["missing"] == "guarded"
+
+
+def test_what_can_go_wrong_around_the_node_stops_the_robot(here: Ros, tmp_path: Path) -> None:
+    made = package(tmp_path)
+    here.environment = {**here.environment, "PYTHONPATH": str(made / "src")}
+    program = made / "scripts/monitor_node.py"
+    here.master()
+    with ServerProxy(here.uri) as master:
+        master.setParam("/test", "/halt_monitor/source_timeout", -1.0)
+        said = "monitor_node.py: ValueError: source_timeout is from 0 to 3600 s, not -1.0\n"
+        assert ended(here.node(program)) == Ended(1, said)
+        master.setParam("/test", "/halt_monitor/source_timeout", 5)
+        master.setParam("/test", "/halt_monitor/stop_for", ["OTHER"])
+        said = "monitor_node.py: ValueError: there is no requirement OTHER: EDGE, HALT\n"
+        assert ended(here.node(program)) == Ended(1, said)
+        master.deleteParam("/test", "/halt_monitor/stop_for")
+        master.setParam("/test", "/use_sim_time", True)
+
+    here.node(made / "scripts/interceptor.py")
+    first = here.node(program)
+    until("it hears", lambda: heard_by(here, "/halt_monitor", TOPICS[:2]), 30)
+    robot = Robot(here)
+    robot.ask("go 1")
+    until("scans come", lambda: robot.ask()[2] > 40)
+    assert robot.ask()[:2] == (1.2, 0.0)  # time has not begun
+    robot.ask("clock 1000")
+    until("it drives", robot.drives)
+    robot.ask("blind")
+    until("it stands, for all beams are NaN", robot.stands)
+    robot.ask("sees")
+    robot.ask("away")
+    until("it drives", robot.drives)
+    second = here.node(program)
+    found = ended(first)
+    assert found.status == 4
+    assert found.said.endswith("new node registered with same name]\n")
+    robot.ask("away")
+    until("it drives with the second node", robot.drives)
+    robot.ask("clock 900")  # another run begins
+    robot.ask("away")
+    until("it is near", lambda: robot.ask()[0] < NEAR)
+    until("it stands", robot.stands)
+    assert robot.ask()[0] > NEAR / 2
+    assert ended(second, signal.SIGTERM) == Ended(0, "")

@@ -15,6 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from monitors.loading import executed
 from tests.ros2 import rclpy
 from tests.ros2.emitted import FORWARD, Monitor, Robot, write
 from tests.ros2.messages import message_class
@@ -354,6 +355,14 @@ def test_topics_are_remapped(package: Path) -> None:
     assert robot.world.values("/wheels", "linear.x")[-1] == FORWARD
     assert robot.world.values("/halt")[-1] is False
     assert "other: R1" in robot.diagnostics
+
+
+def test_its_own_test_of_the_node_passes_where_rclpy_is(package: Path) -> None:
+    process = Robot(package).world.process()
+    with process.importing(package):
+        module = executed((package / "test/test_node.py").read_text(), "test_node")
+        module.test_a_node_to_which_nothing_has_come_requests_a_stop()
+    assert not process.is_running
 
 
 # The process -------------------------------------------------------------------------------------

@@ -316,6 +316,8 @@ def test_the_core_and_comments_may_differ() -> None:
     assert otherwise(BASE, DECLARED) is None
     assert otherwise(with_helper("asks"), DECLARED) is None
     assert otherwise(sub("import time\n", "import time  # for the end\n"), DECLARED) is None
+    for ros in (1, 2):  # packages have the node of their own ROS
+        assert otherwise(BASE, replace(DECLARED, ros=ros)) is None
     assert otherwise(BASE, replace(DECLARED, stop="/halt")) is not None
 
 

@@ -12,6 +12,9 @@ from functools import partial
 from threading import Thread
 from typing import Any
 
+if sys.version_info < (3, 10):
+    sys.exit(f"monitor_node.py: it needs Python 3.10 or later, not {sys.version.split()[0]}")
+
 from r1_monitor.monitor import MONITOR
 from r1_monitor.perception import SETTING, Channels, Guard, Voice, single_signals
 
