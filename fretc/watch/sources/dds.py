@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from fretc.logs.messages import ros2_types
 from fretc.watch.sources.dds_domain import Domain, Publisher, Reader, Writer, join
@@ -92,6 +92,8 @@ class _Peer:
     last: int
     """When something has come of it."""
     there: bool = True
+    early: set[tuple[int | None, int]] = field(default_factory=set)
+    """What came through any reader before its own had found it: when it was sent, and its hash."""
 
 
 class _Listening:
@@ -105,28 +107,35 @@ class _Listening:
         self._lost: dict[str, int] = {}
         """Publishers that are gone, by their ids: when something has last come of them."""
         self._unmatched: dict[int, int] = {}
-        """Publishers that no reader has found yet: since when."""
+        """Publishers that their own reader has not found yet: since when."""
         self._known: set[tuple[Code, str]] = set()
         """What has been told of which topic."""
 
     def look(self) -> None:
         """Hand on what has come since the last look."""
-        for key, kind in tuple(self._kinds.items()):
+        matched = self._matched()
+        for kind in tuple(self._kinds.values()):
             if kind.reader is not None:
-                self._read(key, kind, kind.reader)
-        self._meet()
-        self._miss_matches()
+                self._read(kind, kind.reader)
+        for handle in matched:
+            self._unmatched.pop(handle, None)
+        self._meet()  # who has gone has said his last before
 
-    def _read(self, key: tuple[str, Offer], kind: _Kind, reader: Reader) -> None:
+    def _read(self, kind: _Kind, reader: Reader) -> None:
         for sample in reader.samples():
             if sample.publisher not in self._peers:
                 self._meet()
-            peer = self._peers.get(sample.publisher)
+            peer, channel = self._peers.get(sample.publisher), kind.channel
             if peer is not None:
-                if (peer.topic, peer.offer) != key:
-                    continue  # another reader takes it
-                peer.last = self._mailbox.now
-            self._mailbox.put(kind.channel, sample.payload, sample.sent)
+                own, key = self._kinds[peer.topic, peer.offer], (sample.sent, hash(sample.payload))
+                if key in peer.early and sample.sent is not None:
+                    continue  # it came through another reader, too
+                if sample.publisher in self._unmatched:
+                    peer.early.add(key)
+                elif own is not kind:
+                    continue  # its own reader takes it
+                channel, peer.last = own.channel, self._mailbox.now
+            self._mailbox.put(channel, sample.payload, sample.sent)
 
     # Who is there
 
@@ -186,17 +195,19 @@ class _Listening:
         except UnreadableError as error:
             self._tell_once(topic, _not_read(topic, str(error)))
 
-    def _miss_matches(self) -> None:
-        """A reader and a publisher that do not agree: of the type, say."""
-        for handle, since in tuple(self._unmatched.items()):
+    def _matched(self) -> list[int]:
+        """Publishers that their readers have found, or do not agree with: of the type, say."""
+        found = []
+        for handle, since in self._unmatched.items():
             peer = self._peers.get(handle)
             reader = self._kinds[peer.topic, peer.offer].reader if peer is not None else None
             if peer is None or reader is None or reader.matches(handle):
-                del self._unmatched[handle]
+                found.append(handle)
             elif self._mailbox.now - since > _SOON:
-                del self._unmatched[handle]
+                found.append(handle)
                 why = f"the fields or the encoding of its `{peer.offer.type}` are others"
                 self._tell_once(peer.topic, _not_read(peer.topic, why))
+        return found
 
     def _tell_once(self, topic: str, problem: Diagnostic) -> None:
         if (problem.code, topic) not in self._known:

@@ -203,6 +203,23 @@ def _is_running(pid: int) -> bool:
         return False
 
 
+def test_publishing_changes_nothing_else(fretc: Fretc) -> None:
+    log = recorded("run.mcap", stops=False)
+    plain, published = fretc("watch", log), fretc("watch", log, "--publish", "foxglove:0")
+    assert (published.status, published.out) == (plain.status, plain.out)
+    assert published.err.startswith("publishes at ws://127.0.0.1:")
+
+
+@pytest.mark.parametrize("where", ["rviz", "diagnostics"])
+def test_what_cannot_be_published_is_said_before_anything_is_recorded(
+    fretc: Fretc, where: str
+) -> None:
+    run = fretc("watch", recorded("run.mcap"), "--record", "seen.mcap", "--publish", where)
+    assert run.status == 2
+    assert run.err.startswith("F907 ")
+    assert not Path("seen.mcap").exists()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("number_", [signal.SIGINT, signal.SIGTERM])
 def test_a_watch_that_is_stopped_leaves_a_whole_recording_and_its_evidence(number_: int) -> None:
