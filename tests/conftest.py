@@ -44,6 +44,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update-golden", action="store_true", help="rewrite tests/golden/")
 
 
+def pytest_xdist_auto_num_workers() -> int:
+    """One more than there are processors: tests of middlewares wait most of their time."""
+    return (os.cpu_count() or 1) + 1
+
+
 def pytest_collection_finish() -> None:
     """Keep the collector of garbage from what is loaded by now: it stays, and it is large."""
     gc.collect()

@@ -59,4 +59,5 @@ def _written(
     target, ids = TARGETS[language.emit], {record.requirement for record in records}
     named = [rule for rule in rules if rule.id in ids]
     for group, one_file in ((rules, True), (named, True), *(([rule], False) for rule in named)):
-        yield {each.path.name: each.text for each in target.emit(group, Options(one_file=one_file))}
+        files = target.emit(group, Options(one_file=one_file))
+        yield {each.path.name: each.text for each in reversed(files)}  # the first `lib.rs` counts
