@@ -7,7 +7,7 @@ import signal
 import sys
 import time
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from threading import Event as Flag
 from types import FrameType
 from typing import Protocol
@@ -193,7 +193,7 @@ def _watched(
     finally:
         source.close()
         for news in watch.finish():
-            with suppress(OSError) if broken is not None else _through():
+            with suppress(OSError) if broken is not None else nullcontext():
                 _tell(news, watch, output, reaction)
         publishing.end(watch)
     if broken is not None:
@@ -203,11 +203,6 @@ def _watched(
         reaction.wait()
         for problem in reaction.problems():
             output.tell(Found(problem), watch.session)
-
-
-@contextmanager
-def _through() -> Iterator[None]:
-    yield
 
 
 def _tell(news: News, watch: Watch, output: Output, reaction: Reaction | None) -> None:

@@ -16,7 +16,7 @@ from fretc.logs.messages import ros2_types
 from fretc.watch.sources.dds_domain import Domain, Publisher, Reader, Writer, join
 from fretc.watch.sources.dds_types import Offer, UnreadableError
 from fretc.watch.sources.mailbox import WAIT, Mailbox
-from fretc.watch.sources.middleware import Middleware, simulated_time
+from fretc.watch.sources.middleware import Middleware, several_publishers, simulated_time
 from fretc.watch.sources.source import Channel, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from monitors.guard import Status
@@ -164,7 +164,7 @@ class _Listening:
             self._unmatched[publisher.handle] = now
         there = sum(peer.there for peer in self._peers.values() if peer.topic == topic)
         if there > 1:
-            self._tell_once(topic, _several_publishers(topic, there))
+            self._tell_once(topic, several_publishers(topic, there))
 
     def _part(self, publisher: Publisher) -> None:
         peer = self._peers.get(publisher.handle)
@@ -295,15 +295,6 @@ def _no_publisher(topic: str) -> Diagnostic:
         Code.PUBLISHER_GONE,
         f"nobody publishes `{topic}` any more",
         help="`max_age` says for how long its last message counts",
-        severity=Severity.WARNING,
-    )
-
-
-def _several_publishers(topic: str, number: int) -> Diagnostic:
-    return Diagnostic(
-        Code.SEVERAL_PUBLISHERS,
-        f"{number} nodes publish `{topic}`",
-        help="each message counts, whoever sent it; end what should not publish",
         severity=Severity.WARNING,
     )
 

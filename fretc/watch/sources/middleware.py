@@ -106,6 +106,17 @@ class Middleware(ABC):
             self._mailbox.tell(Interrupted(self._alive, problem))
 
 
+def several_publishers(topic: str, count: int, names: Collection[str] = ()) -> Diagnostic:
+    """F956; with the names of the nodes, where the middleware tells them."""
+    who = f": {', '.join(names)}" if names else ""
+    return Diagnostic(
+        Code.SEVERAL_PUBLISHERS,
+        f"{count} nodes publish `{topic}`{who}",
+        help="each message counts, whoever sent it; end what should not publish",
+        severity=Severity.WARNING,
+    )
+
+
 def simulated_time() -> Diagnostic:
     """F957: durations are wrong where it does not run as real time does."""
     return Diagnostic(

@@ -15,9 +15,9 @@ from threading import Lock
 from typing import IO, Any
 
 from fretc.watch.sources import ros1_bridge
-from fretc.watch.sources.middleware import Middleware, simulated_time
+from fretc.watch.sources.middleware import Middleware, several_publishers, simulated_time
 from fretc.watch.sources.source import Channel
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.guard import Status
 
 PYTHON = "/usr/bin/python3"
@@ -129,7 +129,7 @@ class Ros1(Middleware):
         for topic, nodes in publishers.items():
             if len(nodes) > 1 and topic not in self._several:
                 self._several.add(topic)
-                self._warn(_several_publishers(topic, nodes))
+                self._warn(several_publishers(topic, len(nodes), nodes))
 
     def _warn_of_simulated_time(self) -> None:
         if not self._simulated:
@@ -183,13 +183,4 @@ def _node_ended() -> Diagnostic:
         Code.ROBOT_NOT_REACHED,
         "the node that hands messages on has ended",
         help="is there a name for this machine in /etc/hosts?",
-    )
-
-
-def _several_publishers(topic: str, nodes: list[str]) -> Diagnostic:
-    return Diagnostic(
-        Code.SEVERAL_PUBLISHERS,
-        f"{len(nodes)} nodes publish `{topic}`: {', '.join(nodes)}",
-        help="each message counts, whoever sent it; end what should not publish",
-        severity=Severity.WARNING,
     )
