@@ -92,6 +92,17 @@ def templates(counts: tuple[int, ...] = COUNTS) -> Iterator[Template]:
 
 NAMES = ("p", "q", "r1", "speed", "arm.joint", "load%", "too_close", "two words", "a[3]", "Fault")
 """Names as users choose them; the last but one need quotes."""
+QUOTED_TEXTS = (
+    "stand still", "a & b", "G", "!x", "1", "p0", "_bounded_0_", "a = b", "(a)", "f(x)", "it's",
+    "back\\slash", "tail\\", "*/ /* //", "--", "# {}", "{{ x }}", "<!-- </script>", "%s %d",
+    "$(x)", "Grüße", "日本", "\u202e", "tab\there", "\x7f", "n\u0308", "x" * 300, "LAST", "true",
+    "FTP", " ", "0x1",
+)  # fmt: skip
+"""What quotes may hold: operators, comments, templates, names of our own."""
+quoted_texts = st.one_of(
+    st.sampled_from(QUOTED_TEXTS),
+    st.text(st.characters(codec="utf-8", exclude_characters='"\r\n'), min_size=1, max_size=20),
+)
 FORMULA_ATOMS = ("a", "b")
 
 names = st.sampled_from(NAMES).map(e.Name)

@@ -43,12 +43,15 @@ _PLAIN_TO_SPOT = re.compile(r"(?!true$|false$|xor$)[A-EH-LN-QSTYZa-z_][A-Za-z0-9
 
 
 def _quoted_atom(name: str) -> str:
-    """Spot's: a comparison is one proposition in double quotes.
+    """Spot's: a comparison is one proposition in double quotes, which escapes those within it.
 
     So is a name that begins like one of Spot's operators: `Fault` would be `F ault`.
     """
     text = name if is_compound(name) else identifier(name)
-    return text if _PLAIN_TO_SPOT.fullmatch(text) else f'"{text}"'
+    if _PLAIN_TO_SPOT.fullmatch(text):
+        return text
+    escaped = re.sub(r'(["\\])', r"\\\1", text)
+    return f'"{escaped}"'
 
 
 def _bounds(opening: str, separator: str, closing: str) -> Callable[[f.Interval], str]:

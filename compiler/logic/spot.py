@@ -1,11 +1,13 @@
 """Spot: the only module that imports it, and only when it is called.
 
-Bounds are small here: Spot expands them into chains of X, so nothing on the way from a sentence
+An atom's name may be any text, so Spot never reads one: of a formula it gets names that are made
+here (`_renamed`). Bounds are small here: Spot expands them into chains of X, so nothing on the way from a sentence
 to its files may depend on this room.
 """
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -27,7 +29,8 @@ from fretish.reading.recursion import deep
 
 def equivalent(left: Formula, right: Formula) -> bool:
     """Whether two future-time formulas hold on the same infinite traces (and `LAST` is free)."""
-    return same_language(printing.future(left), printing.future(right))
+    names = _names(*atoms(left), *atoms(right))
+    return same_language(*(printing.future(_renamed(each, names)) for each in (left, right)))
 
 
 def same_language(left: str, right: str) -> bool:
@@ -55,19 +58,21 @@ def holds_on(
     Source: Duret-Lutz et al., CAV 2022 (`twa_word`).
     """
     spot = _spot()
-    parts = [*map(_letter, prefix), f"cycle{{{'; '.join(map(_letter, loop))}}}"]
+    names = _names(*atoms(formula), *(name for values in (*prefix, *loop) for name in values))
+
+    def letters(ticks: Sequence[Mapping[str, bool]]) -> list[str]:
+        return [_letter({names[name]: value for name, value in each.items()}) for each in ticks]
+
+    parts = [*letters(prefix), f"cycle{{{'; '.join(letters(loop))}}}"]
     word = spot.parse_word("; ".join(parts), spot.make_bdd_dict())
-    automaton = spot.formula(printing.future(formula)).translate(dict=word.get_dict())
+    renamed = spot.formula(printing.future(_renamed(formula, names)))
+    automaton = renamed.translate(dict=word.get_dict())
     return bool(word.as_automaton().intersects(automaton))
 
 
 def _letter(values: Mapping[str, bool]) -> str:
     """A conjunction of literals, in Spot's syntax."""
-    literals = [
-        f"{'' if value else '!'}{printing.text(Atom(name), printing.SPOT)}"
-        for name, value in values.items()
-    ]
-    return " & ".join(literals) or "1"
+    return " & ".join(f"{'' if value else '!'}{name}" for name, value in values.items()) or "1"
 
 
 _PROVABLE_BOUND = 12
@@ -85,8 +90,10 @@ def simplified(formula: Formula) -> str | None:
     Source: Duret-Lutz et al., CAV 2022, and Spot's documentation of tl_simplifier.
     """
     spot = _spot()
+    names = _names(*atoms(formula))
+    renamed = _renamed(formula, names)
     opaque: dict[str, Formula] = {}
-    outline = spot.formula(printing.future(_hide(formula, opaque)))
+    outline = spot.formula(printing.future(_hide(renamed, opaque)))
     shorter = spot.tl_simplifier(spot.tl_simplifier_options(3)).simplify(outline)
     assert spot.are_equivalent(outline, shorter), "Spot's simplification is not equivalent"
     text = str(shorter)
@@ -95,7 +102,9 @@ def simplified(formula: Formula) -> str | None:
         size += text.count(name) * (_length(bounded) - 1)
         text = text.replace(name, f"({printing.text(bounded, printing.SPOT)})")
     if longest_bound(formula) <= _PROVABLE_BOUND:
-        assert same_language(text, printing.future(formula)), "simplification is not equivalent"
+        assert same_language(text, printing.future(renamed)), "simplification is not equivalent"
+    own = {name: printing.text(Atom(each), printing.SPOT) for each, name in names.items()}
+    text = _NAME.sub(lambda match: own[match[0]], text)
     exact = printing.text(formula, printing.SPOT)
     return text if size < _length(formula) and len(text) < len(exact) else None
 
@@ -112,7 +121,7 @@ def _hide(formula: Formula, opaque: dict[str, Formula]) -> Formula:
         case Eventually(_, Interval(_, int())) | Globally(_, Interval(_, int())):
             inner = rebuild(formula, lambda part: _hide(part, opaque))
             name_of = {bounded: name for name, bounded in opaque.items()}
-            name = name_of.get(inner) or f"_bounded_{len(opaque)}_"  # no name of FRETish
+            name = name_of.get(inner) or f"_bounded_{len(opaque)}_"  # no name of `_names`
             opaque[name] = inner
             return Atom(name)
         case _:
@@ -140,7 +149,7 @@ def violation(
     Source: Duret-Lutz et al., CAV 2022: product with the automaton of the negation on the fly.
     """
     spot = _spot()
-    names = {name: f"p{i}" for i, name in enumerate(dict.fromkeys(atoms(formula)))}
+    names = _names(*atoms(formula))
     renamed = spot.formula(printing.future(_renamed(formula, names)))
     dictionary = spot.make_bdd_dict()
     graph = _graph(spot.make_kripke_graph(dictionary), labels, edges, names)
@@ -156,8 +165,15 @@ def violation(
     return prefix, cycle
 
 
-def _renamed(formula: Formula, names: dict[str, str]) -> Formula:
-    """An atom's name may be any text: Spot sees plain ones only."""
+def _names(*own: str) -> dict[str, str]:
+    """A plain name for each atom's name; Spot sorts by names, so they are in the same order."""
+    return {name: f"p{i}" for i, name in enumerate(sorted(set(own)))}
+
+
+_NAME = re.compile(r"p\d+")
+
+
+def _renamed(formula: Formula, names: Mapping[str, str]) -> Formula:
     if isinstance(formula, Atom):
         return Atom(names[formula.name])
     return rebuild(formula, lambda part: _renamed(part, names))

@@ -4,14 +4,17 @@ from collections.abc import Iterator
 from itertools import product
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
 from compiler.logic import formula as f
 from compiler.logic import printing
-from compiler.logic.spot import equivalent, same_language, simplified
+from compiler.logic.spot import equivalent, holds_on, same_language, simplified
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests.each import each
+from tests.strategies import quoted_texts
 
 a, b = f.Atom("a"), f.Atom("b")
 SCOPES = ("", "in m", "unless in m", "before m", "after m")
@@ -62,6 +65,23 @@ def test_bounds_are_whole_ticks() -> None:
 
 def test_the_last_tick_is_free_on_infinite_traces() -> None:
     assert not equivalent(f.LAST, f.FALSE)
+
+
+@pytest.mark.slow
+@given(st.lists(quoted_texts, min_size=2, max_size=2, unique=True))
+def test_an_atom_of_any_text_is_an_atom(texts: list[str]) -> None:
+    """Of quoted names, and of comparisons with words."""
+    for spelling in ("{}", '(mode = "{}")'):
+        first, second = (f.Atom(spelling.format(text)) for text in texts)
+        response = f.globally(f.or_(f.not_(first), f.eventually(second)))
+        assert holds_on(response, [{first.name: True}], [{second.name: True, first.name: False}])
+        assert not holds_on(response, [], [{first.name: True, second.name: False}])
+        assert not equivalent(first, second)
+        assert equivalent(f.not_(f.or_(first, second)), f.and_(f.not_(first), f.not_(second)))
+        bound = f.Eventually(f.Eventually(second, f.Interval(0, 90)), f.Interval(0, 90))
+        shorter = simplified(f.and_(bound, f.eventually(f.eventually(first))))
+        spelt = [printing.text(each, printing.SPOT) for each in (first, second)]
+        assert shorter is None or all(text in shorter for text in spelt)
 
 
 # Simplification -------------------------------------------------------------------------------
