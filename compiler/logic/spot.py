@@ -1,7 +1,7 @@
 """Spot: the only module that imports it, and only when it is called.
 
-An atom's name may be any text, so Spot never reads one: of a formula it gets names that are made
-here (`_renamed`). Bounds are small here: Spot expands them into chains of X, so nothing on the way from a sentence
+An atom's name may be any text, so Spot never reads one: it gets names that are made here.
+Bounds are small here: Spot expands them into chains of X, so nothing on the way from a sentence
 to its files may depend on this room.
 """
 
