@@ -20,6 +20,8 @@ IDENTIFIER = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 """The id of a requirement."""
 _ID_LINE = re.compile(rf'^[ \t]*id[ \t]*=[ \t]*"(?P<id>{IDENTIFIER.pattern})"', re.MULTILINE)
 _FREE_TEXT = re.compile(r'"[^"]*"')
+_WHITE_SPACE = " \t\r\n\f\v\u00a0"
+"""What may stand around and between the words of a sentence, as in `grammar.lark`."""
 _FENCE = re.compile(r"^\ufeff?\+\+\+[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
 
 
@@ -112,8 +114,8 @@ def _pairs(source: Source) -> list[tuple[Span | None, Span]] | Diagnostic:
 
 def _stripped(span: Span) -> Span:
     text = span.text
-    start = len(text) - len(text.lstrip("\ufeff \t\r\n"))
-    return span.part(start, max(start, len(text.rstrip())))
+    start = len(text) - len(text.lstrip(f"\ufeff{_WHITE_SPACE}"))
+    return span.part(start, max(start, len(text.rstrip(_WHITE_SPACE))))
 
 
 def _requirement(

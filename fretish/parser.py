@@ -210,8 +210,8 @@ _UNIT = "(?:" + "|".join(sorted((n for n in NAMES if n != "1"), key=len, reverse
 _POWERED = rf"{_UNIT}(?:\^?-?[0-9]{{1,2}})?(?![\w%]|\.\w)"
 _QUANTITY = (
     "\nQUANTITY.3: "
-    r"/(?:0|[1-9][0-9]{0,59})(?:\.[0-9]{1,60})?(?:[eE][+-]?[0-9]{1,3}(?![0-9.]))?"
-    rf" *{_POWERED}(?:[*\/]{_POWERED})*/"
+    r"/(?:0|[1-9][0-9]{0,59})(?:\.[0-9]{1,60})?(?:[eE][+-]?[0-9]{1,3}(?![0-9.]))?/"
+    rf" WHITE_SPACE? /{_POWERED}(?:[*\/]{_POWERED})*/"
 )
 """A number and its unit: all units are known to the lexer, so no name is taken for one."""
 _OPTIONS = {

@@ -173,8 +173,8 @@ def number(text: str) -> Fraction:
 
 def quantity(text: str) -> tuple[Dimension, Fraction] | None:
     """`5 cm` → its dimension and 1/20, exactly, in base units; None where it is no quantity."""
-    digits, _, name = text.strip().partition(" ")
-    measure = unit(name) if name else ONE
+    digits, *name = text.split(maxsplit=1) or [""]
+    measure = unit(*name) if name else ONE
     try:
         return None if measure is None else (measure.dimension, number(digits) * measure.factor)
     except ValueError:

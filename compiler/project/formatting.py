@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-import textwrap
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from compiler.files.text_files import read
 from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from fretish.parser import mistakes as of_sentence
 from fretish.parser import parse
 from fretish.printer import sentence
+from fretish.syntax import Sentence
 
 _WIDTH = 100
+_PIECE = re.compile(r'(?:"[^"\n]*"|(?<![\w.])[0-9][\w.+-]* (?=[A-Za-z%])|\S)+')
+"""What stays on one line: a word, a name in quotes, a number with its unit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +46,7 @@ def formatted(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagno
             continue
         entries, mistakes = requirements(source)
         diagnostics.extend(mistakes)
-        text = source.text
+        text, trees = source.text, []
         for requirement in sorted(entries, key=lambda r: -r.wording.start):
             if requirement.is_free_text:
                 continue
@@ -51,20 +55,25 @@ def formatted(paths: Sequence[str]) -> tuple[tuple[Formatted, ...], tuple[Diagno
                 diagnostics.extend(of_sentence(requirement.wording))
                 continue
             span = requirement.wording
-            text = text[: span.start] + _wrapped(sentence(tree)) + text[span.end :]
-        files.append(Formatted(path, source.text, text if text.endswith("\n") else f"{text}\n"))
+            trees.append(tree)
+            text = text[: span.start] + _wrapped(sentence(tree), text) + text[span.end :]
+        after = text if text.endswith("\n") else f"{text}\n"
+        assert _trees(after) == trees[::-1] or diagnostics, "it is read back as it was"
+        files.append(Formatted(path, source.text, after))
     return tuple(files), tuple(diagnostics)
 
 
-def _wrapped(text: str) -> str:
-    """Lines of at most 100 characters, broken at spaces; a quoted name is never broken."""
-    lines = textwrap.wrap(
-        text,
-        _WIDTH,
-        expand_tabs=False,
-        replace_whitespace=False,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
-    wrapped = "\n".join(lines)
-    return wrapped if all(line.count('"') % 2 == 0 for line in lines) else text
+def _trees(text: str) -> list[Sentence | Diagnostic]:
+    """The sentences of a file, as they are read."""
+    entries, _ = requirements(Source("", text))
+    return [parse(entry.wording) for entry in entries if not entry.is_free_text]
+
+
+def _wrapped(text: str, file: str) -> str:
+    """Lines of at most 100 characters, with the line ends of the file."""
+    lines = [""]
+    for piece in _PIECE.findall(text):
+        if lines[-1] and len(lines[-1]) + 1 + len(piece) > _WIDTH:
+            lines.append("")
+        lines[-1] += f" {piece}" if lines[-1] else piece
+    return ("\r\n" if "\r\n" in file else "\n").join(lines)

@@ -1,17 +1,24 @@
 """`fretc fmt`: canonical sentences, and everything around them as it was."""
 
 import json
+import re
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from compiler.project.formatting import formatted
 from fretish.diagnostics.source import Source
+from fretish.documents import requirements
 from fretish.parser import parse
 from fretish.printer import sentence
 from fretish.syntax import Sentence
 from tests.command import Fretc, Run, write
+from tests.fretish.test_white_space import SENTENCES
 
 FORMS = Path(__file__).parents[2] / "data/fret_surface_forms.json"
 
@@ -123,7 +130,7 @@ def test_a_name_in_quotes_is_not_broken(fretc: Fretc) -> None:
     name = '"' + " ".join(["obstacle"] * 20) + '"'
     path = write("r.fret", f"whenever {name} the sw shall eventually satisfy stopped & {name}\n")
     assert fretc("fmt", path).status == 0
-    assert read(path) == f"whenever {name} the sw shall eventually satisfy stopped & {name}\n"
+    assert read(path) == f"whenever\n{name}\nthe sw shall eventually satisfy stopped &\n{name}\n"
 
 
 @pytest.mark.parametrize("name", ["two\twords", "two  words", " two words ", "a - b", "tab\tat"])
@@ -232,6 +239,26 @@ def test_a_formatted_sentence_says_the_same_in_stable_words() -> None:
         assert tree(once).article == written.article, text
         assert sentence(tree(once)) == once, text
         assert "\n" not in once, text
+
+
+@given(SENTENCES, st.integers(1, 100), st.sampled_from(["\n", "\r\n"]))
+def test_what_is_broken_anywhere_is_read_back_and_stays(text: str, length: int, end: str) -> None:
+    long = text.replace("sw shall", f"sw{'w' * length} shall")
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "r.fret")
+        path.write_text(f'+++{end}id = "R1"{end}+++{end}{long}{end}', "utf-8", newline="")
+        ((file,), wrong) = formatted([str(path)])
+        assert not wrong
+        path.write_text(file.after, "utf-8", newline="")
+        ((again,), _) = formatted([str(path)])
+    ((only,), _) = requirements(Source("r.fret", file.after))
+    assert parse(only.wording) == tree(long)
+    assert again.before == again.after
+    lines = file.after.split(end)
+    assert not any("\r" in line or "\n" in line for line in lines)
+    assert all(len(line) <= 100 or " " not in line for line in lines)
+    assert not any(re.search(r"(?<![\w.])[0-9][\w.+-]*$", line) and lines[i + 1][:1].isalpha()
+                   for i, line in enumerate(lines[:-1]))  # fmt: skip
 
 
 # The command ----------------------------------------------------------------------------------
