@@ -10,6 +10,7 @@ from tests.command import Fretc, write
 from tests.fretc.report import cases
 
 GOOD = cases.R1.replace("shall eventually", "shall within 300 milliseconds")
+ROOT = Path(__file__).parents[3]
 BY = ("--reviewer", "A", "--role", "B", "--comment", "c", "--date", "2026-01-01")
 
 
@@ -32,6 +33,21 @@ def edited(name: str, old: str, new: str) -> None:
 def test_a_sound_project_is_said_to_be_sound(good: Fretc) -> None:
     run = good("check")
     assert (run.status, run.out, run.err) == (0, "", "1 requirement: 0 mistakes, 0 warnings\n")
+
+
+SHIPPED = sorted(
+    str(path.parent.relative_to(ROOT)) for path in ROOT.glob("requirements/**/bindings.toml")
+)
+
+
+@pytest.mark.parametrize("folder", SHIPPED)
+def test_every_shipped_project_is_free_of_findings(
+    folder: str, fretc: Fretc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    run = fretc("check", folder)
+    assert run.status == 0, run.err
+    assert "0 mistakes, 0 warnings" in run.err
 
 
 def test_the_same_is_said_as_json(good: Fretc) -> None:
