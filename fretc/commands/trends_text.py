@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from textwrap import wrap
 
 from fretc.audit.evidence.verdicts import VERDICTS, severity
+from fretc.audit.selection.choice import in_words
 from fretc.report.model import phrases
 from fretc.terminal.output import Piece
 from fretc.terminal.screen import Screen, fitted, padded
 from fretc.trends.changes import Change, Tone
 from fretc.trends.comparisons import Finding
-from fretc.trends.trends import Group, Item, Trends, arrived, gone
+from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
 from fretish.diagnostics import signs
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.signs import Sign
@@ -78,6 +79,11 @@ def _all(trends: Trends, screen: Screen) -> Iterator[Line]:
     yield from _flaky(trends, screen)
     yield from _section(trends, _SECTIONS[3], screen)
     yield from _groups(gone(trends), signs.UNKNOWN, "gone: judged before, not in the newest round")
+    yield from _groups(
+        not_selected(trends),
+        signs.UNKNOWN,
+        "not selected: judged before, in logs that `--since` or `--sample` may have left out",
+    )
     yield from _section(trends, _SECTIONS[4], screen)
     yield from _groups(arrived(trends), signs.UNUSED, "never judged before")
     yield from _rest(trends)
@@ -97,8 +103,10 @@ def _head(trends: Trends) -> Iterator[Line]:
     facts = [newest.days, *(f"version {version}" for version in newest.versions[:3])]
     about = ", ".join(filter(None, [*facts, phrases.times(newest.runs, "run")]))
     yield ((f"newest: {phrases.place(newest.name)} ({about})", None),)
-    if trends.undated and len(trends.rounds) > 1:
-        yield (("not all have a date: rounds are in the order in which they were given", None),)
+    for selection in newest.selections:
+        yield ((f"newest: {in_words(selection)}", None),)
+    if len(trends.rounds) > 1:
+        yield ((trends.order, None),)
 
 
 def _section(trends: Trends, section: _Section, screen: Screen) -> Iterator[Line]:

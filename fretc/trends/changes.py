@@ -34,6 +34,8 @@ class Change(StrEnum):
     """Violated or shown before, and open now."""
     GONE = "gone"
     """Judged before, and not in the newest round."""
+    NOT_SELECTED = "not selected"
+    """Judged before, in runs that the audit of the newest round may have left out by its choice."""
     FIRST = "first seen"
     FIXED = "fixed"
     NEVER_SHOWN = "never shown"
@@ -64,20 +66,26 @@ def change(rounds: Sequence[Sequence[str]]) -> Change:
     """
     *before, now = [tone(verdicts) if verdicts else None for verdicts in rounds]
     judged = [each for each in before if each is not None]
-    known = [each for each in judged if each is not Tone.OPEN]
+    last = last_known(rounds)
     if now is None:
         assert judged, "it was never judged"
         return Change.GONE
     if not judged:
         return Change.FIRST_VIOLATED if now is Tone.VIOLATED else Change.FIRST
-    was_violated = bool(known) and known[-1] is Tone.VIOLATED
+    was_violated = last is not None and before[last] is Tone.VIOLATED
     match now:
         case Tone.VIOLATED:
             return Change.STILL if was_violated else Change.NEW
         case Tone.SHOWN:
             return Change.FIXED if was_violated else Change.STEADY
         case Tone.OPEN:
-            return Change.LOST if known else Change.NEVER_SHOWN
+            return Change.LOST if last is not None else Change.NEVER_SHOWN
+
+
+def last_known(rounds: Sequence[Sequence[str]]) -> int | None:
+    """The number of the last round before the newest that says something; None: none does."""
+    known = [i for i, one in enumerate(rounds[:-1]) if one and tone(one) is not Tone.OPEN]
+    return known[-1] if known else None
 
 
 def is_flaky(rounds: Sequence[Sequence[str]], of_software: Mapping[str, Sequence[str]]) -> bool:

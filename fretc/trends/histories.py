@@ -2,7 +2,8 @@
 
 Runs of one scenario are comparable; a run that names none is comparable with those of its log's
 name. A round is what is held against earlier ones: each evidence, or each day, or each value of a
-label. Times are nanoseconds since 1970, of UTC.
+label. Rounds are in the order of time, and of names where times do not decide. Times are
+nanoseconds since 1970, of UTC.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from pathlib import PurePosixPath
 
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.briefs import Brief, EvidenceSource, RunFacts
+from fretc.audit.evidence.schema import Selection
+from fretish.reading.natural_order import natural
 
 EVIDENCE, DAY = "evidence", "day"
 """What a round can be, beside the value of a label."""
@@ -68,6 +71,10 @@ class Round:
     last: int | None
     runs: int
     versions: tuple[str, ...]
+    requirements: frozenset[str]
+    """Ids of those by which its runs were judged."""
+    selections: tuple[Selection, ...]
+    """Of its evidence, where not all logs were audited."""
 
     @property
     def days(self) -> str:
@@ -103,13 +110,13 @@ class Histories:
     requirements: Mapping[str, str]
     """Id → its sentence, as the newest evidence has it."""
     judged: Mapping[tuple[str, Scenario], Sequence[Judged]]
+    order: str
+    """By what rounds are ordered, in words."""
     sources: tuple[EvidenceSource, ...] = field(repr=False)
     places: tuple[Sequence[int], ...] = field(repr=False)
     """Of each source the run of the result at each place."""
     bases: tuple[Sequence[int], ...] = field(repr=False)
     """The same of their bases."""
-    undated: bool = False
-    """Whether the order of rounds is that in which they were given, for want of times."""
 
     @property
     def newest(self) -> int:
@@ -165,18 +172,18 @@ def histories(sources: Sequence[EvidenceSource], by: str | None = None) -> Histo
     """Read all of it.
 
     Args:
-        sources: at least one; in the order of time where nothing else says when they were.
+        sources: at least one, in any order.
         by: what a round is: `EVIDENCE`, `DAY` or a label; None: each evidence, or each day where
             there is one evidence.
     """
     by = by or (EVIDENCE if len(sources) > 1 else DAY)
     facts_of = [list(source.runs()) for source in sources]
-    latest = [_latest(facts) for facts in facts_of]
-    undated = any(time is None for time in latest)
-    order = sorted(range(len(sources)), key=lambda i: 0 if undated else latest[i] or 0)
+    undated = by == EVIDENCE and any(not _times(facts) for facts in facts_of)
+    latest = [-1 if undated else _latest(facts) for facts in facts_of]
+    order = sorted(range(len(sources)), key=lambda i: (latest[i], natural(sources[i].file)))
     ordered = [sources[i] for i in order]
     facts_of = [facts_of[i] for i in order]
-    rounds, round_of = _rounds(by, [each.file for each in ordered], facts_of)
+    rounds, round_of = _rounds(by, ordered, facts_of)
     reader = _Reader(by, round_of)
     for i, (source, facts) in enumerate(zip(ordered, facts_of, strict=True)):
         reader.read(i, source, facts)
@@ -186,15 +193,26 @@ def histories(sources: Sequence[EvidenceSource], by: str | None = None) -> Histo
         tuple(reader.runs),
         reader.requirements,
         {key: tuple(found) for key, found in reader.judged.items()},
+        _order(rounds, undated=undated),
         tuple(ordered),
         tuple(reader.places),
         tuple(reader.bases),
-        undated,
     )
 
 
-def _latest(facts: Sequence[RunFacts]) -> int | None:
-    return max((time for one in facts if (time := time_of(one)) is not None), default=None)
+def _latest(facts: Sequence[RunFacts]) -> int:
+    """What has no time comes first: it cannot be the newest."""
+    return max(_times(facts), default=-1)
+
+
+def _order(rounds: Sequence[Round], *, undated: bool) -> str:
+    """By what they are ordered, and what decides."""
+    times = [each.last for each in rounds]
+    by = [f"by time (label `{DATE}`, else start of the logs)"]
+    by += ["those without a time first"] if None in times else []
+    by += ["those of equal times by name"] if len({*times}) < len(times) else []
+    words = "by name, since not all have a time" if undated else ", ".join(by)
+    return f"rounds are ordered {words}; `fretc audit --label {DATE}=...` decides"
 
 
 def _key(by: str, source: int, facts: RunFacts) -> str:
@@ -208,26 +226,31 @@ def _key(by: str, source: int, facts: RunFacts) -> str:
 
 
 def _rounds(
-    by: str, files: Sequence[str], facts_of: Sequence[Sequence[RunFacts]]
+    by: str, sources: Sequence[EvidenceSource], facts_of: Sequence[Sequence[RunFacts]]
 ) -> tuple[tuple[Round, ...], Mapping[str, int]]:
     """The rounds, and the number of each by its key."""
     members: dict[str, list[RunFacts]] = defaultdict(list)
-    if by == EVIDENCE:
-        members |= {str(i): [] for i in range(len(files))}
-    for i, facts in enumerate(facts_of):
+    audits: dict[str, dict[int, EvidenceSource]] = defaultdict(dict)
+    for i, (source, facts) in enumerate(zip(sources, facts_of, strict=True)):
+        if by == EVIDENCE:
+            members[str(i)], audits[str(i)][i] = [], source
         for one in facts:
-            members[_key(by, i, one)].append(one)
+            key = _key(by, i, one)
+            members[key].append(one)
+            audits[key][i] = source
     times = {key: _times(facts) for key, facts in members.items()}
     keys = list(members)
-    if by != EVIDENCE:  # what has no time comes first: it cannot be the newest
-        keys.sort(key=lambda key: max(times[key], default=-1))
+    if by != EVIDENCE:
+        keys.sort(key=lambda key: (_latest(members[key]), natural(key)))
     rounds = tuple(
         Round(
-            _round_name(by, key, files),
+            _round_name(by, key, sources),
             min(times[key], default=None),
             max(times[key], default=None),
             len(members[key]),
             tuple(dict.fromkeys(v for one in members[key] if (v := one.labels.get(VERSION)))),
+            frozenset(each.id for some in audits[key].values() for each in some.requirements),
+            tuple(each.selection for each in audits[key].values() if each.selection is not None),
         )
         for key in keys
     )
@@ -238,9 +261,9 @@ def _times(facts: Sequence[RunFacts]) -> list[int]:
     return [time for one in facts if (time := time_of(one)) is not None]
 
 
-def _round_name(by: str, key: str, files: Sequence[str]) -> str:
+def _round_name(by: str, key: str, sources: Sequence[EvidenceSource]) -> str:
     if by == EVIDENCE:
-        return files[int(key)]
+        return sources[int(key)].file
     return key or f"without {'a date' if by == DAY else by}"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from compiler.files.edition import __version__
+from compiler.files.records import plain
 from compiler.files.templating import to_json
 from fretc.trends.comparisons import Comparison, by_finding
 from fretc.trends.histories import Round, counted
@@ -23,6 +24,7 @@ def _plain(trends: Trends) -> dict[str, Any]:
         "schema": SCHEMA,
         "fretc": __version__,
         "by": trends.by,
+        "order": trends.order,
         "runs": trends.runs,
         "rounds": [_round(each) for each in trends.rounds],
         "requirements": dict(trends.sentences),
@@ -43,6 +45,7 @@ def _round(each: Round) -> dict[str, Any]:
         "days": each.days,
         "runs": each.runs,
         "versions": list(each.versions),
+        "selections": [plain(one) for one in each.selections],
     }
 
 

@@ -9,12 +9,13 @@ from typing import Any
 from compiler.files.edition import __version__
 from compiler.files.templating import render
 from fretc.audit.evidence.verdicts import severity
+from fretc.audit.selection.choice import in_words
 from fretc.report.model import phrases
 from fretc.report.page.html import hash_source, visible_texts
 from fretc.trends.changes import RED, Change
 from fretc.trends.charts import chart, strip
 from fretc.trends.comparisons import Comparison, Finding
-from fretc.trends.trends import Group, Item, Trends, arrived, gone
+from fretc.trends.trends import Group, Item, Trends, arrived, gone, not_selected
 from fretish.diagnostics import signs
 from fretish.diagnostics.signs import Sign
 
@@ -79,6 +80,8 @@ def html(trends: Trends) -> str:
                 "arrived_count": phrases.whole(sum(len(group.items) for group in arrived(trends))),
                 "regressions": phrases.whole(len(regressed)) if regressed else "",
                 "gone": _groups(gone(trends)),
+                "not_selected_count": phrases.whole(len(trends.of(Change.NOT_SELECTED))),
+                "not_selected": _groups(not_selected(trends)),
                 "arrived": _groups(arrived(trends)),
                 "held": {"before": trends.held.before, "after": trends.held.after},
                 "level": f"{trends.level:g}",
@@ -109,7 +112,7 @@ def _headline(trends: Trends) -> str:
         (len(trends.found(Finding.REGRESSED)), "regression", ""),
         (len(trends.of(Change.STILL)), "requirement still violated in a scenario",
          "requirements still violated in scenarios"),
-        (len(trends.of(Change.LOST, Change.GONE)), "verdict lost", "verdicts lost"),
+        (len(trends.lost), "verdict lost", "verdicts lost"),
         (len(trends.of(Change.FIXED)), "fixed", "fixed"),
     )  # fmt: skip
     parts = [phrases.times(count, one, many) for count, one, many in counts if count]
@@ -126,11 +129,8 @@ def _facts(trends: Trends) -> list[str]:
         f"{phrases.times(len(trends.rounds), 'round')}, {phrases.times(trends.runs, 'run')}, "
         f"{phrases.times(len(trends.sentences), 'requirement')}; {phrases.whole(steady)} shown as "
         f"before, {phrases.whole(never)} never shown.",
-        *(
-            ["Not all have a date: rounds are in the order in which they were given."]
-            if trends.undated and len(trends.rounds) > 1
-            else []
-        ),
+        *(f"Newest round: {in_words(each)}." for each in newest.selections),
+        *([f"{trends.order[:1].upper()}{trends.order[1:]}."] if len(trends.rounds) > 1 else []),
     ]
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from fretc.audit.evidence.briefs import EvidenceSource
-from fretc.trends.changes import RED, Change, Tone, change, is_flaky, tone
+from fretc.trends.changes import RED, Change, Tone, change, is_flaky, last_known, tone
 from fretc.trends.comparisons import (
     LEVEL,
     Comparison,
@@ -26,6 +26,7 @@ from fretc.trends.histories import (
     histories,
     verdicts_of_rounds,
 )
+from fretc.trends.left_out import is_left_out
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.natural_order import natural
 
@@ -48,6 +49,19 @@ class Item:
         """What each round says; None: it does not judge it."""
         return tuple(tone(verdicts) if verdicts else None for verdicts in self.rounds)
 
+    @property
+    def was_violated(self) -> bool:
+        """Whether it was violated when something was known of it before the newest round."""
+        last = last_known(self.rounds)
+        return last is not None and self.tones[last] is Tone.VIOLATED
+
+    @property
+    def last(self) -> Tone:
+        """What was said of it last, in a round that had the runs of which it was said."""
+        if self.change is Change.NOT_SELECTED and self.was_violated:
+            return Tone.VIOLATED
+        return next(filter(None, reversed(self.tones)))
+
 
 @dataclass(frozen=True, slots=True)
 class Trends:
@@ -64,7 +78,8 @@ class Trends:
     level: float
     is_after: tuple[bool, ...]
     """Of each run, whether it is of what is held against others."""
-    undated: bool
+    order: str
+    """By what rounds are ordered, in words."""
 
     @property
     def runs(self) -> int:
@@ -91,8 +106,17 @@ class Trends:
 
     @property
     def is_comparable(self) -> bool:
-        """Whether all that was known before is known now, and something can be compared at all."""
-        return self.has_pairs and not self.of(Change.LOST, Change.GONE)
+        """Whether all that was known before is known now, and something can be compared at all.
+
+        What was not selected, as the user asked for, is missing only where it was violated.
+        """
+        return self.has_pairs and not self.lost
+
+    @property
+    def lost(self) -> tuple[Item, ...]:
+        """What was known before and is not known now, though it was to be, or was violated."""
+        left_out = (item for item in self.of(Change.NOT_SELECTED) if item.was_violated)
+        return (*self.of(Change.LOST, Change.GONE), *left_out)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +130,7 @@ class Group:
     @property
     def text(self) -> str:
         """With what was said of them last."""
-        last = [next(filter(None, reversed(item.tones))) for item in self.items]
+        last = [item.last for item in self.items]
         counts = [f"{last.count(each)} {each}" for each in Tone if each in last]
         return f"{self.name}: {', '.join(counts)}"
 
@@ -129,6 +153,11 @@ def grouped(trends: Trends, *kinds: Change) -> tuple[Group, ...]:
 def gone(trends: Trends) -> tuple[Group, ...]:
     """What was judged before, and is not in the newest round."""
     return grouped(trends, Change.GONE)
+
+
+def not_selected(trends: Trends) -> tuple[Group, ...]:
+    """What was judged before, in logs that the choice of logs may have left out."""
+    return grouped(trends, Change.NOT_SELECTED)
 
 
 def arrived(trends: Trends) -> tuple[Group, ...]:
@@ -174,7 +203,7 @@ def trends(
         comparisons(known, held, level),
         level,
         tuple(held.is_after(run) for run in known.runs),
-        known.undated,
+        known.order,
     )
 
 
@@ -187,10 +216,11 @@ def _item(known: Histories, requirement: str, scenario: Scenario, judged: Sequen
         software = known.runs[one.run].software if one.run >= 0 else f"all of {one.round}"
         of_software[software].append(one.verdict)
     same = verdicts_of_rounds(comparable, len(known.rounds))
+    became = change(rounds)
     return Item(
         requirement,
         scenario,
-        change(rounds),
+        Change.NOT_SELECTED if is_left_out(known, requirement, judged, became) else became,
         is_flaky(same, of_software),
         len(comparable) < len(judged),
         rounds,

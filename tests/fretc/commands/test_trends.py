@@ -26,6 +26,8 @@ def test_a_new_violation_is_told_and_is_the_exit_status(fretc: Fretc) -> None:
         1,
         "2 rounds, 4 runs, 2 requirements, 2 scenarios; a round is each evidence\n"
         "newest: 2.json (2025-11-09, 2 runs)\n"
+        "rounds are ordered by time (label `date`, else start of the logs); `fretc audit\n"
+        "  --label date=...` decides\n"
         "\n"
         "✘ 1 newly violated\n"
         "    R1            a.mcap                  ✔✘  violated\n"

@@ -7,7 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from compiler.files.records import UNSET
-from fretc.audit.evidence.schema import SCHEMA, Bindings, Document, Requirement, Result
+from fretc.audit.evidence.schema import (
+    SCHEMA,
+    Bindings,
+    Document,
+    Requirement,
+    Result,
+    Selection,
+)
 from fretc.audit.evidence.writer import text
 from tests.fretc.audit.results import SHA, result
 
@@ -62,16 +69,23 @@ def hash_of(run: str, night: int) -> int:
     return int.from_bytes(f"{night}{run}"[:30].encode(), "big")
 
 
-def document(results: Iterable[Result]) -> Document:
+def document(results: Iterable[Result], selection: Selection | None = None) -> Document:
     found = tuple(results)
     ids = dict.fromkeys(each.requirement for each in found)
     requirements = tuple(Requirement(id, f"the robot shall satisfy {id}", SHA) for id in ids)
-    return Document(SCHEMA, "0", Bindings("bindings.toml", SHA), requirements, found)
+    bindings = Bindings("bindings.toml", SHA)
+    return Document(SCHEMA, "0", bindings, requirements, found, selection=selection or UNSET)
 
 
-def evidence(path: Path, *results: Result) -> str:
+def sample(audited: int, of: int, since: str | None = None, older: int = 0) -> Selection:
+    """What evidence says of a choice of logs."""
+    seed = None if audited == of else 0
+    return Selection(of + older, since, older, None if seed is None else of, seed, audited)
+
+
+def evidence(path: Path, *results: Result, selection: Selection | None = None) -> str:
     """A file of evidence: the results of a run stand together."""
     runs = dict.fromkeys(each.run for each in results)
     ordered = [each for run in runs for each in results if each.run == run]
-    path.write_text(text(document(ordered)), encoding="utf-8")
+    path.write_text(text(document(ordered, selection)), encoding="utf-8")
     return str(path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -12,10 +13,10 @@ from fretc.audit.evidence.reader import Evidence
 from fretc.audit.evidence.schema import Result
 from fretc.trends.changes import RED, Change
 from fretc.trends.comparisons import Finding
-from fretc.trends.trends import Trends, gone
+from fretc.trends.trends import Trends, gone, not_selected
 from fretc.trends.trends import trends as trends_of
 from tests.fretc.audit.results import SHA
-from tests.fretc.trends.nights import document, judged
+from tests.fretc.trends.nights import document, judged, sample
 
 OTHER = "1" * 64
 
@@ -47,11 +48,34 @@ def test_a_label_says_when_a_run_was() -> None:
     assert [each.days for each in found.rounds] == ["2026-11-20", "2026-11-21"]
 
 
-def test_without_times_the_order_is_the_given_one() -> None:
-    no_time = [judged("a.mcap", "violated", night=-30_000)]
-    found = trends(no_time, [judged("a.mcap", "satisfied")])
-    assert found.undated
-    assert changes(found) == {("R1", "a.mcap"): Change.FIXED}
+@pytest.mark.parametrize("night", [0, -30_000])
+@given(order=st.permutations(["2", "9", "10", "100"]))
+def test_equal_times_and_missing_ones_are_in_the_natural_order_of_names(
+    night: int, order: Sequence[str]
+) -> None:
+    verdicts = {"2": "satisfied", "9": "violated", "10": "satisfied", "100": "violated"}
+    sources = [
+        Evidence(f"n/{name}.json", SHA, document([judged("a.mcap", verdicts[name], night=night)]))
+        for name in order
+    ]
+    found = trends_of(sources)
+    assert isinstance(found, Trends)
+    assert [each.name for each in found.rounds] == [f"n/{n}.json" for n in (2, 9, 10, 100)]
+    assert changes(found) == {("R1", "a.mcap"): Change.NEW}
+    why = "by name, since not all have a time" if night else "those of equal times by name"
+    assert why in found.order
+    assert "`fretc audit --label date=...` decides" in found.order
+
+
+@given(order=st.permutations(["v9", "v10", "v11"]), by=st.sampled_from(["version", "evidence"]))
+def test_versions_of_one_time_are_in_their_natural_order(order: Sequence[str], by: str) -> None:
+    nights = [
+        Evidence(f"{v}.json", SHA, document([judged(f"{v}/a.mcap", version=v)])) for v in order
+    ]
+    found = trends_of(nights, by)
+    assert isinstance(found, Trends)
+    assert [each.versions for each in found.rounds] == [("v9",), ("v10",), ("v11",)]
+    assert (found.held.before, found.held.after) == ("version v10", "version v11")
 
 
 def test_runs_of_a_scenario_are_comparable_whatever_their_names() -> None:
@@ -89,6 +113,74 @@ def test_what_is_gone_is_named_by_scenario_and_by_requirement() -> None:
     assert [each.text for each in gone(found)] == lines
     assert not found.is_comparable
     assert not found.is_worse
+
+
+CHOICES = {
+    "all": None,
+    "a sample": sample(1, of=4),
+    "a sample of all": sample(4, of=4),
+    "since later": sample(2, of=2, since="2025-11-09T00:00:00+00:00", older=2),
+    "since earlier": sample(2, of=2, since="2025-11-07T00:00:00+00:00", older=2),
+}
+"""Choices of the second night, 2025-11-09; runs of the first were a day before."""
+
+
+@pytest.mark.parametrize("choice", CHOICES)
+def test_what_the_choice_of_logs_may_have_left_out_is_neither_gone_nor_fixed(choice: str) -> None:
+    before = [
+        judged("a.mcap", "satisfied"),
+        judged("b.mcap", "violated"),
+        judged("c.mcap", "satisfied", "R2"),
+        judged("1.mcap", "violated", "R3", scenario="door", log=1),
+        judged("2.mcap", "satisfied", "R3", scenario="door", log=2),
+    ]
+    now = [
+        judged("other.mcap", "satisfied", night=1),
+        judged("2.mcap", "satisfied", "R3", scenario="door", log=2),
+    ]
+    found = chosen(before, now, choice)
+    left_out = Change.NOT_SELECTED if choice in ("a sample", "since later") else Change.GONE
+    door = Change.NOT_SELECTED if left_out is Change.NOT_SELECTED else Change.FIXED
+    assert changes(found) == {
+        ("R1", "a.mcap"): left_out,
+        ("R1", "b.mcap"): left_out,
+        ("R1", "other.mcap"): Change.FIRST,
+        ("R2", "c.mcap"): Change.GONE,  # the newest round does not have the requirement at all
+        ("R3", "door"): door,
+    }
+    if left_out is Change.NOT_SELECTED:
+        groups = {group.text for group in not_selected(found)}
+        assert groups == {
+            "scenario a.mcap: 1 shown", "scenario b.mcap: 1 violated", "scenario door: 1 violated",
+        }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("verdict", "choice", "comparable"),
+    [("satisfied", "a sample", True), ("violated", "a sample", False), ("satisfied", "all", False)],
+)
+def test_a_sample_hides_no_violation_and_is_no_loss_beside(
+    verdict: str, choice: str, comparable: bool
+) -> None:
+    kept = judged("a.mcap", "satisfied", night=1)
+    found = chosen([judged("a.mcap"), judged("b.mcap", verdict)], [kept], choice)
+    assert found.is_comparable is comparable
+    assert not found.is_worse
+
+
+def test_a_newer_log_of_a_scenario_takes_the_place_of_one_left_out_by_its_date() -> None:
+    before = [judged("1.mcap", "violated", scenario="door")]
+    now = [judged("2.mcap", "satisfied", night=1, scenario="door")]
+    assert changes(chosen(before, now, "since later")) == {("R1", "door"): Change.FIXED}
+    assert changes(chosen(before, now, "a sample")) == {("R1", "door"): Change.NOT_SELECTED}
+
+
+def chosen(before: Sequence[Result], now: Sequence[Result], choice: str) -> Trends:
+    """Two nights, the second of which audited a choice of its logs."""
+    nights = [document(before), document(now, CHOICES[choice])]
+    found = trends_of([Evidence(f"{i}.json", SHA, night) for i, night in enumerate(nights)])
+    assert isinstance(found, Trends)
+    return found
 
 
 def test_a_violation_is_told_where_the_requirement_has_changed_and_that_is_said() -> None:
