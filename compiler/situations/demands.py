@@ -75,7 +75,7 @@ def _finally(known: Facts) -> Rows:
 
 def _eventually(known: Facts) -> Rows:
     q = known.answer
-    yield "answered-at-once", f.and_(_first(known), q)
+    yield "answered-at-once", f.and_(known.triggered, q)
     yield "answered-later", f.and_(known.was_open, q)
     yield "answered-at-last-tick", _at_its_end(known, f.and_(known.was_open, q))
     yield "missed-by-one", _at_its_end(known, known.open)
@@ -85,8 +85,8 @@ def _eventually(known: Facts) -> Rows:
 def _always(known: Facts) -> Rows:
     q = known.answer
     missed = f.and_(known.inside, f.previous(known.stage.open(f.TRUE)), f.not_(q))
-    yield "answered-at-once", f.and_(_first(known), q)
-    yield "missed-at-once", f.and_(_first(known), f.not_(q))
+    yield "answered-at-once", f.and_(known.triggered, q)
+    yield "missed-at-once", f.and_(known.triggered, f.not_(q))
     yield "missed-later", missed
     yield "missed-by-one", _at_its_end(known, missed)
 
@@ -95,9 +95,9 @@ def _within(known: Facts) -> Rows:
     q, n = known.answer, known.demand.ticks
     last = known.oldest(n)
     missed = f.and_(last, f.not_(q))
-    yield "answered-at-once", f.and_(known.oldest(0), q)
+    yield "answered-at-once", f.and_(known.triggered, q)
     if n > 1:
-        yield "answered-later", f.and_(known.was_open, q, _in_time(known))
+        yield "answered-later", f.and_(known.has_time, q)
     if n:
         yield "answered-at-last-tick", f.and_(last, q)
     yield "missed-by-one", missed
@@ -110,7 +110,7 @@ def _for(known: Facts) -> Rows:
     yield "answered-at-once", f.and_(known.triggered, q)
     if n:
         yield "answered-at-last-tick", f.and_(kept, q)
-        yield "missed-at-once", f.and_(_first(known), f.not_(q))
+        yield "missed-at-once", f.and_(known.triggered, f.not_(q))
     if n > 1:
         near = known.stage.open(f.TRUE, f.Interval(0, n - 1))
         yield "missed-later", f.and_(near, f.not_(known.triggered), f.not_(q))
@@ -122,9 +122,10 @@ def _after(known: Facts) -> Rows:
     q, n = known.answer, known.demand.ticks
     last = known.oldest(n + 1)
     missed = f.and_(last, f.not_(q))
-    yield "answered-at-once", f.and_(known.oldest(0), q)
+    yield "answered-at-once", f.and_(known.triggered, q)
     if n:
-        yield "answered-too-early", f.and_(known.oldest(n), q)
+        early = f.previous(f.and_(known.oldest(n), q))
+        yield "answered-too-early", f.and_(known.inside, early, f.not_(q))
     yield "answered-at-last-tick", f.and_(last, q)
     yield "missed-by-one", missed
     yield "one-tick-late", _late(known, missed)
@@ -133,9 +134,9 @@ def _after(known: Facts) -> Rows:
 def _not_after(known: Facts) -> Rows:
     q, n = known.answer, known.demand.ticks
     beyond = known.oldest(n + 1)
-    yield "answered-at-once", f.and_(known.oldest(0), q)
+    yield "answered-at-once", f.and_(known.triggered, q)
     if n > 1:
-        yield "answered-later", f.and_(known.was_open, q, _in_time(known))
+        yield "answered-later", f.and_(known.has_time, q)
     if n:
         yield "answered-at-last-tick", f.and_(known.oldest(n), q)
     yield "one-tick-late", f.and_(beyond, q)
@@ -145,11 +146,11 @@ def _not_after(known: Facts) -> Rows:
 def _until(known: Facts) -> Rows:
     q, stop = known.answer, known.demand.stop
     asked = f.and_(known.was_open, f.not_(stop))
-    yield "answered-at-once", f.and_(_first(known), q, f.not_(stop))
-    yield "missed-at-once", f.and_(_first(known), f.not_(q), f.not_(stop))
+    yield "answered-at-once", f.and_(known.triggered, q, f.not_(stop))
+    yield "missed-at-once", f.and_(known.triggered, f.not_(q), f.not_(stop))
     yield "missed-later", f.and_(asked, f.not_(q))
     yield "missed-by-one", f.and_(known.inside, f.previous(f.and_(asked, f.not_(q))), stop)
-    yield "stopped-at-once", f.and_(_first(known), stop)
+    yield "stopped-at-once", f.and_(known.triggered, stop)
     yield "stopped-later", f.and_(known.was_open, stop, q)
     yield "stopped-unanswered", f.and_(known.was_open, stop, f.not_(q))
 
@@ -157,22 +158,12 @@ def _until(known: Facts) -> Rows:
 def _before(known: Facts) -> Rows:
     q, stop = known.answer, known.demand.stop
     answered = f.and_(known.was_open, q, f.not_(stop))
-    yield "answered-at-once", f.and_(_first(known), q, f.not_(stop))
+    yield "answered-at-once", f.and_(known.triggered, q, f.not_(stop))
     yield "answered-later", answered
     yield "answered-at-last-tick", f.and_(known.inside, f.previous(answered), stop)
     yield "one-tick-late", f.and_(known.was_open, stop, q)
-    yield "stopped-at-once", f.and_(_first(known), stop)
+    yield "stopped-at-once", f.and_(known.triggered, stop)
     yield "stopped-unanswered", f.and_(known.was_open, stop, f.not_(q))
-
-
-def _first(known: Facts) -> f.Formula:
-    """Triggered, with no demand open."""
-    return f.and_(known.triggered, f.not_(known.was_open))
-
-
-def _in_time(known: Facts) -> f.Formula:
-    """The first trigger since the last answer lies no more than n - 1 ticks back."""
-    return f.once(known.oldest(0), f.Interval(0, known.demand.ticks - 1))
 
 
 def _late(known: Facts, missed: f.Formula) -> f.Formula:

@@ -2,11 +2,13 @@
 
 A demand is open after a tick where what follows can still break it or meet it; the counter of the
 reference automaton is not 0 then, as long as nothing was broken. What a fact says is true after a
-breach, too; but once a deadline of `within` or `after` was missed, those of later demands are not
-told until an answer has come: to remember all would take a bit for each tick of the bound.
+breach, too.
 
-No formula looks back by a whole duration tick by tick: the distance to a trigger is told by a
-counter that starts with it, so that a long bound costs the logarithm of its ticks.
+Two forms tell how far back the first open trigger lies. They differ after a deadline of `within`,
+`after` or the dual of `after` has passed without an answer, and nowhere else. The exact form is for
+recorded runs: it remembers every trigger, which is cheap over columns. The other one is for
+searches over all runs: a counter that starts with a trigger, so that a long bound costs the
+logarithm of its ticks; after such a deadline it counts again once an answer has come.
 
 Source: `compiler.formalization.reference`, the definition as counters, that the tests hold this to.
 """
@@ -30,6 +32,8 @@ class Facts:
     """Facts of a tick, over the atoms of the sentence."""
 
     whole: Obligation
+    exact: bool = False
+    """Whether distances are exact after a missed deadline, too; see above."""
 
     @cached_property
     def stage(self) -> Stage:
@@ -101,16 +105,42 @@ class Facts:
         return f.or_(self.triggered, self.was_open)
 
     def oldest(self, ticks: int) -> f.Formula:
-        """The first trigger since the last answer lies so many ticks back.
+        """The first open trigger lies so many ticks back.
 
         This tick is not asked for its answer.
         """
+        if self.exact:
+            older = self._unanswered(ticks + 1, self._longest)
+            here = self._unanswered(ticks, ticks) if ticks else self.triggered
+            return f.and_(here, f.not_(older))
         unanswered = f.and_(self.inside, f.previous(self.stage.open(f.not_(self.answer))))
         first = f.and_(self.triggered, f.not_(unanswered))
         if ticks == 0:
             return first
         near = f.once(first, f.Interval(0, ticks - 1))
         return f.and_(unanswered, f.previous(near), f.not_(near))
+
+    @cached_property
+    def has_time(self) -> f.Formula:
+        """A demand was open, and the first open trigger lies less than the bound back."""
+        n = self.demand.ticks
+        if self.exact:
+            late = self._unanswered(n, self._longest)
+            return f.and_(self.was_open, f.not_(late))
+        return f.and_(self.was_open, f.once(self.oldest(0), f.Interval(0, n - 1)))
+
+    @property
+    def _longest(self) -> int:
+        """The most ticks from a trigger to one that its demand is still open for."""
+        n = self.demand.ticks
+        return n if self.demand.kind is Kind.WITHIN else n + 1
+
+    def _unanswered(self, least: int, most: int) -> f.Formula:
+        """A trigger lies from least to most ticks back, at least one, and no answer came since."""
+        if most < least:
+            return f.FALSE
+        back = f.Interval(least - 1, most - 1)
+        return f.and_(self.inside, f.previous(self.stage.open(f.not_(self.answer), back)))
 
     def newest(self, ticks: int, kept: f.Formula = f.TRUE) -> f.Formula:
         """The last trigger of this interval lies so many ticks back.
@@ -215,6 +245,6 @@ class Facts:
         return self.waiting if Trait.STOPS in TRAITS[self.demand.kind] else f.FALSE
 
 
-def facts(rule: Formalized) -> Facts:
+def facts(rule: Formalized, *, exact: bool = False) -> Facts:
     """Of a rule, its temporal predicates read as formulas of the past."""
-    return Facts(obligation(rule.sentence, rule.ticks or 0, Past()))
+    return Facts(obligation(rule.sentence, rule.ticks or 0, Past()), exact)

@@ -89,14 +89,19 @@ class Situation:
 
 
 @deep
-def situations(rule: Formalized) -> tuple[Situation, ...]:
+def situations(rule: Formalized, *, exact: bool = False) -> tuple[Situation, ...]:
     """Those of a rule, in the order of `MEANINGS`.
 
     None of a sentence with predicates that look ahead: no formula of the past says what they are.
+
+    Args:
+        rule: of which they are.
+        exact: exact after a missed deadline, too, for recorded runs (`compiler.situations.facts`);
+            formulas for a search are not.
     """
     if any(name in LOOK_AHEAD for each in conditions(rule.sentence) for name in calls(each)):
         return ()
-    known, read = facts(rule), {*rule.propositions}
+    known, read = facts(rule, exact=exact), {*rule.propositions}
     return tuple(
         each
         for each in (*_of_time(rule, known), *_of_operands(rule, known))
@@ -171,7 +176,7 @@ def _of_triggers(known: Facts) -> _Rows:
     p = known.whole.trigger
     yield "triggered-later", f.and_(triggered, f.not_(known.stage.left))
     yield "triggered-while-open", f.and_(triggered, known.was_open)
-    yield "condition-stays", f.and_(known.inside, p, f.previous(triggered))
+    yield "condition-stays", f.and_(p, f.previous(triggered))
     if not _lasts(known.demand.kind):
         before = f.previous(f.once(triggered))
         yield "triggered-again", f.and_(triggered, before, f.not_(known.was_open))
@@ -202,8 +207,7 @@ def _of_the_end(known: Facts) -> _Rows:
     if known.stage.left != f.FIRST:  # else the first tick lies in it
         yield "never-enforced", f.not_(f.once(known.inside))
     if known.whole.condition is not None:
-        silent = f.not_(f.once(known.triggered))
-        yield "never-triggered", f.and_(f.once(known.inside), silent)
+        yield "never-triggered", f.not_(f.once(known.triggered))
     if Trait.LAST in TRAITS[known.demand.kind]:
         yield "run-ends-answered", f.and_(known.waiting, known.answer)
         yield "run-ends-missed", f.and_(known.waiting, f.not_(known.answer))

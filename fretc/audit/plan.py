@@ -117,7 +117,7 @@ def _claim(rule: Formalized, basis: Basis) -> Claim:
         basis,
         monitors.text(rule),
         demand(rule),
-        situations(rule),
+        situations(rule, exact=True),
         chance(rule),
     )
 

@@ -1,9 +1,10 @@
 """Which situations of a requirement a run came by, over the columns that its monitor judges.
 
 A situation is a formula of the past (`compiler.situations`): a run has come by it at a tick where
-the formula is true whatever the unknown values were. Where it may only have been true, nothing is
-shown: that is another word than seen. Some ask for more at that tick: that a proposition is
-unknown, or that a number is at a threshold.
+the formula is true. It is certain by a tick where every completion of the unknown values has come
+by it up to there, maybe at different ticks. Where only some have, nothing is shown: that is another
+word than seen. Some ask for more at that tick: that a proposition is unknown, or that a number is
+at a threshold.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from compiler.logic import formula as f
-from compiler.logic.evaluation import evaluate_unknown_all
+from compiler.logic.completions import shown
+from compiler.logic.evaluation import evaluate, evaluate_unknown_all
 from compiler.situations.situations import Situation
 from compiler.situations.thresholds import Place
 from monitors.kernel import Column
@@ -20,7 +22,7 @@ from monitors.kernel import Column
 
 @dataclass(frozen=True, slots=True)
 class Encounter:
-    """The first ticks at which a situation has certainly been there, and may have been."""
+    """The first ticks by which a situation has certainly been there, and may have been."""
 
     key: str
     """Of the situation."""
@@ -53,19 +55,53 @@ def encounters(
     formulas = [each.formula for each in situations]
     names = dict.fromkeys(name for formula in formulas for name in f.atoms(formula))
     known = {name: columns.get(name, unknown) for name in names}
-    found = evaluate_unknown_all(formulas, known, ticks)
     last = 1 << ticks - 1 if ticks else 0
-    for situation, column in zip(situations, found, strict=True):
-        counted = last if situation.at_end else -1
-        true, may = column.true & counted, (column.true | column.unknown) & counted
+    for situation, column in zip(
+        situations, evaluate_unknown_all(formulas, known, ticks), strict=True
+    ):
+        counted = last if situation.at_end else unknown.unknown
         if situation.unknown is not None:
-            hole = columns.get(situation.unknown, unknown).unknown
-            true, may = true & hole, may & hole
+            counted &= columns.get(situation.unknown, unknown).unknown
+        formula = situation.formula
+        true, may = column.true & counted, (column.true | column.unknown) & counted
         if situation.place is not None and may:
             there = near(situation.place)
+            known[_THERE] = there
+            formula = f.And((formula, f.Atom(_THERE)))
             true, may = true & there.true, may & (there.true | there.unknown)
-        seen = _first(true)
-        yield Encounter(situation.key, seen, _first(may) if seen is None else None)
+        seen, perhaps = _first(true), _first(may)
+        if seen != perhaps:  # something is unknown, and the evaluation knows too little of it
+            seen, perhaps = _exact(formula, known, ticks, counted, (seen, perhaps))
+        yield Encounter(situation.key, seen, perhaps if seen is None else None)
+
+
+_THERE = ""
+"""The name of a place: none of a proposition is empty."""
+
+_Ticks = tuple[int | None, int | None]
+"""By which tick it was certainly there, and may have been."""
+
+
+def _exact(
+    formula: f.Formula, columns: Mapping[str, Column], ticks: int, counted: int, bounds: _Ticks
+) -> _Ticks:
+    """The ticks of a situation, where the evaluation gives only bounds of them.
+
+    Two runs often settle it: all that is unknown is false, or true. Where the search would take too
+    long, the bounds stay: what they call seen is.
+    """
+    seen, perhaps = bounds
+    names = [*f.atoms(formula)]
+    false = {name: columns[name].true for name in names}
+    true = {name: columns[name].true | columns[name].unknown for name in names}
+    firsts = [_first(evaluate(formula, run, ticks) & counted) for run in (false, true)]
+    certain = [tick for tick in firsts if tick is not None]
+    if seen is None and None in firsts and perhaps == min(certain, default=None):
+        return bounds
+    if seen is not None and seen == max(certain):
+        return bounds
+    found = shown(formula, columns, ticks, counted)
+    return bounds if found is None else (found.by_all, found.by_some)
 
 
 def _first(column: int) -> int | None:

@@ -144,7 +144,7 @@ class At:
         """The situations of a run that ends with this tick."""
         if not self.intervals:
             yield "never-enforced"
-        elif not self.before and not self.triggers:
+        if self.drawn.condition != "null" and not self.before and not self.triggers:
             yield "never-triggered"
         if kind(self.drawn) == "finally" and self.triggers:
             yield "run-ends-answered" if self.q[self.at] else "run-ends-missed"
@@ -182,18 +182,20 @@ class At:
                 yield "triggered-while-open"
             elif conditional and self.before and kind(drawn) not in ("always", "finally"):
                 yield "triggered-again"
-        if conditional and self.columns["p"][at] and at - 1 in self.triggers:
+        if conditional and self.columns["p"][at] and at - 1 in self.before:
             yield "condition-stays"
 
     def _of_answers(self) -> Iterator[str]:
         at, n, q = self.at, self.drawn.n, self.q
-        here, fresh = at in self.triggers, at in self.triggers and not self.open_triggers
+        here = at in self.triggers
         stop = "s" in self.drawn.columns and self.columns["s"][at]
         oldest = at - min(self.open_triggers) if self.open_triggers else None
+        if here and kind(self.drawn) not in ("next", "finally"):
+            yield from self._at_the_trigger(stop=stop)
         match kind(self.drawn):
             case "immediately":
-                if here:
-                    yield "answered-at-once" if q[at] else "missed-by-one"
+                if here and not q[at]:
+                    yield "missed-by-one"
             case "next":
                 if at - 1 in self.triggers:
                     yield "answered-at-last-tick" if q[at] else "missed-by-one"
@@ -202,44 +204,52 @@ class At:
             case "finally":
                 yield from self._at_the_end()
             case "eventually":
-                if fresh and q[at]:
-                    yield "answered-at-once"
                 if oldest is not None and q[at]:
                     yield "answered-later"
                 yield from self._at_the_end()
             case "always":
-                if fresh:
-                    yield "answered-at-once" if q[at] else "missed-at-once"
                 if any(t < at for t in self.triggers) and not q[at]:
                     yield "missed-later"
             case "within":
-                if fresh and q[at]:
-                    yield "answered-at-once"
                 if oldest is not None and q[at]:
                     yield "answered-later" if oldest < n else "answered-at-last-tick"
-                if (oldest == n or (fresh and n == 0)) and not q[at]:
+                if (oldest == n or (here and n == 0)) and not q[at]:
                     yield "missed-by-one"
             case "for":
-                yield from self._for(fresh=fresh)
+                yield from self._for()
             case "after":
-                if fresh and q[at]:
-                    yield "answered-at-once"
-                if n and oldest == n and q[at]:
-                    yield "answered-too-early"
                 if oldest == n + 1:
                     yield "answered-at-last-tick" if q[at] else "missed-by-one"
+                if n and self._came_too_early():
+                    yield "answered-too-early"
             case "not after":
-                first = self._first_unanswered()
-                if here and first == at and q[at]:
-                    yield "answered-at-once"
-                if self.open_triggers and first is not None and 0 < at - first < n and q[at]:
+                if oldest is not None and oldest < n and q[at]:
                     yield "answered-later"
-                if n and first == at - n and q[at]:
+                if n and oldest == n and q[at]:
                     yield "answered-at-last-tick"
-                if first == at - n - 1:
+                if oldest == n + 1:
                     yield "one-tick-late" if q[at] else "never-answered"
             case "until" | "before" as name:
-                yield from self._up_to(name, fresh=fresh, stop=stop, waits=oldest is not None)
+                yield from self._up_to(name, stop=stop, waits=oldest is not None)
+
+    def _at_the_trigger(self, *, stop: bool) -> Iterator[str]:
+        """Of each trigger, whatever demands are open; at a stop no answer is asked for."""
+        name, answered = kind(self.drawn), self.q[self.at]
+        if name in ("until", "before") and stop:
+            yield "stopped-at-once"
+        elif answered:
+            yield "answered-at-once"
+        elif name in ("always", "until") or (name == "for" and self.drawn.n):
+            yield "missed-at-once"
+
+    def _came_too_early(self) -> bool:
+        """Of `after`: at the tick before the last tick of the first open trigger, and not here."""
+        before = self.previous
+        if self.at == 0 or self.left is None or before.left != self.left:
+            return False
+        opened = before.open_triggers
+        due = bool(opened) and before.at - min(opened) == self.drawn.n
+        return due and before.q[before.at] and not self.q[self.at]
 
     def _after_a_miss(self) -> Iterator[str]:
         """What the tick before, at which something was missed, has made of this one."""
@@ -255,11 +265,6 @@ class At:
             yield "missed-by-one"
         if name == "always" and self.ended and "missed-later" in missed:
             yield "missed-by-one"
-
-    def _first_unanswered(self) -> int | None:
-        """The first trigger of the interval without an answer from it to the tick before."""
-        unanswered = [t for t in self.triggers if not any(self.q[t : self.at])]
-        return min(unanswered, default=None)
 
     def _at_the_end(self) -> Iterator[str]:
         if not self.ended or not self.previous.triggers:
@@ -282,15 +287,11 @@ class At:
         elif q[last] and self.previous.open_triggers:
             yield "answered-at-last-tick"
 
-    def _for(self, *, fresh: bool) -> Iterator[str]:
+    def _for(self) -> Iterator[str]:
         at, n, q = self.at, self.drawn.n, self.q
         if not self.triggers:
             return
         newest = max(self.triggers)
-        if newest == at and q[at]:
-            yield "answered-at-once"
-        if fresh and n and not q[at]:
-            yield "missed-at-once"
         if 0 < at - newest < n and not q[at]:
             yield "missed-later"
         if all(q[newest:at]):
@@ -302,15 +303,8 @@ class At:
             if at - newest == n + 1 and not q[at]:
                 yield "given-up-after"
 
-    def _up_to(self, name: str, *, fresh: bool, stop: bool, waits: bool) -> Iterator[str]:
+    def _up_to(self, name: str, *, stop: bool, waits: bool) -> Iterator[str]:
         q, at = self.q, self.at
-        if fresh:
-            if stop:
-                yield "stopped-at-once"
-            elif q[at]:
-                yield "answered-at-once"
-            elif name == "until":
-                yield "missed-at-once"
         if not waits:
             if name == "before" and stop and self._answered_before_stop():
                 yield "answered-at-last-tick"

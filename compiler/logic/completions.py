@@ -1,0 +1,198 @@
+"""What a formula of the past shows in every run that a run with unknown values may have been.
+
+`compiler.logic.evaluation` calls a formula unknown too often: `p | !p` where p is unknown. This is
+exact. The formula becomes an automaton, and all runs that are still possible are followed at once,
+as the set of the states that they are in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from compiler.logic import formula as f
+from fretish.reading.recursion import deep
+from monitors.kernel.columns import Column
+
+MOST_STEPS = 1 << 16
+"""Steps of a search: ticks, and moves of a state that has not been moved so before."""
+
+State = tuple[int, ...]
+_Values = list[int]
+_Node = Callable[[_Values, State, list[int]], int]
+"""The value of a part, from the values of parts before it and the memory of the tick before; it
+appends to what is remembered for the next tick."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """When the completions of a run show a formula; no tick: not all do, or none does."""
+
+    by_some: int | None
+    """The first tick at which a completion shows it."""
+    by_all: int | None
+    """The first tick by which every completion has shown it, maybe at different ticks."""
+
+
+def shown(
+    formula: f.Formula, columns: Mapping[str, Column], ticks: int, counted: int
+) -> Shown | None:
+    """When it is shown; None where more steps are needed than `MOST_STEPS`.
+
+    Args:
+        formula: of the past.
+        columns: one for each atom; each unknown value may be either, whatever the others are.
+        ticks: the length of the run.
+        counted: a column: the formula shows nothing at other ticks.
+    """
+    automaton = _Automaton(formula)
+    known = [columns[name] for name in automaton.names]
+    possible, by_some = frozenset([automaton.initial]), None
+    moves: dict[tuple[frozenset[State], tuple[str, ...]], tuple[frozenset[State], bool]] = {}
+    steps = 0
+    for tick, row in enumerate(_rows(known, counted, ticks)):
+        step = possible, row
+        if step not in moves:
+            letters = [*product(*(_VALUES[code] for code in row[1:]))]
+            steps += len(letters) * len(possible)
+            if steps > MOST_STEPS:
+                return None
+            moves[step] = automaton.moved(possible, letters, counts=row[0] == "1")
+        steps += 1
+        if steps > MOST_STEPS:
+            return None
+        possible, some = moves[step]
+        if some and by_some is None:
+            by_some = tick
+        if not possible:
+            return Shown(by_some, tick)
+    return Shown(by_some, None)
+
+
+_VALUES: Mapping[str, tuple[int, ...]] = {"0": (0,), "1": (1,), "2": (0, 1)}
+"""What a proposition may be: false, true, either."""
+
+
+def _rows(columns: Sequence[Column], counted: int, ticks: int) -> Iterator[tuple[str, ...]]:
+    """Of each tick whether it counts, and the code of each proposition."""
+    if not ticks:
+        return
+    texts = [_bits(counted & (1 << ticks) - 1, ticks)]
+    for column in columns:
+        true, unknown = _bits(column.true, ticks), _bits(column.unknown, ticks)
+        texts.append("".join("2" if u == "1" else t for t, u in zip(true, unknown, strict=True)))
+    yield from zip(*texts, strict=True)
+
+
+def _bits(column: int, ticks: int) -> str:
+    """A column as digits, tick 0 first."""
+    return f"{column:0{ticks}b}"[::-1]
+
+
+class _Automaton:
+    """A formula of the past that is stepped tick by tick."""
+
+    def __init__(self, formula: f.Formula) -> None:
+        self.names = [*f.atoms(formula)]
+        self._nodes: list[_Node] = []
+        self._first: list[int] = []
+        self._places: dict[int, tuple[f.Formula, int]] = {}
+        """By identity: the hash of a tree takes as long as the tree is large."""
+        self._whole = self._place(formula)
+
+    @property
+    def initial(self) -> State:
+        """Before the first tick."""
+        return tuple(self._first)
+
+    def moved(
+        self, states: frozenset[State], letters: Sequence[Sequence[int]], *, counts: bool
+    ) -> tuple[frozenset[State], bool]:
+        """The states after a tick of what has not shown the formula; whether something did."""
+        after, some = set[State](), False
+        for state in states:
+            for letter in letters:
+                following, value = self._step(state, letter)
+                if counts and value:
+                    some = True
+                else:
+                    after.add(following)
+        return frozenset(after), some
+
+    def _step(self, state: State, letter: Sequence[int]) -> tuple[State, int]:
+        values, memory = [*letter], list[int]()
+        for node in self._nodes:
+            values.append(node(values, state, memory))
+        return tuple(memory), values[self._whole]
+
+    @deep
+    def _place(self, formula: f.Formula) -> int:
+        """Where the value of a part is; a part that stands in two places is computed once."""
+        if isinstance(formula, f.Atom):
+            return self.names.index(formula.name)
+        if id(formula) not in self._places:
+            node = self._node(formula)
+            self._places[id(formula)] = formula, len(self.names) + len(self._nodes)
+            self._nodes.append(node)
+        return self._places[id(formula)][1]
+
+    def _node(self, formula: f.Formula) -> _Node:
+        places = [self._place(part) for part in f.children(formula)]
+        match formula:
+            case f.Const(value):
+                return lambda *_: int(value)
+            case f.And():
+                return lambda values, *_: int(all(values[place] for place in places))
+            case f.Or():
+                return lambda values, *_: int(any(values[place] for place in places))
+            case f.Not():
+                return lambda values, *_: 1 - values[places[0]]
+            case f.Xor():
+                return lambda values, *_: values[places[0]] ^ values[places[1]]
+            case f.Implies():
+                return lambda values, *_: 1 - values[places[0]] | values[places[1]]
+            case f.Iff():
+                return lambda values, *_: int(values[places[0]] == values[places[1]])
+            case f.Previous():
+                return self._kept(places[0], first=0)
+            case f.WeakPrevious():
+                return self._kept(places[0], first=1)
+            case f.Once(_, ago):
+                return self._since(None, places[0], ago)
+            case f.Historically(arg, ago):
+                never = self._place(f.Once(f.Not(arg), ago))
+                return lambda values, *_: 1 - values[never]
+            case f.Since(_, _, ago):
+                return self._since(places[0], places[1], ago)
+            case _:
+                raise ValueError("not a formula of the past")
+
+    def _kept(self, place: int, first: int) -> _Node:
+        slot = len(self._first)
+        self._first.append(first)
+
+        def node(values: _Values, state: State, memory: list[int]) -> int:
+            memory.append(values[place])
+            return state[slot]
+
+        return node
+
+    def _since(self, left: int | None, right: int, ago: f.Interval) -> _Node:
+        """Bit k of what is remembered: `right` was true k ticks ago, and `left` has been since."""
+        slot, lo, hi = len(self._first), ago.lo, ago.hi
+        self._first.append(0)
+
+        def node(values: _Values, state: State, memory: list[int]) -> int:
+            going = left is None or values[left]
+            ages = (state[slot] << 1 if going else 0) | values[right]
+            if hi is not None:
+                ages &= (2 << hi) - 1
+            elif ages >> lo:  # the oldest has come to the window, and stays in it
+                ages = 1 << lo
+            if lo == 0:
+                ages &= -ages  # only the youngest counts
+            memory.append(ages)
+            return int(ages >> lo != 0)
+
+        return node
