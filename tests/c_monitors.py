@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import struct
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,14 +10,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-import pytest
-
 from compiler.formalization.formalized import Formalized
 from compiler.targets.c.monitor import TARGET
 from compiler.targets.target import Options
 from monitors.kernel import Monitor
 from monitors.kernel.stepping import Marks
 from monitors.kernel.verdicts import Requirement, Signals, Truth
+from tests.programs import installed
 
 STRICT = "-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split()
 CHECKED = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
@@ -84,14 +82,6 @@ def _members(header: str, name: str, kind: str) -> tuple[str, ...]:
     return tuple(re.findall(rf"^    {kind} (\w+);", body, re.M))
 
 
-def compiler(name: str) -> str:
-    """Its path; the test is skipped where it is not installed."""
-    found = shutil.which(name)
-    if found is None:
-        pytest.skip(f"needs {name}")
-    return found
-
-
 def write(folder: Path, *sources: Source) -> list[Path]:
     """The files in the folder; gives those in C."""
     for source in sources:
@@ -144,7 +134,7 @@ def compiled(
     main = folder / "main.c"
     main.write_text(_main(sources), encoding="utf-8")
     path = folder / "main"
-    subprocess.run([compiler(cc), *flags, "-o", path, main, *files], check=True)
+    subprocess.run([installed(cc), *flags, "-o", path, main, *files], check=True)
     return Program(path, sources)
 
 

@@ -95,12 +95,10 @@ class Tongue:
     """Here it ends."""
     edits: Sequence[tuple[str, str]]
     """Mistakes, as what is found and what takes its place."""
+    program: str
+    """What compiles or runs it."""
     told: Callable[[Path, Given, Formalized, Rows], list[list[c_monitors.Outcome]]]
     """What the text tells at each tick, by another program than that of the verification."""
-
-    @property
-    def is_missing(self) -> bool:
-        return self.language.tool() is None
 
     def faults(self, text: str) -> Iterator[str]:
         """The text with each mistake at each place, one at a time."""
@@ -187,19 +185,19 @@ C = Tongue(
     "c", c, given_c, (r"/\*.*?\*/", "/* mine\n */"), "_clear(", "_judge(&",
     (*_SHARED, *_BITWISE, (r"!= FRETC", "== FRETC"), (r"\.certain;", ".possible;"),
      (r"(?m)^    +(rail|reading)->\w+ = .*;$", ";")),
-    _told_by_c,
+    "gcc", _told_by_c,
 )  # fmt: skip
 RUST = Tongue(
     "rust", rust, given_rust, (r"(?<!/)// .*", "// mine\n//"), "impl Rail {", "impl Default",
     (*_SHARED, *_BITWISE, (r"!= Some", "== Some"), (r"\(certain\[", "(possible["),
      (r": (\d+|-1),", ": 7,"), (r"(?m)^ +self\.\w+ = .*;$", "")),
-    _told_by_rust,
+    "rustc", _told_by_rust,
 )  # fmt: skip
 JAVASCRIPT = Tongue(
     "javascript", javascript, given_javascript, (r"// .*", "// mine\n/* too */"),
     "function rail(", "/** The truth of",
     (*_SHARED, (r"null \?", "true ?"), (r": (\d+|-1),", ": 7,"),
      (r"(?m)^  rail\.\w+ = .*;$", "")),
-    _told_by_javascript,
+    "node", _told_by_javascript,
 )  # fmt: skip
 TONGUES = {each.name: each for each in (C, RUST, JAVASCRIPT)}

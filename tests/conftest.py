@@ -10,7 +10,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 # Bytecode is kept, whatever the shell says: each worker, and each process that a test starts, would
 # compile the same text again, pytest's own forms of the assertions and of hypothesis among it.
@@ -25,6 +25,7 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)
     import spot  # noqa: F401
 
+from tests import programs  # noqa: E402
 from tests.command import Fretc, runner  # noqa: E402
 
 if TYPE_CHECKING:
@@ -42,6 +43,16 @@ settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "default"))
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update-golden", action="store_true", help="rewrite tests/golden/")
+    parser.addoption(
+        "--without-programs",
+        action="store_true",
+        help="hide the programs that tests run, but for a shell and Python (tests/programs.py)",
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("--without-programs"):
+        programs.hide()
 
 
 def pytest_xdist_auto_num_workers() -> int:
@@ -83,21 +94,16 @@ def fretc(
     return runner(monkeypatch, capsys)
 
 
-CHROMIUM = "/usr/bin/chromium"
-
-
 @pytest.fixture(scope="module")
 def browser() -> "Iterator[Browser]":
     """A browser for the tests of a module; they are skipped where there is none.
 
     It ends with the module: its event loop would be in the way of other tests.
     """
-    playwright: Any = pytest.importorskip(
-        "playwright.sync_api", reason="needs Playwright: pip install -e '.[dev]'"
-    )
-    if not Path(CHROMIUM).exists():
-        pytest.skip(f"needs {CHROMIUM}: apt-get install chromium")
-    with playwright.sync_playwright() as started:
-        chromium = started.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+    from playwright.sync_api import sync_playwright
+
+    path = programs.installed("chromium")
+    with sync_playwright() as started:
+        chromium = started.chromium.launch(executable_path=path, args=["--no-sandbox"])
         yield chromium
         chromium.close()

@@ -10,7 +10,6 @@ import random
 import socket
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from functools import cache
 
 URI = """<CycloneDDS><Domain>
 <General><AllowMulticast>false</AllowMulticast>
@@ -21,16 +20,6 @@ URI = """<CycloneDDS><Domain>
 <Peers><Peer address="127.0.0.1"/></Peers></Discovery>
 <Internal><SocketReceiveBufferSize min="default" max="16MiB"/></Internal>
 </Domain></CycloneDDS>"""
-
-
-@cache
-def missing() -> str:
-    """Why DDS cannot be had here; empty where it can."""
-    try:
-        import cyclonedds.domain  # noqa: F401
-    except Exception as error:
-        return f"Cyclone DDS is not installed: {error}"
-    return ""
 
 
 @contextmanager

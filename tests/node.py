@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import Any
 
-import pytest
+from tests.programs import installed, needs
 
-NODE = shutil.which("node")
-needs_node = pytest.mark.skipif(NODE is None, reason="Node is not installed")
+needs_node = needs("node")
 Row = Sequence[Any] | Mapping[str, Any]
 _READ = """
 import { readFileSync } from "node:fs";
@@ -60,11 +58,10 @@ def outcomes(
 
 def run(script: str, text: str = "") -> str:
     """What a module prints that gets the text."""
-    assert NODE is not None
     with NamedTemporaryFile("w", suffix=".mjs", encoding="utf-8") as file:
         file.write(script)
         file.flush()
-        command = [NODE, file.name]
+        command = [installed("node"), file.name]
         done = subprocess.run(
             command, input=text, capture_output=True, text=True, timeout=120, check=False
         )

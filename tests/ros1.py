@@ -7,20 +7,18 @@ or a node tells, never for a time to pass.
 from __future__ import annotations
 
 import json
-import os
 import socket
 import subprocess
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 from typing import Any
 from xmlrpc.client import ServerProxy
 
-PYTHON = "/usr/bin/python3"
-"""Debian's, which is the one that knows rospy."""
+from tests.programs import DEBIANS_PATH, DEBIANS_PYTHON, debians_python
+
 SOON = 10.0
 """Seconds for what takes a fraction of one, on a machine that may be busy."""
 
@@ -62,21 +60,11 @@ for line in sys.stdin:
 '''
 
 
-@cache
-def missing() -> str:
-    """Why ROS 1 cannot be had here; empty where it can."""
-    if not Path(PYTHON).exists():
-        return f"there is no {PYTHON}"
-    packages = "rospy, rosmaster.main, geometry_msgs.msg, std_msgs.msg, sensor_msgs.msg"
-    asked = subprocess.run(
-        [PYTHON, "-c", f"import {packages}"],
-        env={"PATH": os.defpath},
-        capture_output=True,
-        text=True,
-        check=False,
+def ros1_or_skip() -> None:
+    """Skip the test where ROS 1 is not installed."""
+    debians_python(
+        "rospy", "rosmaster.main", "geometry_msgs.msg", "std_msgs.msg", "sensor_msgs.msg"
     )
-    complaint = asked.stderr.strip().rpartition("\n")[2]
-    return f"ROS 1 is not installed: {complaint}" if asked.returncode else ""
 
 
 def until(what: str, holds: Callable[[], object], seconds: float = SOON) -> None:
@@ -116,7 +104,7 @@ class Ros:
             self.port = free.getsockname()[1]
         self.uri = f"http://127.0.0.1:{self.port}/"
         self.environment: Mapping[str, str] = {
-            "PATH": os.defpath,
+            "PATH": DEBIANS_PATH,
             "HOME": str(folder),
             "ROS_HOME": str(folder),
             "ROS_LOG_DIR": str(folder / "log"),
@@ -129,7 +117,7 @@ class Ros:
         run = (
             f"import rosmaster.main; rosmaster.main.rosmaster_main(['--core', '-p', '{self.port}'])"
         )
-        process = self.start(PYTHON, "-c", run, stdout=subprocess.DEVNULL)
+        process = self.start(DEBIANS_PYTHON, "-c", run, stdout=subprocess.DEVNULL)
         until("the master answers", self.state)
         return process
 
@@ -143,7 +131,7 @@ class Ros:
         """A node that publishes every 5 ms, and keeps what the wheels hear."""
         wants = json.dumps({"drives": drives, "stop": stop})
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-        world = World(self.start(PYTHON, "-c", _WORLD, name, wants, **pipes))
+        world = World(self.start(DEBIANS_PYTHON, "-c", _WORLD, name, wants, **pipes))
         assert world.process.stdout is not None
         assert world.process.stdout.readline() == "[]\n", name
         return world

@@ -3,29 +3,19 @@
 from __future__ import annotations
 
 import re
-import shutil
 import struct
 import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import pytest
-
 from compiler.formalization.formalized import Formalized
 from compiler.targets.rust.monitor import TARGET
 from compiler.targets.target import Options
 from tests.c_monitors import VERDICTS, Outcome, Reading, Rows
+from tests.programs import installed
 
 STRICT = ["--edition", "2021", "-D", "warnings", "-C", "debug-assertions=on"]
 _TRUTHS = (False, True, None)
-
-
-def program(name: str) -> str:
-    """Its path; the test is skipped where it is not installed."""
-    found = shutil.which(name)
-    if found is None:
-        pytest.skip(f"needs {name}")
-    return found
 
 
 def crate(*rules: Formalized) -> Mapping[str, str]:
@@ -65,7 +55,7 @@ def outcomes(
         traces: the place of a library, and rows in the order of its inputs.
         lints: further options for the libraries.
     """
-    rustc = program("rustc")
+    rustc = installed("rustc")
     for place, text in enumerate(libraries):
         (folder / f"m{place}.rs").write_text(text, encoding="utf-8")
         kind = ["--crate-type", "rlib", "--crate-name", f"m{place}"]

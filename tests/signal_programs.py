@@ -15,16 +15,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from compiler.emit import TARGETS
 from compiler.formalization.formalized import Formalized
 from compiler.signals.policies import policy
 from compiler.targets.target import Options
-from tests.c_monitors import CHECKED, STRICT, compiler
-from tests.node import NODE
+from tests.c_monitors import CHECKED, STRICT
+from tests.programs import installed
 from tests.rust_monitors import STRICT as STRICT_RUST
-from tests.rust_monitors import program, write
+from tests.rust_monitors import write
 from tests.signal_policies import NOW, Case, Message
 
 TYPES = "float double bool int8 uint8 int16 uint16 int32 uint32 int64 uint64".split()
@@ -187,7 +186,7 @@ def c(cc: str = "gcc", *flags: str) -> Language:
 
     def build(folder: Path, text: str) -> Sequence[str | Path]:
         (folder / "main.c").write_text(text, encoding="utf-8")
-        command = [compiler(cc), *STRICT, *(flags or ("-O1", *CHECKED))]
+        command = [installed(cc), *STRICT, *(flags or ("-O1", *CHECKED))]
         _make([*command, "main.c", "monitors_signals.c", "-o", "main"], folder)
         return [folder / "main"]
 
@@ -320,7 +319,7 @@ fn main() {{
 
 
 def _build_rust(folder: Path, text: str) -> Sequence[str | Path]:
-    rustc, beside = program("rustc"), list[str]()
+    rustc, beside = installed("rustc"), list[str]()
     for name in ("monitors", "monitors_signals"):
         kind = ["--crate-type", "rlib", "--crate-name", name, f"{name}/src/lib.rs"]
         _make([rustc, *STRICT_RUST, *beside, *kind], folder)
@@ -422,10 +421,8 @@ for (; start < data.length; start += 25) {{
 
 
 def _build_javascript(folder: Path, text: str) -> Sequence[str | Path]:
-    if NODE is None:
-        pytest.skip("needs node")
     (folder / "main.mjs").write_text(text, encoding="utf-8")
-    return [NODE, folder / "main.mjs"]
+    return [installed("node"), folder / "main.mjs"]
 
 
 JAVASCRIPT = Language("js", _in_javascript, _JS_TICK, _build_javascript)

@@ -6,7 +6,6 @@ import sys
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
-from shutil import which
 
 import pytest
 
@@ -15,6 +14,7 @@ from compiler.project.parents import Parent, parents
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from tests.command import Fretc, write
+from tests.programs import needs
 
 SDOC = """\
 [DOCUMENT]
@@ -126,7 +126,7 @@ def test_strictdoc_gives_every_node_with_a_uid_and_its_whole_statement() -> None
     ]
 
 
-@pytest.mark.skipif(which("strictdoc") is None, reason="needs the program strictdoc")
+@needs("strictdoc")
 def test_strictdoc_itself_writes_what_is_read() -> None:
     write("docs/hazards.sdoc", SDOC)
     subprocess.run(
@@ -147,7 +147,7 @@ def test_doorstop_gives_every_item_of_a_document_or_of_a_folder() -> None:
     assert read("out") == [STOP, ("SUB001", "", "below")]
 
 
-@pytest.mark.skipif(which("doorstop") is None, reason="needs the program doorstop")
+@needs("doorstop", "git")
 def test_doorstop_itself_writes_what_is_read_of_yaml_and_of_markdown() -> None:
     def run(*arguments: str) -> None:
         subprocess.run([*arguments], check=True, capture_output=True)

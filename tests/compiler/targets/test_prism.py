@@ -15,6 +15,7 @@ from tests import meaning
 from tests.compiler.formalization.test_pctl import CONDITIONS, SCOPES, TIMINGS, templates
 from tests.each import each
 from tests.emitting import MANY, PROBABLE, emitted, refused, rule
+from tests.programs import package
 
 
 def property_of(sentence: str) -> str:
@@ -174,7 +175,7 @@ Check = Callable[[str, dict[str, float]], bool]
 @pytest.fixture
 def storm(tmp_path: Path) -> Check:
     """Whether the frame satisfies the property, with such chances."""
-    stormpy = pytest.importorskip("stormpy", reason="stormpy (extra `peers`) is not installed")
+    stormpy = package("stormpy")
 
     def check(sentence: str, chances: dict[str, float]) -> bool:
         files = emitted("prism", sentence)

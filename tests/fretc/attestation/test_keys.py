@@ -2,7 +2,6 @@
 
 import base64
 import json
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -24,6 +23,7 @@ from fretc.attestation.keys import (
     signed_envelope,
 )
 from tests import keys
+from tests.programs import needs
 
 KINDS = ("ed25519", "nistp256", "nistp384", "nistp521", "rsa2048")
 PAIRS = {kind: keys.make(kind) for kind in KINDS}
@@ -180,7 +180,7 @@ def test_keys_that_do_not_count_are_refused_with_a_reason() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(shutil.which("ssh-keygen") is None, reason="there is no ssh-keygen")
+@needs("ssh-keygen")
 @pytest.mark.parametrize("kind", ["ed25519", "ecdsa -b 256", "ecdsa -b 521", "rsa -b 2048"])
 def test_ssh_keygen_makes_the_keys_and_names_them_alike(kind: str, tmp_path: Path) -> None:
     file = tmp_path / "key"

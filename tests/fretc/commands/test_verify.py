@@ -6,7 +6,6 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +21,7 @@ from fretc.verification.layers import crosshair as layer_crosshair
 from fretc.verification.layers import dafny as layer_dafny
 from tests.command import Fretc, Run, write
 from tests.json_schemas import validate
+from tests.programs import needs, needs_package
 
 R1 = "whenever p the sw shall within 2 ticks satisfy q"
 LOOKS_BACK = "whenever occurred(2, p) the sw shall always satisfy q"
@@ -172,6 +172,7 @@ def test_a_monitor_of_another_requirement_is_not_checked(fretc: Fretc, r1: str, 
     assert run == Run(3, told, WROTE)
 
 
+@needs("node")
 def test_why_a_file_is_not_checked_is_told_once(fretc: Fretc, r1: str) -> None:
     write("r2.fret", R1)
     file = "build/monitors.mjs"
@@ -545,7 +546,7 @@ def node(fretc: Fretc, loop: Callable[..., str]) -> tuple[str, str]:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(find_spec("crosshair") is None, reason="CrossHair is not installed")
+@needs_package("crosshair")
 def test_crosshair_is_given_the_core_and_the_limit(
     fretc: Fretc, node: tuple[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

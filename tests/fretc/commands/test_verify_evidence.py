@@ -12,6 +12,7 @@ from tests.compiled_monitors import TONGUES
 from tests.fretc.commands.test_verify_languages import MADE
 from tests.fretc.logs.logs import MS, X_TEXT, number
 from tests.fretc.logs.logs import write as write_log
+from tests.programs import installed
 
 R1 = "whenever p the sw shall within 2 ticks satisfy q"
 BINDINGS = X_TEXT + (
@@ -467,8 +468,7 @@ def test_proofs_are_made_again(audited: Fretc) -> None:
 @pytest.mark.parametrize("name", MADE)
 def test_proofs_of_a_monitor_in_another_language_are_made_again(audited: Fretc, name: str) -> None:
     made = MADE[name]
-    if TONGUES[name.lower()].is_missing:
-        pytest.skip(f"what {name} needs is not installed")
+    installed(TONGUES[name.lower()].program)
     assert audited("requirements/r1.fret", "--emit", made.emit, "-o", ".").status == 0
     verify = ("verify", "requirements/r1.fret", "--file", made.file)
     assert audited(*verify).status == 0

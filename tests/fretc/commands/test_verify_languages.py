@@ -16,6 +16,7 @@ from fretc.verification.javascript.node import FLAGS as NODE_FLAGS
 from fretc.verification.rust.build import FLAGS as RUST_FLAGS
 from tests.command import Fretc, write
 from tests.compiled_monitors import TONGUES
+from tests.programs import installed, needs
 
 R1 = "whenever p the sw shall within 2 ticks satisfy q"
 
@@ -65,8 +66,7 @@ MADE = {
 def made(fretc: Fretc, request: pytest.FixtureRequest) -> Made:
     """The monitor in one language that was made of `r1.fret`."""
     found: Made = MADE[request.param]
-    if TONGUES[found.name.lower()].is_missing:
-        pytest.skip(f"what {found.name} needs is not installed")
+    installed(TONGUES[found.name.lower()].program)
     write("r1.fret", R1)
     assert fretc("r1.fret", "--emit", found.emit, "-o", ".").status == 0
     return found
@@ -129,7 +129,7 @@ def test_a_text_of_another_kind_is_not_run(fretc: Fretc, made: Made) -> None:
     assert run.err.endswith(f"help: name a file that `--emit {made.emit}` wrote\n")
 
 
-@pytest.mark.skipif(TONGUES["c"].is_missing, reason="no C compiler is installed")
+@needs("gcc")
 def test_a_monitor_in_c_needs_its_header(fretc: Fretc) -> None:
     write("r1.fret", R1)
     assert fretc("r1.fret", "--emit", "c", "-o", ".").status == 0

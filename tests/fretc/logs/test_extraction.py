@@ -1,4 +1,3 @@
-import os
 import struct
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -17,6 +16,7 @@ from fretc.logs.messages.probes import trusted
 from fretc.logs.messages.vectorized import samples
 from fretc.logs.signals.samples import Recording
 from fretish.bindings.declarations import Declarations, Signal
+from tests.effort import LOGS, needs_logs
 from tests.fretc.logs.logs import (
     MS,
     SCAN,
@@ -444,11 +444,6 @@ def test_of_few_large_messages_one_is_decoded_and_of_small_ones_three(ways: Ways
 
 # Logs that others recorded
 
-LOGS = Path(os.environ.get("FRETC_LOGS", ""))
-real_logs = pytest.mark.skipif(
-    "FRETC_LOGS" not in os.environ, reason="set FRETC_LOGS to the folder of the public logs"
-)
-
 
 def streams(path: Path) -> Iterator[Stream]:
     with path.open("rb") as file:
@@ -458,7 +453,7 @@ def streams(path: Path) -> Iterator[Stream]:
         yield Stream(channel, summary.schemas.get(channel.schema_id))
 
 
-@real_logs
+@needs_logs
 @pytest.mark.parametrize(
     ("name", "columns"),
     [

@@ -700,7 +700,6 @@ def test_evidence_made_by_hand_fits_its_schema(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not Path(TRACE).is_file(), reason="needs the recorded run of the checkout")
 def test_the_evidence_of_the_recorded_run_fits_its_schema_and_is_reported(tmp_path: Path) -> None:
     known = load(["requirements/r1.fret"], hazards="requirements/hazards.toml")
     plan = planned(known)

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fretc.trends.rank_test import MOST, Stratum, decidable, doubled_ranks, fewer, holm, larger
+from tests.programs import needs_package
 
 NUMBERS = st.sampled_from([0.0, 1.0, 1.5, 2.0, 7.0, inf])
 SIDES = st.lists(NUMBERS, max_size=4)
@@ -72,10 +73,12 @@ def test_it_alarms_no_more_often_than_it_says(pooled: list[float], after: int) -
         assert sum(p <= level + 1e-12 for p in found) / len(found) <= level + 1e-9
 
 
+@needs_package("scipy")
 @settings(max_examples=40)
 @given(st.lists(st.integers(0, 10**6), min_size=2, max_size=40, unique=True), st.data())
 def test_without_ties_it_is_scipy_s(numbers: list[int], data: st.DataObject) -> None:
-    stats = pytest.importorskip("scipy.stats")
+    from scipy import stats
+
     cut = data.draw(st.integers(1, len(numbers) - 1))
     before, after = numbers[:cut], numbers[cut:]
     there = stats.mannwhitneyu(after, before, alternative="greater", method="exact").pvalue

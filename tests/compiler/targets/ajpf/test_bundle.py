@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -23,6 +22,7 @@ from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from tests.command import Fretc
+from tests.programs import needs
 
 ROOT = Path(__file__).parents[4]
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
@@ -298,7 +298,7 @@ public abstract class VerificationofAutonomousSystemsEnvironment {
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(shutil.which("javac") is None, reason="javac is not here")
+@needs("javac")
 def test_the_environment_compiles_against_what_it_uses_of_mcapl(tmp_path: Path) -> None:
     for name, text in STUBS.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)

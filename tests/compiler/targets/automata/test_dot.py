@@ -2,7 +2,6 @@
 
 import random
 import re
-import shutil
 import subprocess
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from compiler.targets.automata.chart import chart
 from tests import meaning
 from tests.each import each
 from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, rule
+from tests.programs import needs
 from tests.strategies import Template, templates
 
 
@@ -197,7 +197,7 @@ def test_names_are_no_commands_of_graphviz() -> None:
     assert '"sw\\" shall' in text or 'the \\"sw\\"' in text
 
 
-@pytest.mark.skipif(shutil.which("dot") is None, reason="Graphviz is not installed")
+@needs("dot")
 @pytest.mark.parametrize(
     "sentence",
     [

@@ -25,13 +25,13 @@ from tests.c_monitors import (
     Rows,
     Source,
     compiled,
-    compiler,
     of_python,
     write,
 )
 from tests.each import each
 from tests.emitting import refused
 from tests.monitoring import rule
+from tests.programs import installed
 from tests.strategies import templates
 
 SIGNALS = {name: name for name in ("trigger", "breach", "settled", "answer")} | {"open": "owed"}
@@ -201,18 +201,18 @@ def test_every_dialect_takes_it_without_a_warning_and_needs_nothing_else(
 ) -> None:
     sources = [Source.of(*of_requirements()), *map(clashing, ("C1", "class", "fretc", "1.main-x"))]
     files = write(tmp_path, *sources)
-    cc = compiler(dialect.split()[0])
+    cc = installed(dialect.split()[0])
     objects = [path.with_suffix(".o") for path in files]
     for path, made in zip(files, objects, strict=True):
         subprocess.run([cc, *DIALECTS[dialect], "-c", path, "-o", made], check=True)
-    undefined = subprocess.run([compiler("nm"), "-u", *objects], capture_output=True, check=True)
+    undefined = subprocess.run([installed("nm"), "-u", *objects], capture_output=True, check=True)
     assert not re.search(rb"\bU\b", undefined.stdout), undefined.stdout.decode()
 
 
 @each("name", ["1.main-x", "int", "G-2"])
 def test_any_id_gives_a_header_that_compiles(name: str, tmp_path: Path) -> None:
     files = write(tmp_path, Source.of(rule(WITHIN, name)))
-    command = [compiler("gcc"), *STRICT, "-fsyntax-only", *map(str, files)]
+    command = [installed("gcc"), *STRICT, "-fsyntax-only", *map(str, files)]
     subprocess.run(command, check=True)
 
 
@@ -222,7 +222,7 @@ def test_headers_stand_side_by_side(tmp_path: Path) -> None:
     names = [name for each in sources for name in each.texts if name.endswith(".h")]
     both = "".join(f'#include "{name}"\n' for name in (*names, *names))
     tmp_path.joinpath("both.c").write_text(both, encoding="utf-8")
-    subprocess.run([compiler("gcc"), *STRICT, "-fsyntax-only", tmp_path / "both.c"], check=True)
+    subprocess.run([installed("gcc"), *STRICT, "-fsyntax-only", tmp_path / "both.c"], check=True)
 
 
 def test_bounds_that_a_controller_cannot_keep_are_refused() -> None:
@@ -246,7 +246,7 @@ def test_the_example_of_the_documentation_compiles(tmp_path: Path) -> None:
     assert "r1_step" in example
     write(tmp_path, Source.of(rule("whenever too_close sw shall eventually satisfy stopped")))
     tmp_path.joinpath("example.c").write_text(example, encoding="utf-8")
-    subprocess.run([compiler("gcc"), *STRICT, "-fsyntax-only", tmp_path / "example.c"], check=True)
+    subprocess.run([installed("gcc"), *STRICT, "-fsyntax-only", tmp_path / "example.c"], check=True)
 
 
 def test_the_work_of_a_step_does_not_depend_on_the_bound() -> None:

@@ -17,9 +17,10 @@ from fretish.bindings.declarations import Path as Place
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
 from fretish.units import ONE
-from tests.c_monitors import STRICT, compiler
+from tests.c_monitors import STRICT
 from tests.each import each
 from tests.emitting import rule
+from tests.programs import installed
 
 ROOT = Path(__file__).parents[4]
 
@@ -40,7 +41,7 @@ def test_the_projects_of_this_repository_compile_without_a_warning(
     project = load([str(path) for path in sorted(ROOT.joinpath(folder).glob("*.fret"))])
     for file in TARGET.emit(project.rules, Options(one_file=True)):
         tmp_path.joinpath(str(file.path)).write_text(file.text, encoding="utf-8")
-    compile_ = [compiler(command[0]), *command[1:], "-c", "monitors_signals.c", "-o", "x.o"]
+    compile_ = [installed(command[0]), *command[1:], "-c", "monitors_signals.c", "-o", "x.o"]
     done = subprocess.run(compile_, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[:2000]
 
@@ -50,7 +51,7 @@ def test_inexact_arithmetic_is_no_text_that_compiles(flag: str, tmp_path: Path) 
     project = load([str(ROOT / "requirements/r1.fret")])
     for file in TARGET.emit(project.rules):
         tmp_path.joinpath(str(file.path)).write_text(file.text, encoding="utf-8")
-    compile_ = [compiler("gcc"), *flag.split(), "-c", "r1_signals.c", "-o", "x.o"]
+    compile_ = [installed("gcc"), *flag.split(), "-c", "r1_signals.c", "-o", "x.o"]
     done = subprocess.run(compile_, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode != 0
     assert "#error" in done.stderr
@@ -74,6 +75,6 @@ def test_names_of_one_requirement_are_no_names_of_another(tmp_path: Path) -> Non
     includes = "".join(f'#include "{name}"\n' for name in headers)
     tmp_path.joinpath("main.c").write_text(f"{includes}int main(void) {{ return 0; }}\n")
     sources = sorted(path.name for path in tmp_path.glob("*.c"))
-    compile_ = [compiler("gcc"), *STRICT, *sources, "-o", "main"]
+    compile_ = [installed("gcc"), *STRICT, *sources, "-o", "main"]
     done = subprocess.run(compile_, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr[:2000]

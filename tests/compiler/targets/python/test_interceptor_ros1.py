@@ -11,7 +11,8 @@ import pytest
 from compiler.files.text_files import write as deliver
 from compiler.targets.python.interceptor import text
 from fretish.bindings.declarations import Form, Interception
-from tests.ros1 import Ended, Ros, World, ended, missing, ros, until
+from tests.programs import DEBIANS_PATH
+from tests.ros1 import Ended, Ros, World, ended, ros, ros1_or_skip, until
 
 MS = 1_000_000
 TIMED = Interception("/stop", "/cmd_vel", "/wheels", period=2 * MS, stop_timeout=400 * MS, ros=1)
@@ -23,8 +24,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(autouse=True)
 def _ros_1() -> None:
-    if missing():
-        pytest.skip(missing())
+    ros1_or_skip()
 
 
 @pytest.fixture
@@ -145,7 +145,7 @@ def test_a_stop_and_the_silence_of_the_safety_function_halt_the_robot(
 def test_it_runs_with_debians_python_alone(tmp_path: Path) -> None:
     path = file(tmp_path, TIMED)
     assert os.access(path, os.X_OK)
-    clean = {"PATH": os.defpath}
+    clean = {"PATH": DEBIANS_PATH}
     ran = subprocess.run([path, "--help"], env=clean, capture_output=True, text=True, check=False)
     assert (ran.returncode, ran.stderr) == (0, "")
     assert ran.stdout.endswith("another node has taken its name, say\n")

@@ -21,10 +21,8 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import IDENTIFIER
 from tests.emitting import rule
-from tests.ros1 import PYTHON
 
 ROOT = Path(__file__).parents[4]
-DEBIANS = PYTHON if Path(PYTHON).exists() else sys.executable
 
 
 def described(path: str) -> p.Package:
@@ -57,7 +55,7 @@ def test_the_tests_of_a_package_pass_by_the_standard_library_alone(
     package = described(path)
     own = written(package, tmp_path)
     ran = subprocess.run(
-        [DEBIANS, "-I", "-m", "unittest", "discover", "-v", "test"],
+        [sys.executable, "-I", "-m", "unittest", "discover", "-v", "test"],
         cwd=own,
         capture_output=True,
         text=True,
@@ -96,7 +94,7 @@ def test_a_wrong_verdict_of_the_monitor_fails_the_tests_of_the_package(tmp_path:
     assert text.count("'too_close': True") > 0
     tests.write_text(text.replace("'too_close': True", "'too_close': False"))
     ran = subprocess.run(
-        [DEBIANS, "-I", "-m", "unittest", "discover", "test"],
+        [sys.executable, "-I", "-m", "unittest", "discover", "test"],
         cwd=own,
         capture_output=True,
         check=False,

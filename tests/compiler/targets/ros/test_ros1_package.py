@@ -1,6 +1,5 @@
 """`--emit ros1-package`: what catkin, roslaunch and rosparam make of it."""
 
-import os
 import subprocess
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,7 +16,8 @@ from compiler.project.paths import listed
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import Options
 from fretish.diagnostics.diagnostic import Diagnostic
-from tests.ros1 import PYTHON, missing
+from tests.programs import DEBIANS_PATH, DEBIANS_PYTHON, debians_python, installed
+from tests.ros1 import ros1_or_skip
 
 ROOT = Path(__file__).parents[4]
 PROJECTS = ("requirements/r1.fret", "requirements/mission", "requirements/agv")
@@ -89,13 +89,15 @@ def test_the_monitor_and_the_proved_interceptor_are_those_of_the_other_targets()
 @pytest.mark.slow
 def test_catkin_builds_installs_and_launches_it(tmp_path: Path) -> None:
     toplevel = Path("/usr/share/catkin/cmake/toplevel.cmake")
-    if missing() or not toplevel.exists():
-        pytest.skip(missing() or "catkin is not installed")
+    ros1_or_skip()
+    debians_python("catkin")
+    installed("cmake")
+    installed("roslaunch")
     texts: dict[Path, str | bytes] = {
         tmp_path / "src" / path: text for path, text in files("requirements/r1.fret").items()
     }
     assert deliver({**texts, tmp_path / "src/CMakeLists.txt": toplevel.read_text()}) is None
-    clean = {"PATH": os.defpath, "HOME": str(tmp_path), "CMAKE_PREFIX_PATH": "/usr"}
+    clean = {"PATH": DEBIANS_PATH, "HOME": str(tmp_path), "CMAKE_PREFIX_PATH": "/usr"}
 
     def run(*command: str, **more: str) -> str:
         ran = subprocess.run(
@@ -109,7 +111,7 @@ def test_catkin_builds_installs_and_launches_it(tmp_path: Path) -> None:
         assert ran.returncode == 0, ran.stdout + ran.stderr
         return ran.stdout
 
-    at = ["-DCMAKE_INSTALL_PREFIX=installed", f"-DPYTHON_EXECUTABLE={PYTHON}"]
+    at = ["-DCMAKE_INSTALL_PREFIX=installed", f"-DPYTHON_EXECUTABLE={DEBIANS_PYTHON}"]
     run("cmake", "-S", "src", "-B", "build", *at, "-DCATKIN_ENABLE_TESTING=OFF")
     run("cmake", "--build", "build", "--target", "install")
     share = {"ROS_PACKAGE_PATH": str(tmp_path / "installed/share")}

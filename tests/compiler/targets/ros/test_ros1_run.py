@@ -7,7 +7,6 @@ says of the bag afterwards are one.
 from __future__ import annotations
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -20,7 +19,8 @@ import pytest
 
 from compiler.files.text_files import write as deliver
 from tests.fretc.watch.watched import ROOT, Watched
-from tests.ros1 import PYTHON, Ended, Ros, ended, missing, ros, until
+from tests.programs import DEBIANS_PATH, DEBIANS_PYTHON, installed
+from tests.ros1 import Ended, Ros, ended, ros, ros1_or_skip, until
 
 FAR, NEAR, WALL = 0.8, 0.4, 0.03
 """Clearances of the robot, m: where it is put, where it must stop, where it can go no further."""
@@ -76,8 +76,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture
 def here(tmp_path: Path) -> Iterator[Ros]:
-    if missing():
-        pytest.skip(missing())
+    ros1_or_skip()
     with ros(tmp_path) as place:
         yield place
 
@@ -88,7 +87,7 @@ class Robot:
     def __init__(self, here: Ros) -> None:
         script = Path(__file__).with_name("ros1_robot.py")
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-        self._process = here.start(PYTHON, str(script), **pipes)
+        self._process = here.start(DEBIANS_PYTHON, str(script), **pipes)
 
     def ask(self, what: str = "how") -> tuple[float, float, int]:
         """What it is told; its clearance, its speed, and the count of its scans."""
@@ -114,7 +113,7 @@ class Robot:
 
 def fretc(folder: Path, *words: str) -> subprocess.CompletedProcess[bytes]:
     command = [sys.executable, "-c", "from fretc.cli import main; main()", *words]
-    environment = {"PATH": os.defpath, "HOME": str(folder), "PYTHONPATH": str(ROOT)}
+    environment = {"PATH": DEBIANS_PATH, "HOME": str(folder), "PYTHONPATH": str(ROOT)}
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, check=False)
 
 
@@ -148,8 +147,8 @@ print(json.dumps([json.loads(said.data) for _, said, _ in bag.read_messages(sys.
 def said_by_node(bag: Path) -> list[dict[str, Any]]:
     """The lines that it has published."""
     ran = subprocess.run(
-        [PYTHON, "-c", _LINES, bag, "/halt_monitor/verdicts"],
-        env={"PATH": os.defpath},
+        [DEBIANS_PYTHON, "-c", _LINES, bag, "/halt_monitor/verdicts"],
+        env={"PATH": DEBIANS_PATH},
         capture_output=True,
         check=True,
     )
@@ -182,7 +181,7 @@ def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path) -> None:
     here.master()
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     bag = tmp_path / "run.bag"
-    record = here.start("/usr/bin/rosbag", "record", "-O", str(bag), *TOPICS, **quiet)
+    record = here.start(installed("rosbag"), "record", "-O", str(bag), *TOPICS, **quiet)
     interceptor = here.node(made / "scripts/interceptor.py")
     node = here.node(made / "scripts/monitor_node.py")
     watch = Watched(here.environment, tmp_path, "ros1", "--requirements", "halt")

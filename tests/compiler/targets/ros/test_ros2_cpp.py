@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import pytest
 from catkin_pkg.package import parse_package
 
 from compiler.targets.ros.ros2cpp import snake
-from tests.c_monitors import compiler
+from tests.programs import installed, needs
 from tests.ros2.cpp import write_headers
 from tests.ros2.emitted import write
 from tests.ros2.launch import launched
@@ -48,11 +47,10 @@ def test_the_manifest_is_valid_and_names_all_that_is_included(subject: str, tmp_
         assert f"find_package({name} " in found
 
 
+@needs("cmake", "ctest", "make", "cc")
 @pytest.mark.slow
 @pytest.mark.parametrize("subject", SUBJECTS[1:])
 def test_cmake_builds_and_tests_it_without_ros(subject: str, tmp_path: Path) -> None:
-    if shutil.which("cmake") is None:
-        pytest.skip("needs cmake")
     package = write(ROOT / subject, tmp_path, "ros2-cpp-package")
     build = tmp_path / "build"
     commands = (
@@ -106,8 +104,8 @@ def node(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     objects = [folder / f"{name}.o" for name in ("monitors", "monitors_signals")]
     for built in objects:
         text = source / f"{built.stem}.c"
-        subprocess.run([compiler("gcc"), "-std=c99", "-c", text, "-o", built], check=True)
-    command = [compiler("g++"), *STRICT, f"-I{folder}", f"-I{FAKE}", str(source / "node.cpp")]
+        subprocess.run([installed("gcc"), "-std=c99", "-c", text, "-o", built], check=True)
+    command = [installed("g++"), *STRICT, f"-I{folder}", f"-I{FAKE}", str(source / "node.cpp")]
     subprocess.run([*command, *map(str, objects), "-o", str(folder / "node")], check=True)
     return folder / "node"
 

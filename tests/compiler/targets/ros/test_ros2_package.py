@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +12,7 @@ import pytest
 import yaml
 from catkin_pkg.package import parse_package
 
-from tests.ros1 import PYTHON
+from tests.programs import DEBIANS_PATH, debians_python, installed
 from tests.ros2.emitted import Robot, write
 from tests.ros2.launch import launched
 
@@ -72,8 +71,6 @@ def test_the_texts_run_on_python_3_10(package: Path) -> None:
 @pytest.mark.slow
 def test_colcon_builds_and_tests_the_package(package: Path) -> None:
     """By pip's colcon; ROS 2 itself is not here, so that the tests of the node skip."""
-    if not (BIN / "colcon").exists():
-        pytest.skip("colcon is not installed: it is part of the extra `dev`")
     workspace = package.parent.parent
     for name in ("LICENSE", "README.md", "CHANGELOG.rst", f"resource/{package.name}"):
         assert (package / name).exists()
@@ -102,7 +99,7 @@ def _colcon(workspace: Path, verb: str, *words: str) -> str:
     ran = subprocess.run(
         [BIN / "colcon", "--log-base", str(workspace / "log"), verb, *words],
         cwd=workspace,
-        env={"PATH": f"{BIN}:{os.defpath}", "HOME": str(workspace), "LC_ALL": "C.UTF-8"},
+        env={"PATH": f"{BIN}:{os.environ['PATH']}", "HOME": str(workspace), "LC_ALL": "C.UTF-8"},
         capture_output=True,
         text=True,
         check=False,
@@ -115,15 +112,13 @@ def _colcon(workspace: Path, verb: str, *words: str) -> str:
 @pytest.mark.parametrize("subject", SUBJECTS)
 def test_ros_2s_linters_find_nothing(subject: str, tmp_path: Path) -> None:
     package = write(ROOT / subject, tmp_path)
-    missing = [
-        tool for tool in ("flake8", "pep257", "xmllint") if not shutil.which(f"ament_{tool}")
-    ]
-    if missing:
-        pytest.skip(f"Debian's python3-ament-{missing[0]} is not installed")
+    for linter in ("flake8", "pep257", "xmllint"):
+        installed(f"ament_{linter}")
+    python = debians_python("pytest")
     ran = subprocess.run(
-        [PYTHON, "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "test/test_linters.py"],
+        [python, "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "test/test_linters.py"],
         cwd=package,
-        env={"PATH": os.defpath},
+        env={"PATH": DEBIANS_PATH},
         capture_output=True,
         text=True,
         check=False,

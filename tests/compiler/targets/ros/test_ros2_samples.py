@@ -13,7 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.c_monitors import CHECKED, compiler
+from tests.c_monitors import CHECKED
+from tests.programs import installed
 from tests.ros2.emitted import write
 from tests.ros2.world import World
 
@@ -104,10 +105,10 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Any]:
     objects = []
     for name in ("monitors", "monitors_signals"):
         objects.append(str(folder / f"{name}.o"))
-        command = [compiler("gcc"), "-std=c99", "-c", str(source / f"{name}.c"), "-o", objects[-1]]
+        command = [installed("gcc"), "-std=c99", "-c", str(source / f"{name}.c"), "-o", objects[-1]]
         subprocess.run(command, check=True)
     command = [
-        compiler("g++"),
+        installed("g++"),
         "-std=c++17",
         "-Wall",
         "-Wextra",

@@ -18,9 +18,10 @@ from hypothesis import strategies as st
 from fretc.api.requirements import read_project
 from fretc.audit.plan import Plan, planned
 from fretc.watch.sources.source import Arrival
-from tests.c_monitors import CHECKED, compiler
+from tests.c_monitors import CHECKED
 from tests.fretc.watch.sent import MS, START, Sent
 from tests.fretc.watch.test_session import audited_rows, recorded
+from tests.programs import installed
 from tests.ros2.emitted import write
 from tests.ros2.messages import message_class
 from tests.ros2.world import World
@@ -206,10 +207,10 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     objects = []
     for name in ("monitors", "monitors_signals"):
         objects.append(str(folder / f"{name}.o"))
-        command = [compiler("gcc"), "-std=c99", "-c", str(source / f"{name}.c"), "-o", objects[-1]]
+        command = [installed("gcc"), "-std=c99", "-c", str(source / f"{name}.c"), "-o", objects[-1]]
         subprocess.run([*command, *CHECKED], check=True)
     command = [
-        compiler("g++"),
+        installed("g++"),
         "-std=c++17",
         *strict,
         *CHECKED,

@@ -17,7 +17,8 @@ from tests.each import each
 from tests.emitting import refused
 from tests.meaning import SCOPES
 from tests.monitoring import rule
-from tests.rust_monitors import crate, fields, library, outcomes, program, write
+from tests.programs import installed
+from tests.rust_monitors import crate, fields, library, outcomes, write
 from tests.strategies import templates
 
 WITHIN = "whenever p the sw shall within 100 ticks satisfy q"
@@ -56,7 +57,8 @@ def test_any_sentence_tells_the_same_at_each_tick(tmp_path: Path) -> None:
 def test_clippy_finds_nothing_and_the_tests_of_crates_pass(tmp_path: Path) -> None:
     quoted = " | ".join(f'"{name}"' for name in (*CLASHES, "fn", "match", "Monitor", "Truth"))
     odd = rule(f"whenever p & !q the sw shall within 3 ticks satisfy {quoted}", "fn")
-    cargo = program("cargo")
+    installed("cargo-clippy")
+    cargo = installed("cargo")
     write(tmp_path, crate(odd))
     write(tmp_path, crate(*of_requirements()))
     write(tmp_path, crate(rule(WITHIN)))

@@ -11,7 +11,8 @@ from compiler.project.folder import load
 from compiler.targets.rust.monitor import TARGET
 from compiler.targets.target import Options
 from tests.each import each
-from tests.rust_monitors import program, write
+from tests.programs import installed
+from tests.rust_monitors import write
 from tests.signal_policies import collected, numbered
 
 ROOT = Path(__file__).parents[4]
@@ -26,7 +27,8 @@ def test_clippy_finds_nothing(folder: str, tmp_path: Path) -> None:
         rules = tuple(numbered(case, i) for i, case in enumerate(collected(40)))
     files = TARGET.emit(rules, Options(one_file=True))
     write(tmp_path, {str(file.path): file.text for file in files})
-    command = [program("cargo"), "clippy", "--offline", "--quiet", "--all-targets"]
+    installed("cargo-clippy")
+    command = [installed("cargo"), "clippy", "--offline", "--quiet", "--all-targets"]
     done = subprocess.run(
         [*command, "--", "-D", "warnings"],
         cwd=tmp_path / "monitors_signals",

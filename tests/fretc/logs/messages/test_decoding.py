@@ -1,4 +1,3 @@
-import os
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -14,6 +13,7 @@ from fretc.logs.messages.decoding import decoder, stamp
 from fretc.logs.reader import look
 from fretish.bindings.declarations import short_type
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.effort import LOGS, needs_logs
 from tests.fretc.logs.logs import (
     SCAN,
     S,
@@ -26,11 +26,6 @@ from tests.fretc.logs.logs import (
     times,
     values,
     write,
-)
-
-LOGS = Path(os.environ.get("FRETC_LOGS", ""))
-real_logs = pytest.mark.skipif(
-    "FRETC_LOGS" not in os.environ, reason="set FRETC_LOGS to the folder of the public logs"
 )
 
 
@@ -93,7 +88,7 @@ def bindings(signals: dict[str, str]) -> str:
     )
 
 
-@real_logs
+@needs_logs
 def test_a_real_turtlebot_log_agrees_with_the_official_decoder() -> None:
     path = LOGS / "ros_amr_interop_turtlebot3_ros1.mcap"
     text = bindings({"v": "/velocity.twist.linear.x", "w": "/velocity.twist.angular.z"})
@@ -111,7 +106,7 @@ def test_a_real_turtlebot_log_agrees_with_the_official_decoder() -> None:
     assert gap // 10**8 == 55
 
 
-@real_logs
+@needs_logs
 def test_a_real_laser_log_agrees_with_the_official_decoder() -> None:
     path = LOGS / "scan_tools_hokuyo_ros1.mcap"
     recording = recorded(path, declare(SCAN))
@@ -123,7 +118,7 @@ def test_a_real_laser_log_agrees_with_the_official_decoder() -> None:
     assert values(recording, "nearest") == expected
 
 
-@real_logs
+@needs_logs
 def test_a_real_rosbag2_log_agrees_with_the_official_decoder() -> None:
     path = LOGS / "cougars_auv_ros2.mcap"
     text = bindings(

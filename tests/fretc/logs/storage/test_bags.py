@@ -1,6 +1,5 @@
 """Bags as rosbags writes them, held against MCAP files of the same messages."""
 
-import os
 import sqlite3
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +16,7 @@ from rosbags.rosbag2 import Writer as Writer2
 from fretc.logs.reader import Overview, look, read
 from fretc.logs.signals.samples import Recording
 from fretish.diagnostics.diagnostic import Code
+from tests.effort import LOGS, needs_logs
 from tests.fretc.logs.logs import (
     MS,
     SCAN,
@@ -36,10 +36,6 @@ from tests.fretc.logs.logs import (
     write,
 )
 
-LOGS = Path(os.environ.get("FRETC_LOGS", ""))
-real_logs = pytest.mark.skipif(
-    "FRETC_LOGS" not in os.environ, reason="set FRETC_LOGS to the folder of the public logs"
-)
 NOTE = (
     "a bag has no check sums, and one time for each message: a changed byte within a message "
     "cannot be seen, and publish_time is log_time"
@@ -279,7 +275,7 @@ def bindings(signals: dict[str, str]) -> str:
     )
 
 
-@real_logs
+@needs_logs
 @pytest.mark.parametrize(
     ("name", "signals"),
     [
@@ -312,7 +308,7 @@ def test_a_real_ros_1_log_as_a_bag_gives_the_same_columns(
     same(recorded(target, declarations), recorded(source, declarations))
 
 
-@real_logs
+@needs_logs
 def test_a_real_ros_2_log_converted_by_rosbags_gives_the_same_columns(tmp_path: Path) -> None:
     source = LOGS / "cougars_auv_ros2.mcap"
     convert([source], tmp_path / "log", "sqlite3", 9, None, "file", None, None, (), (), (), ())

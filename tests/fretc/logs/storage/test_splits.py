@@ -1,7 +1,6 @@
 """Bags of ROS 1 that belong together: split runs, and bags that were reindexed."""
 
 import hashlib
-import os
 import shutil
 import subprocess
 from collections.abc import Sequence
@@ -17,6 +16,7 @@ from fretc.logs.storage.splits import split
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.fretc.logs.logs import MS, S, Sent, X, codes, number, recorded, values
 from tests.fretc.logs.storage.test_bags import bag
+from tests.programs import DEBIANS_PATH, debians_python, needs
 
 SIX = [number(float(i), 1000 * S + i * 100 * MS, encoding="ros1") for i in range(6)]
 
@@ -161,10 +161,11 @@ os._exit(9)
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(shutil.which("rosbag") is None, reason="ROS 1's own `rosbag` is not installed")
+@needs("rosbag")
 def test_what_ros_itself_reindexes_is_known_as_that(tmp_path: Path) -> None:
-    environment = {"PATH": os.defpath, "HOME": str(tmp_path)}
-    subprocess.run(["/usr/bin/python3", "-c", _ROS], cwd=tmp_path, env=environment, check=False)
+    python = debians_python("rosbag", "std_msgs.msg")
+    environment = {"PATH": DEBIANS_PATH, "HOME": str(tmp_path)}
+    subprocess.run([python, "-c", _ROS], cwd=tmp_path, env=environment, check=False)
     assert isinstance(look(str(tmp_path / "x.bag.active")), Diagnostic)
     subprocess.run(["rosbag", "reindex", "-q", "x.bag.active"], cwd=tmp_path, check=True)
     found = read(str(tmp_path / "x.bag.active"), X, ["x"])

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -26,6 +25,7 @@ from monitors.loading import executed, load
 from tests.each import each
 from tests.effort import some
 from tests.monitoring import rule
+from tests.programs import needs
 from tests.requirement_sets import rules
 
 SENTENCES = (
@@ -173,9 +173,7 @@ def test_a_wrong_monitor_fails(tmp_path: Path) -> None:
 
 
 ALL = (*Language,)
-needs_both = pytest.mark.skipif(
-    not (shutil.which("cc") and shutil.which("node")), reason="needs cc and Node"
-)
+needs_both = needs("cc", "node")
 
 
 @needs_both

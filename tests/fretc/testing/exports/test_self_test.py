@@ -11,10 +11,11 @@ import pytest
 from fretc.testing.exports.files import Form
 from fretc.testing.exports.self_test import NAME
 from tests import meaning
-from tests.c_monitors import CHECKED, STRICT, compiler
+from tests.c_monitors import CHECKED, STRICT
 from tests.each import each
-from tests.effort import FULL
+from tests.effort import full_only
 from tests.fretc.testing.exports.test_files import SENTENCES, SHORT, written
+from tests.programs import installed
 from tests.strategies import templates
 
 OTHERS = (
@@ -35,7 +36,7 @@ def built(folder: Path, cc: str, *flags: str, main: str = _MAIN) -> Path:
     (folder / "main.c").write_text(main)
     sources = [*folder.glob("*_monitor.c"), folder / NAME, folder / "main.c"]
     path = folder / "program"
-    subprocess.run([compiler(cc), *flags, "-o", path, *sources], check=True, cwd=folder)
+    subprocess.run([installed(cc), *flags, "-o", path, *sources], check=True, cwd=folder)
     return path
 
 
@@ -58,7 +59,7 @@ def test_it_passes_without_a_warning_or_undefined_behaviour(tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not FULL, reason="half a minute: HYPOTHESIS_PROFILE=full")
+@full_only("half a minute")
 @each("scope", meaning.SCOPES)
 def test_it_passes_for_every_template(scope: str, tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = tmp_path_factory.mktemp(scope)
@@ -72,10 +73,10 @@ def test_it_compiles_without_a_library(cc: tuple[str, ...], tmp_path: Path) -> N
     written(tmp_path, Form.C, *OTHERS)
     name, *flags = cc
     strict = [flag for flag in STRICT if "g++" not in name or not flag.startswith("-std")]
-    command = [compiler(name), *flags, *strict, *_BARE, "-c", str(NAME)]
+    command = [installed(name), *flags, *strict, *_BARE, "-c", str(NAME)]
     subprocess.run(command, check=True, cwd=tmp_path)
     symbols = subprocess.run(
-        ["nm", "-u", NAME.with_suffix(".o")],
+        [installed("nm"), "-u", NAME.with_suffix(".o")],
         capture_output=True,
         text=True,
         check=True,

@@ -18,10 +18,11 @@ from tests.compiled_monitors import (
 )
 from tests.each import each
 from tests.monitoring import rule
+from tests.programs import needs
 
 CC = compiler() or ""
 LIMITS = Limits(seconds=20)
-pytestmark = pytest.mark.skipif(not CC, reason="no C compiler is installed")
+pytestmark = needs("gcc")
 
 
 @each(

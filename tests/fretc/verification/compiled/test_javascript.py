@@ -15,8 +15,7 @@ from tests.compiled_monitors import (
     given_javascript,
 )
 from tests.monitoring import rule
-
-needs_node = pytest.mark.skipif(javascript.tool() is None, reason="Node is not installed")
+from tests.node import needs_node
 
 
 @needs_node

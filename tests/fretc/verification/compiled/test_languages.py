@@ -36,8 +36,9 @@ from tests.compiled_monitors import (
     edited,
 )
 from tests.each import each
-from tests.effort import FULL
+from tests.effort import full_only
 from tests.monitoring import rule
+from tests.programs import installed
 from tests.strategies import templates
 
 LIMITS = Limits(seconds=20)
@@ -46,8 +47,7 @@ LIMITS = Limits(seconds=20)
 @pytest.fixture(params=TONGUES)
 def tongue(request: pytest.FixtureRequest) -> Tongue:
     found = TONGUES[request.param]
-    if found.is_missing:
-        pytest.skip(f"what {found.name} needs is not installed")
+    installed(found.program)
     return found
 
 
@@ -74,7 +74,7 @@ def test_a_dozen_templates_are_proved(tongue: Tongue, checker: Checker) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not FULL, reason="minutes: HYPOTHESIS_PROFILE=full")
+@full_only("minutes")
 @each("scope", meaning.SCOPES)
 def test_every_template_is_proved(scope: str, tongue: Tongue, checker: Checker) -> None:
     sentences = [each.sentence for each in templates((0, 1, 2, 3)) if each.scope == scope]
@@ -226,7 +226,7 @@ def test_drawn_faults_are_refuted_or_refused(tongue: Tongue, checker: Checker) -
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not FULL, reason="minutes: HYPOTHESIS_PROFILE=full")
+@full_only("minutes")
 @each("sentence", [WITHIN, FOR, RING])
 def test_faults_are_refuted_or_refused_or_of_no_effect(
     sentence: str, tongue: Tongue, tmp_path: Path

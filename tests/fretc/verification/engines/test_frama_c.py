@@ -1,6 +1,7 @@
 # ruff: noqa: E501
 """Frama-C: what is believed of its output; what it says of each template, and of planted faults."""
 
+import os
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +16,7 @@ from fretc.reproduction.outcome import Finding
 from fretc.reproduction.proofs import prove_again
 from fretc.verification.c.analysis import analysed, prepared
 from fretc.verification.c.language import checked
-from fretc.verification.engines.frama_c import Run, answer, program
+from fretc.verification.engines.frama_c import Run, answer
 from fretc.verification.engines.sandbox import Limits
 from fretc.verification.layers.frama_c import CLAIM
 from fretc.verification.reader import Proofs, read
@@ -23,15 +24,13 @@ from tests import meaning
 from tests.command import Fretc, write
 from tests.compiled_monitors import given_c as given
 from tests.each import each
-from tests.effort import FULL, some
+from tests.effort import full_only, some
 from tests.monitoring import rule
+from tests.programs import installed, needs
 from tests.strategies import templates
 
 LIMITS = Limits(seconds=60)
-PROGRAM = program() or ""
-needs_frama_c = pytest.mark.skipif(
-    not PROGRAM, reason="needs Frama-C, 862 MB: apt-get install frama-c-base"
-)
+needs_frama_c = needs("frama-c")
 
 WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
 RING = "only in m upon c the sw shall after 40 ticks satisfy z"
@@ -43,7 +42,7 @@ def asked(*rules: Formalized) -> Run:
 
 
 def check(run: Run) -> Outcome:
-    return answer(PROGRAM, run, LIMITS)[0]
+    return answer(installed("frama-c"), run, LIMITS)[0]
 
 
 # What is right --------------------------------------------------------------------------------
@@ -59,7 +58,7 @@ def test_requirements_in_one_text_are_proved() -> None:
 
 @needs_frama_c
 @pytest.mark.slow
-@pytest.mark.skipif(not FULL, reason="minutes: HYPOTHESIS_PROFILE=full")
+@full_only("minutes")
 @each("scope", meaning.SCOPES)
 def test_every_template_is_proved(scope: str) -> None:
     sentences = [each.sentence for each in templates() if each.scope == scope]
@@ -263,7 +262,7 @@ def test_a_monitor_in_python_is_none_in_c(
     fretc: Fretc, fake: Fake, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     fake.says(WHOLE)
-    monkeypatch.setenv("PATH", f"{fake.folder}:/usr/bin:/bin")
+    monkeypatch.setenv("PATH", f"{fake.folder}:{os.environ['PATH']}")
     write("r1.fret", "the sw shall always satisfy p")
     fretc("r1.fret", "--emit", "monitor")
     result = fretc("verify", "r1.fret", "--file", "build/r1_monitor.py", "--with", "frama-c")

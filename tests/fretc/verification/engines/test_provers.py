@@ -1,8 +1,7 @@
 """Provers: what is believed of what they say; and what the real ones say of what is emitted."""
 
-import importlib.util
+import os
 import re
-import shutil
 from importlib.metadata import PackageNotFoundError
 from itertools import cycle
 from pathlib import Path
@@ -23,13 +22,12 @@ from tests.compiler.targets.test_dafny import (
     emitted,
     rule,
 )
-from tests.effort import FULL
+from tests.effort import full_only
+from tests.programs import needs, needs_package
 from tests.proofs import outcome
 
-needs_dafny = pytest.mark.skipif(shutil.which("dafny") is None, reason="Dafny is not installed")
-needs_crosshair = pytest.mark.skipif(
-    importlib.util.find_spec("crosshair") is None, reason="CrossHair is not installed"
-)
+needs_dafny = needs("dafny")
+needs_crosshair = needs_package("crosshair")
 
 # A Dafny that is not one ----------------------------------------------------------------------
 
@@ -47,7 +45,7 @@ class Fake:
 
     def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.folder = folder
-        monkeypatch.setenv("PATH", f"{folder}:/usr/bin:/bin")
+        monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
 
     def says(self, body: str, version: str = "Dafny 2.3.0.10506", text: str = LEMMAS) -> Outcome:
         old = version.startswith("Dafny")
@@ -268,7 +266,7 @@ def test_dafny_rejects_mutants() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not FULL, reason="the same mutants are rejected; HYPOTHESIS_PROFILE=full")
+@full_only("the same mutants are rejected")
 @needs_dafny
 def test_dafny_rejects_an_interceptor_without_hold_and_a_loop_with_too_long_a_delay() -> None:
     """By each lemma and method that depends on it."""

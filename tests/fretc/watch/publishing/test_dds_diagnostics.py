@@ -14,13 +14,14 @@ from fretc.watch.sources.source import Arrival, Idle, Opened
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.guard import ERROR, OK
-from tests.dds import domain, environment, missing
+from tests.dds import domain, environment
 from tests.fretc.watch.sent import Sent, Setting, plan_of
+from tests.programs import needs_package
 from tests.ros1 import until
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(bool(missing()), reason=missing() or "Cyclone DDS is there"),
+    needs_package("cyclonedds"),
 ]
 
 

@@ -18,10 +18,11 @@ from fretc.audit.plan import Plan, planned
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from simulation.world import scenario as scenarios
-from tests.dds import domain, environment, missing
-from tests.effort import FULL
+from tests.dds import domain, environment
+from tests.effort import full_only
 from tests.fretc.watch.test_session import audited_rows
 from tests.fretc.watch.watched import ROOT, Watched, audited
+from tests.programs import needs_package
 from tests.ros1 import until
 from tests.simulation import missions
 
@@ -33,7 +34,7 @@ FIRST, LAST = 8.0, 32.0
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(bool(missing()), reason=missing() or "Cyclone DDS is there"),
+    needs_package("cyclonedds"),
 ]
 
 
@@ -122,7 +123,8 @@ def test_robot_watch_and_node_agree_with_the_audit_in_real_time(tmp_path: Path) 
     assert found["ticks"] > 50
 
 
-@pytest.mark.parametrize("name", scenarios.names() if FULL else [])
+@full_only("minutes")
+@pytest.mark.parametrize("name", scenarios.names())
 def test_they_agree_in_every_scenario(name: str, tmp_path: Path) -> None:
     missions.record(tmp_path / "mission.mcap", scenarios.load(name), max_seconds=LAST)
     found = agreed(tmp_path / "mission.mcap", tmp_path, FIRST, LAST)

@@ -30,7 +30,8 @@ from fretc.watch.sources.source import Arrival, Diagnosing, Opened, Problem, Rec
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from monitors.guard import Status
-from tests.dds import domain, environment, missing
+from tests.dds import domain, environment
+from tests.programs import needs_package
 from tests.ros1 import until
 
 ROOT = Path(__file__).parents[4]
@@ -50,7 +51,7 @@ while True:
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(bool(missing()), reason=missing() or "Cyclone DDS is there"),
+    needs_package("cyclonedds"),
 ]
 
 

@@ -16,7 +16,8 @@ from fretc.watch.sources.source import Interrupted, Opened, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code
 from monitors.guard import ERROR, OK
 from tests.fretc.watch.watched import Watched, audited
-from tests.ros1 import PYTHON, Ros, missing, ros, until
+from tests.programs import DEBIANS_PYTHON, debians_python
+from tests.ros1 import Ros, ros, ros1_or_skip, until
 
 BINDINGS = """
 [clock]
@@ -44,8 +45,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture
 def here(tmp_path: Path) -> Iterator[Ros]:
-    if missing():
-        pytest.skip(missing())
+    ros1_or_skip()
     with ros(tmp_path) as place:
         yield place
 
@@ -102,13 +102,11 @@ sys.stdin.read()
 
 def test_diagnostics_are_read_back_on_the_robot(here: Ros, folder: Path, tmp_path: Path) -> None:
     """As any node reads them; the levels are those of `monitors/guard.py`."""
-    probe = [PYTHON, "-c", "import diagnostic_msgs.msg"]
-    if subprocess.run(probe, env=here.environment, capture_output=True).returncode:
-        pytest.skip("Debian's python3 has no diagnostic_msgs")
+    debians_python("diagnostic_msgs.msg")
     here.master()
     robot = here.world("robot")
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    reader = here.start(PYTHON, "-c", _READER, **pipes)
+    reader = here.start(DEBIANS_PYTHON, "-c", _READER, **pipes)
     words = ("ros1", "--requirements", "requirements", "--publish", "diagnostics")
     run = Watched(here.environment, tmp_path, *words)
     assert reader.stdout is not None
