@@ -12,7 +12,10 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import NoReturn
 
-_LARGEST = 2**63
+LEAST, GREATEST = -(2**63), 2**64 - 1
+"""Whole numbers of 64 bits, with or without a sign: times of logs are both."""
+LARGEST_COUNT = 2**63 - 1
+"""Of what is counted: 64 bits with a sign, as columns of tables have."""
 _DIGITS = 21
 _EXCERPT = 40
 
@@ -32,7 +35,7 @@ def parsed(text: str) -> Shape:
     value = json.loads(
         text,
         object_pairs_hook=_distinct,
-        parse_int=_bounded,
+        parse_int=_whole,
         parse_float=_finite,
         parse_constant=_no_number,
     )
@@ -62,9 +65,10 @@ def _distinct(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
     return fields
 
 
-def _bounded(word: str) -> int:
-    if len(word) > _DIGITS or not -_LARGEST <= int(word) < 2 * _LARGEST:
-        raise ValueError(f"`{word[:_EXCERPT]}` is too large for a whole number")
+def _whole(word: str) -> float:
+    """Beyond 64 bits it is a number like `1e30`, as JSON Schema has it, and no whole one."""
+    if len(word) > _DIGITS or not LEAST <= int(word) <= GREATEST:
+        return _finite(word)
     return int(word)
 
 
@@ -134,7 +138,7 @@ class Shape:
         """A whole number that fits into 64 bits."""
         if not isinstance(self.value, int) or isinstance(self.value, bool):
             raise self.wrong("a whole number")
-        if abs(self.value) >= _LARGEST:
+        if abs(self.value) > LARGEST_COUNT:
             raise self.wrong("a whole number of at most 64 bits")
         return self.value
 
@@ -179,7 +183,7 @@ class Shape:
                 return "an object"
             case list():
                 return "an array"
-            case int() if abs(self.value) >= _LARGEST:
+            case int() if abs(self.value) > LARGEST_COUNT:
                 return "far too large"
             case _:
                 text = str(self.value)

@@ -15,15 +15,11 @@ from msgspec import UnsetType as UnsetType
 from msgspec import field as field
 from msgspec.structs import replace as replace
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import GREATEST, LARGEST_COUNT, LEAST, MisshapenError
 
 types = msgspec.inspect
 """Types of records as values."""
 R = TypeVar("R")
-_LARGEST = 2**63 - 1
-_WHOLE = Meta(ge=-_LARGEST, le=_LARGEST)
-_STAMP = {"minimum": -(2**63), "maximum": 2**64 - 1}
-_COUNT = Meta(ge=0, le=_LARGEST)
 
 
 class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -33,15 +29,15 @@ class Record(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """
 
 
-Whole = Annotated[int, Meta(extra_json_schema=_STAMP)]
-"""Of 64 bits, with or without a sign: nanoseconds by a clock. `checked_json` refuses more."""
-Duration = Annotated[int, Meta(ge=0, extra_json_schema={"maximum": 2**64 - 1})]
+Whole = Annotated[int, Meta(extra_json_schema={"minimum": LEAST, "maximum": GREATEST})]
+"""Of 64 bits, with or without a sign: nanoseconds by a clock. `checked_json` reads no more."""
+Duration = Annotated[int, Meta(ge=0, extra_json_schema={"maximum": GREATEST})]
 """Nanoseconds between two such times."""
-Count = Annotated[int, _COUNT]
-Ordinal = Annotated[int, Meta(ge=1, le=_LARGEST)]
-Number = Annotated[int, _WHOLE] | float
-"""Finite; `1` stays another number than `1.0`, so that files compare to the letter."""
-Distance = Annotated[int, _COUNT] | Annotated[float, Meta(ge=0)]
+Count = Annotated[int, Meta(ge=0, le=LARGEST_COUNT)]
+Ordinal = Annotated[int, Meta(ge=1, le=LARGEST_COUNT)]
+Number = int | float
+"""Finite; `1` stays another number than `1.0`, so that files compare exactly."""
+Distance = Annotated[int, Meta(ge=0)] | Annotated[float, Meta(ge=0)]
 Share = Annotated[int, Meta(ge=0, le=1)] | Annotated[float, Meta(ge=0, le=1)]
 Seconds = Annotated[int, Meta(ge=0, le=10**10)] | Annotated[float, Meta(ge=0, le=10**10)]
 """From the start of a recorded run: up to some three hundred years."""

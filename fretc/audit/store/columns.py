@@ -16,11 +16,11 @@ from typing import Any, Protocol
 
 import pyarrow as pa
 
+from compiler.files.checked_json import LARGEST_COUNT, LEAST
 from compiler.files.records import UNSET, types
 
 _INFINITE = {"+inf": inf, "-inf": -inf}
 _INFINITE_WORDS = {inf: "+inf", -inf: "-inf"}
-_LARGEST = 2**63
 
 
 class InexactError(ValueError):
@@ -116,7 +116,7 @@ class Whole:
         except OverflowError as error:
             if exact:
                 raise InexactError from error
-        fits = (None if v is None or not -_LARGEST <= v < _LARGEST else v for v in values)
+        fits = (None if v is None or not LEAST <= v <= LARGEST_COUNT else v for v in values)
         return pa.array(list(fits), self.type)
 
     def values(self, array: pa.Array) -> list[Any]:

@@ -293,9 +293,10 @@ def _results(tables: Source, rows: Sequence[int] | None) -> list[Result]:
 def _held(tables: Source, rows: Sequence[int]) -> list[Result]:
     """The results in some rows that columns hold as they are."""
     main, events = (_taken(tables[name], rows) for name in (RESULTS, EVENTS))
-    main_rows = tables[RESULTS]["run_row"]
     run_rows = main["run_row"].to_pylist()
-    shared = _of_runs(tables[RUNS], run_rows)
+    firsts = _firsts(tables[RESULTS]["run_row"], rows)
+    begun = {run for run, is_first in zip(run_rows, firsts, strict=True) if is_first}
+    shared = _of_runs(tables[RUNS], run_rows, begun)
     parts = zip(
         _objects(main, _MAIN),
         _objects(events, _NESTED),
@@ -309,7 +310,6 @@ def _held(tables: Source, rows: Sequence[int]) -> list[Result]:
     ]
     found = decoded(records, list[Result])
     bare = {row: {**of_run, _COURSE: UNSET} for row, of_run in shared.items()}
-    firsts = _firsts(main_rows, rows)
     return [
         replace(each, **(shared if is_first else bare)[n])
         for each, n, is_first in zip(found, run_rows, firsts, strict=True)
@@ -351,13 +351,21 @@ def _whole(table: pa.Table, name: str) -> pa.Array:
     return column if isinstance(column, pa.Array) else pa.concat_arrays(column.chunks)
 
 
-def _of_runs(table: Taken, run_rows: Sequence[int]) -> dict[int, dict[str, Any]]:
-    """Run → what its results share."""
+def _of_runs(
+    table: Taken, run_rows: Sequence[int], begun: Collection[int]
+) -> dict[int, dict[str, Any]]:
+    """Run → what its results share, and the course of those that have begun.
+
+    A course that its column does not hold is in `exact`, with the first result of its run.
+    """
     known = sorted({row for row in run_rows if row is not None and 0 <= row < table.num_rows})
     if len(known) != len({*run_rows}):
         raise MisshapenError("`results` names a row that `runs` does not have")
     some = _taken(table, known)
-    parts = zip(_objects(some, _HEALTH), _objects(some, _OF_RUN), strict=True)
+    parts = [*zip(_objects(some, _HEALTH), _objects(some, _OF_RUN), strict=True)]
+    for row, (_, more) in zip(known, parts, strict=True):
+        if row not in begun:
+            more.pop(_COURSE, None)
     found = decoded([{**_BLANK, "health": health, **more} for health, more in parts], list[Result])
     names = ("health", *(each.attribute for each in _OF_RUN))
     return {

@@ -159,7 +159,7 @@ def test_a_hash_is_a_hash(tmp_path: Path, name: str, sha256: str) -> None:
         ('"fretc"', '"fretc": "0.0.0", "fretc"', "`fretc` is there twice in one object"),
         ("2.4", "1e999", "`1e999` is too large for a number"),
         ("2.4", "Infinity", "`Infinity` is no number of JSON"),
-        ("2.4", f"{10**30}", f"`{10**30}` is too large for a whole number"),
+        ("2.4", f"{10**400}", "is too large for a number"),
     ],
 )
 def test_what_two_readers_may_take_for_two_things_is_refused(
