@@ -92,7 +92,7 @@ def _reviewed(
         if id in scope.claimed:
             results = [result for result in document.results if result.requirement == id]
             yield from _runs(review, results, prints_of)
-        elif review.was_in_force and not scope.part:
+        elif review.was_claimed and not scope.part:
             yield differs(FILE, id, "it was claimed when it was reviewed, and is not any more")
 
 

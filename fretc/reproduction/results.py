@@ -12,21 +12,21 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from dataclasses import replace as changed
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 
 from compiler.files.edition import __version__
 from compiler.files.records import plain, replace
-from compiler.files.text_files import file_sha256, sha256
+from compiler.files.text_files import file_sha256
 from fretc.audit.evidence.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
 from fretc.audit.evidence.briefs import brief
 from fretc.audit.evidence.claim import Claim
 from fretc.audit.evidence.estimates import estimates
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.schema import Document, Result
+from fretc.audit.evidence.schema import Document, Requirement, Result
 from fretc.audit.evidence.schema import Finding as OfLog
 from fretc.audit.many_logs import Engine, audit_logs, named_situations
-from fretc.audit.plan import Plan
+from fretc.audit.plan import Plan, monitored_requirements
 from fretc.logs.labels import of_path
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
@@ -184,18 +184,23 @@ def _beginning(document: Document, plan: Plan, *, part: bool) -> Iterator[Rechec
         claim = claims.get(requirement.id)
         if claim is None:
             yield differs(FILE, requirement.id, "it is not claimed any more")
-        elif {requirement.sha256, _canonical_sha256(requirement.sentence)} != {
-            claim.basis[SENTENCE]
-        }:
+        elif not _same_sentence(requirement, claim):
             yield differs(FILE, requirement.id, "the sentence has changed")
         elif requirement.situations != named_situations(claim):
             yield differs(FILE, requirement.id, "its situations are others")
 
 
-def _canonical_sha256(sentence: str) -> str:
-    """SHA-256 of the canonical wording; empty where it is no sentence."""
+def _same_sentence(before: Requirement, now: Claim) -> bool:
+    """Whether the wording means the same; what its names stand for is in the hash alone."""
+    return before.sha256 == now.basis[SENTENCE] and _wording(before.sentence) == _wording(
+        now.sentence
+    )
+
+
+def _wording(sentence: str) -> str:
+    """The canonical one; as it is, where it is no sentence."""
     tree = parse(Source("evidence", sentence).span())
-    return "" if isinstance(tree, Diagnostic) else sha256(canonical(tree))
+    return sentence if isinstance(tree, Diagnostic) else canonical(tree)
 
 
 def _estimates_again(document: Document, now: _Now, ids: Collection[str]) -> Iterator[Recheck]:
@@ -279,7 +284,7 @@ def _differences(before: Result, now: Result, plan: Plan) -> Iterator[str]:
     healths = plain(before.health), plain(now.health)
     others.extend(f"health.{name}" for name in _different_keys(*healths, _FINDINGS))
     others.extend(f"hashes.{name}" for name in _different_keys(before.hashes, now.hashes, _REASONS))
-    if _assumptions(before, plan) != _assumptions(now, plan):
+    if not _same_assumptions(before, now, plan):
         others.append("assumptions")
     if not _same_labels(before, now, plan):
         others.append("labels")
@@ -322,11 +327,24 @@ def _same_labels(before: Result, now: Result, plan: Plan) -> bool:
     )
 
 
-def _assumptions(result: Result, plan: Plan) -> list[str]:
-    """The assumptions without the defaults: one may be implied or written out."""
-    defaults = {default.text for default in plan.declarations.defaults}
-    times = Counter(result.assumptions)
-    return sorted(text for text in times.elements() if text not in defaults or times[text] > 1)
+def _same_assumptions(before: Result, now: Result, plan: Plan) -> bool:
+    """Whether the same is assumed; a default may be implied, or written out in the bindings."""
+    own, other = {*before.assumptions}, {*now.assumptions}
+    defaults = _written_defaults(plan)[now.requirement] if now.clock else frozenset()
+    return len(own) == len(before.assumptions) and own ^ other <= defaults
+
+
+@lru_cache(maxsize=4)
+def _written_defaults(plan: Plan) -> Mapping[str, frozenset[str]]:
+    """Requirement → the defaults of what it reads that the bindings may write out."""
+    return {
+        claim.id: frozenset(
+            default.text
+            for default in plan.declarations.reading(each.propositions).defaults
+            if default.written is not None
+        )
+        for claim, each in zip(plan.claims, monitored_requirements(plan), strict=True)
+    }
 
 
 # Findings of a log ------------------------------------------------------------------------------

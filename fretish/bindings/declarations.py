@@ -314,12 +314,12 @@ Part = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Default:
-    """A value that is the default, in words."""
+    """Something that is assumed of a part, in words: a default, or a choice of the bindings."""
 
     part: Part
     text: str
-    explicit: bool = False
-    """Whether it is written in the bindings all the same."""
+    written: bool | None = None
+    """Whether a default is written in the bindings all the same; None: it cannot be written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -383,7 +383,7 @@ class Declarations:
     @property
     def assumptions(self) -> tuple[str, ...]:
         """Implicit defaults, and the declared values of unknown propositions, in words."""
-        return tuple(default.text for default in self.defaults if not default.explicit)
+        return tuple(default.text for default in self.defaults if not default.written)
 
 
 def short_type(name: str) -> str:

@@ -22,6 +22,7 @@ from fretc.audit.evidence.reader import VERDICTS
 from fretc.report.traceability.analyses import Answer
 from fretc.report.traceability.chain import (
     ACCEPTANCE,
+    FORMULAS,
     IN_FORCE,
     REVIEW,
     Chain,
@@ -74,8 +75,13 @@ class Review:
 
     @property
     def was_in_force(self) -> bool:
-        """Whether the requirement was claimed then."""
+        """Whether the requirement was not retired then."""
         return self.prints.get(in_force(self.requirement)) == IN_FORCE
+
+    @property
+    def was_claimed(self) -> bool:
+        """Whether runs were judged by it: it was in force, and a sentence that has a meaning."""
+        return self.was_in_force and Node(FORMULAS, self.requirement) in self.prints
 
     @property
     def verdict_summary(self) -> str:

@@ -203,7 +203,7 @@ class SignalTables(Fields):
         words = "as REP 117 says" if scan else "unknown"
         text = f"signal {at[1]}: readings that are no measurement are {words}"
         if fields is None:
-            self.notes.defaults.append(Default((at[0], at[1]), text))
+            self.notes.defaults.append(Default((at[0], at[1]), text, written=False))
             return default
         self._check_keys(fields, (*_INVALID, "empty"), "`invalid`", *at, "invalid")
         place = (*at, "invalid")
@@ -219,7 +219,7 @@ class SignalTables(Fields):
         }
         invalid = Invalid(**values)
         if invalid == default:
-            self.notes.defaults.append(Default((at[0], at[1]), text, explicit=True))
+            self.notes.defaults.append(Default((at[0], at[1]), text, written=True))
         return invalid
 
     def _max_age(self, table: Mapping[str, Any], at: tuple[str, ...]) -> int | None:

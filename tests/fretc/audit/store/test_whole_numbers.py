@@ -65,9 +65,18 @@ def filled(kind: Any) -> Any:
     raise AssertionError(kind)
 
 
-_FIRST = (types.StructType, types.DataclassType, types.VarTupleType, types.DictType)
-_FIRST += (types.FloatType, types.IntType, types.BoolType, types.StrType, types.LiteralType)
-"""Of several types that of the first kind here: what columns hold, so that one number is changed."""
+_FIRST: tuple[type, ...] = (
+    types.StructType,
+    types.DataclassType,
+    types.VarTupleType,
+    types.DictType,
+    types.FloatType,
+    types.IntType,
+    types.BoolType,
+    types.StrType,
+    types.LiteralType,
+)
+"""Of several types the first one here: columns hold it, so that one number is changed."""
 
 
 def _bare(kind: Any) -> Any:
