@@ -100,6 +100,7 @@ def watch(
     from fretc.watch.publishing.publishing import Publishing
     from fretc.watch.reaction import Reaction
     from fretc.watch.sources.choice import chosen
+    from fretc.watch.sources.log import Log
     from fretc.watch.watch import Watch
 
     if evidence is not None and record is None:
@@ -119,7 +120,8 @@ def watch(
         stop(not_written(evidence, "there is a directory of that name"))
     publishers = _opened(publish, source)
     try:
-        run = Watch(plan, Path(record) if record is not None else None)
+        followed = source.name if isinstance(source, Log) else None
+        run = Watch(plan, Path(record) if record is not None else None, followed)
     except OSError as error:
         stop(not_written(str(record), error.strerror or str(error)))
     titles = {rule.id: rule.requirement.title for rule in project.rules}

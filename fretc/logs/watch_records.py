@@ -2,8 +2,10 @@
 
 The metadata record `fretc.grid` says where the grid of ticks begins, as soon as it is placed, and
 `fretc.watch`, at the end, up to when was watched and what was missed meanwhile. Both name the clock
-by which they count. Nothing of a record counts that is of another clock, is not written like this,
-or names a place at which no grid of the log can begin. Times are nanoseconds.
+by which they count. Where messages came behind later ones, after their ticks had been judged,
+`fretc.watch` has their number (`disordered`), and the grid does not count. Nothing of a record
+counts that is of another clock, is not written like this, or names a place at which no grid of the
+log can begin. Times are nanoseconds.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ from fretish.diagnostics.source import Span
 GRID, WATCH = "fretc.grid", "fretc.watch"
 """The names of the records."""
 _OF_GRID = (f"{GRID}.clock", f"{GRID}.origin", f"{WATCH}.clock", f"{WATCH}.until")
-KEYS = frozenset({*_OF_GRID, f"{WATCH}.missed"})
+KEYS = frozenset({*_OF_GRID, f"{WATCH}.missed", f"{WATCH}.disordered"})
 """All that they say."""
 _TIME = re.compile(r"[1-9][0-9]{0,18}")
 _SPANS = re.compile(r"[1-9][0-9]{0,18}-[1-9][0-9]{0,18}( [1-9][0-9]{0,18}-[1-9][0-9]{0,18})*")
@@ -58,10 +60,13 @@ def grid_record(clock: Clock, origin: int) -> dict[str, str]:
     return {"clock": clock_text(clock), "origin": str(origin)}
 
 
-def watch_record(clock: Clock, until: int, missed: tuple[Gap, ...]) -> dict[str, str]:
+def watch_record(
+    clock: Clock, until: int, missed: tuple[Gap, ...], disordered: int = 0
+) -> dict[str, str]:
     """The record of a watch that has ended."""
+    behind = {"disordered": str(disordered)} if disordered else {}
     spans = {"missed": " ".join(f"{a}-{b}" for a, b in missed)} if missed else {}
-    return {"clock": clock_text(clock), "until": str(until), **spans}
+    return {"clock": clock_text(clock), "until": str(until), **spans, **behind}
 
 
 _SHOWN = 80
@@ -78,7 +83,10 @@ def watched(columns: Columns, described: Mapping[str, tuple[str, ...]], place: S
     findings = [_missing(gaps, place)] if lost else []
     if not columns.clock.declared:
         return Watched(missed=gaps, lost=lost, findings=tuple(findings))
-    found = _grid({key: described[key] for key in _OF_GRID if key in described}, columns)
+    stated = {key: described[key] for key in _OF_GRID if key in described}
+    if f"{WATCH}.disordered" in described:
+        stated.pop(f"{GRID}.origin", None)
+    found = _grid(stated, columns)
     if isinstance(found, str):
         return Watched(None, 0, gaps, lost, (*findings, _refused(found, place)))
     origin, until = found

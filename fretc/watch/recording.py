@@ -78,12 +78,13 @@ class Recorder:
             self._has_grid = True
             self._writer.add_metadata(GRID, grid_record(self._clock, origin))
 
-    def close(self, until: int, missed: tuple[Gap, ...]) -> None:
+    def close(self, until: int, missed: tuple[Gap, ...], disordered: int = 0) -> None:
         """End the file.
 
         Args:
             until: up to when was watched, on the declared clock.
             missed: receive times between which messages were lost.
+            disordered: messages that were judged too late because they came behind later ones.
 
         Raises:
             OSError: the disk is full, say.
@@ -91,7 +92,7 @@ class Recorder:
         if len(missed) > MOST_GAPS:
             missed = ((missed[0][0], missed[-1][1]),)
         try:
-            self._writer.add_metadata(WATCH, watch_record(self._clock, until, missed))
+            self._writer.add_metadata(WATCH, watch_record(self._clock, until, missed, disordered))
             self._writer.finish()
         finally:
             self._file.close()

@@ -11,15 +11,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from fretc.audit.one_log import signals_of
 from fretc.audit.plan import Plan
+from fretc.logs.reader import read
 from fretc.logs.signals.samples import Gap
-from fretc.logs.stream import End, Stream, Withdrawn
+from fretc.logs.signals.traces import trace
+from fretc.logs.stream import End, Stream, Tick, Withdrawn
 from fretc.watch.decoding import Decoder, Timed
 from fretc.watch.judging import Judges
 from fretc.watch.sources.source import Arrival
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.guard import State
+from monitors.kernel.columns import rows_of
+from monitors.kernel.stepping import Standing
 from monitors.kernel.verdicts import Truth
 from monitors.ticking import Ledger, is_jump
 
@@ -80,12 +85,17 @@ class Session:
         self._now = 0
         """On the declared clock: the latest time of all messages."""
         self._received = 0
+        self.disordered = 0
+        """Messages behind later ones, by receive time, that came after their ticks were judged: a
+        log that is followed can have some."""
         self._missed: list[Gap] = []
         self._gap_from: int | None = None
         """The latest time before messages were missed, until another one comes."""
         self.interrupted = False
         """Whether the source is gone."""
         self._ahead: tuple[Truth, ...] | None = None
+        self._final: Mapping[str, str] = {}
+        """The verdicts of a run that has ended."""
         self.topics = {name: Topic() for name in sorted(self._decoder.topics)}
         self.problems: list[Diagnostic] = []
         """What is wrong with the messages of a topic, each once."""
@@ -159,6 +169,7 @@ class Session:
             A jump, and nothing was taken: the message belongs to another run. Or what keeps time
             from passing: a jump forward by a million ticks.
         """
+        is_behind = arrival.log_time < self._received
         self._received = max(self._received, arrival.log_time)
         wrong = self._pass(self._received - self._patience)
         if wrong is not None:
@@ -176,19 +187,21 @@ class Session:
             topic.last = arrival.log_time
             topic.recent = [*topic.recent, arrival.log_time][-_RECENT:]
         for message in messages:
-            self._take(message)
+            was_judged = self._take(message)
+            self.disordered += is_behind and was_judged
         return None
 
-    def _take(self, message: Timed) -> None:
+    def _take(self, message: Timed) -> bool:
+        """Whether a tick that needed it was judged already."""
         self._latest[message.topic] = max(message.time, self._latest.get(message.topic, 0))
         self._now = max(self._now, message.time)
         if self._gap_from is not None and not self.interrupted:
             before, self._gap_from = self._gap_from, None
             self._withdraw(self._stream.miss(min(before, message.time), max(before, message.time)))
-        self._withdraw(
-            self._stream.arrive(message.topic, message.time, message.arrival, message.values)
-        )
+        late = self._stream.arrive(message.topic, message.time, message.arrival, message.values)
+        self._withdraw(late)
         self._ahead = None
+        return late is not None
 
     def _withdraw(self, late: Withdrawn | None) -> None:
         if late is not None:
@@ -250,7 +263,7 @@ class Session:
         return tuple(
             State(
                 standing.requirement,
-                self._so_far(judges.said(standing.requirement, str(standing.verdict))),
+                self._verdict(standing),
                 owing,
                 trigger,
                 self._tick_time(standing.open),
@@ -266,8 +279,11 @@ class Session:
     def _time_passed(self) -> int:
         return self._received - self._patience
 
-    def _so_far(self, verdict: str) -> str:
-        """A run of which messages were missed satisfies nothing."""
+    def _verdict(self, standing: Standing) -> str:
+        """That of the run, where it has ended; one with missed messages satisfies nothing."""
+        if standing.requirement in self._final:
+            return self._final[standing.requirement]
+        verdict = self._judges.said(standing.requirement, str(standing.verdict))
         return "no data" if self._missed and verdict in ("satisfied", "vacuous") else verdict
 
     def _tick_time(self, tick: int | None) -> int | None:
@@ -289,5 +305,25 @@ class Session:
             return found
         for tick in found.ticks:
             self._judges.step(tick)
-        verdicts = self._judges.verdicts(found.cut, intact=not self._missed)
-        return Ended(verdicts, found.until)
+        self._final = self._judges.verdicts(found.cut, intact=not self._missed)
+        return Ended(self._final, found.until)
+
+    def judge_again(self, log: str) -> Mapping[str, str] | Diagnostic:
+        """Judge the run that has ended by a log of it, as an audit does: in the order of times.
+
+        Returns:
+            The verdicts, which `states` has, too; or why the log cannot be read.
+        """
+        declarations, names = self._plan.declarations, self._judges.propositions
+        signals = signals_of(declarations, names)
+        recording = read(log, declarations, signals, self._plan.integrity)
+        if isinstance(recording, Diagnostic):
+            return recording
+        found = trace(declarations, recording, names)
+        times = found.timeline.times.tolist()
+        self._judges, self._ahead = Judges(self._plan), None
+        rows = rows_of([found.columns[name] for name in names], len(times))
+        for time, row in zip(times, rows, strict=True):
+            self._judges.step(Tick(time, dict(zip(names, row, strict=True))))
+        self._final = self._judges.verdicts(found.cut, intact=recording.intact)
+        return self._final

@@ -46,7 +46,9 @@ def _ticks(session: Session) -> str:
     if session.waiting:
         return f"  waits for {', '.join(session.waiting)} to place the first tick"
     late = f", {session.late_ticks} became unknown" if session.late_ticks else ""
-    return f"  {session.ticks} ticks{late}"
+    behind = session.disordered
+    why = f"; {behind} messages behind later ones: judged again at the end" if behind else ""
+    return f"  {session.ticks} ticks{late}{why}"
 
 
 def _rate(rate: float | None) -> str:

@@ -35,17 +35,18 @@ SILENCE = 5 * 10**9
 class Watch:
     """One watch, of one run or, where a clock is set back, of several."""
 
-    def __init__(self, plan: Plan, record: Path | None = None) -> None:
+    def __init__(self, plan: Plan, record: Path | None = None, log: str | None = None) -> None:
         """Nothing has come yet.
 
         Args:
             plan: its clock has a lateness, where it needs one.
             record: the file that is written; of a second run with `-2` before its ending.
+            log: the log that is watched; None: no log is.
 
         Raises:
             OSError: the file is there, or cannot be written.
         """
-        self._plan, self._record = plan, record
+        self._plan, self._record, self._log = plan, record, log
         self.session = Session(plan)
         self.runs: list[RunEnded] = []
         self.failed = False
@@ -168,7 +169,7 @@ class Watch:
     def _begin_anew(self, jump: Jump, arrival: Arrival) -> Iterator[News]:
         """A clock was set back: this run ends, and another one begins."""
         yield Found(_set_back(jump))
-        yield from self.finish()
+        yield from self.finish(begins_anew=True)
         if len(self.runs) >= MOST_RUNS:
             self.failed = self.ended = True
             yield Found(_two_clocks(jump))
@@ -204,10 +205,13 @@ class Watch:
         self._recorder = None
         yield Found(_not_recorded(str(path), error.strerror or str(error)))
 
-    def finish(self) -> Iterator[News]:
+    def finish(self, *, begins_anew: bool = False) -> Iterator[News]:
         """The present run ends: its verdicts are those of an audit of its recording.
 
         Where the source was never there, there is neither.
+
+        Args:
+            begins_anew: whether another run of the same source follows.
         """
         if not self._has_begun:
             if self._recorder is not None:
@@ -220,17 +224,23 @@ class Watch:
             self.failed = True
             yield Found(found)
             found = Ended(dict.fromkeys(self._states, "no data"), self.session.now)
-        yield from self._changes(ahead=False)
-        path = None
+        path, session = None, self.session
         if self._recorder is not None:
             path = str(self._recorder.path)
             try:
-                self._recorder.grid(self.session.origin)
-                self._recorder.close(found.until, self.session.missed)
+                self._recorder.grid(None if session.disordered else session.origin)
+                self._recorder.close(found.until, session.missed, session.disordered)
             except OSError as error:
                 yield from self._not_recorded(error)
             self._recorder = None
-        run = RunEnded(len(self.runs) + 1, found.verdicts, path, self.session.ticks)
+        verdicts = found.verdicts
+        if session.disordered:
+            log = path or (self._log if not self.runs and not begins_anew else None)
+            judged = _no_log() if log is None else session.judge_again(log)
+            yield Found(_disordered(session.disordered, log, judged))
+            verdicts = verdicts if isinstance(judged, Diagnostic) else judged
+        yield from self._changes(ahead=False)
+        run = RunEnded(len(self.runs) + 1, verdicts, path, session.ticks)
         self.runs.append(run)
         yield run
 
@@ -259,6 +269,28 @@ def _two_clocks(jump: Jump) -> Diagnostic:
         f"the clock of `{jump.topic}` was set back {MOST_RUNS} times: it is given up",
         help="are there two publishers of the topic, with different clocks?",
     )
+
+
+def _disordered(count: int, log: str | None, judged: object) -> Diagnostic:
+    messages = f"{count} message{'s' * (count > 1)} of the log stood behind later ones"
+    if not isinstance(judged, Diagnostic):
+        return Diagnostic(
+            Code.DISORDERED,
+            f"{messages}, when their ticks were judged: the run was judged again by `{log}`, as an "
+            "audit sorts it",
+            severity=Severity.WARNING,
+        )
+    return Diagnostic(
+        Code.DISORDERED,
+        f"{messages}, when their ticks were judged: these are unknown, and an audit, which sorts "
+        f"messages, may know more ({judged.message})",
+        help="audit the log with `fretc audit`",
+        severity=Severity.WARNING,
+    )
+
+
+def _no_log() -> Diagnostic:
+    return Diagnostic(Code.DISORDERED, "nothing but this run is recorded; add `--record FILE`")
 
 
 def _not_recorded(path: str, why: str) -> Diagnostic:

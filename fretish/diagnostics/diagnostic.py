@@ -247,6 +247,7 @@ class Code(Enum):
     CHANNEL_REFUSED = ("F961", "a channel of a server is not watched")
     PUBLISHER_GONE = ("F962", "nobody publishes a topic any more that is watched")
     NOT_PUBLISHED = ("F963", "the verdicts of a watch cannot be published")
+    DISORDERED = ("F964", "a log that is watched has messages behind later ones")
     INTERNAL = ("F999", "fretc itself is at fault")
 
     @property
