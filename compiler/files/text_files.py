@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Literal
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from fretish.diagnostics.source import Source
@@ -21,15 +21,20 @@ MOST = 2**30
 """Bytes of a text, or of any other file that is read at once."""
 
 
-def read(path: str) -> Source | Diagnostic:
-    """The text of a file (`-`: standard input), or what keeps it from being read."""
+def read(path: str, errors: Literal["strict", "surrogateescape"] = "strict") -> Source | Diagnostic:
+    """The text of a file (`-`: standard input), or what keeps it from being read.
+
+    Args:
+        path: of the file.
+        errors: as of `bytes.decode`: a text that names files may have names that are no text.
+    """
     try:
         if not path:
             raise FileNotFoundError
         if path == "-":
             with open(0, "rb", closefd=False) as stdin:
-                return Source("<stdin>", stdin.read().decode("utf-8-sig"))
-        return Source(path, content(path).decode("utf-8-sig"))
+                return Source("<stdin>", stdin.read().decode("utf-8-sig", errors))
+        return Source(path, content(path).decode("utf-8-sig", errors))
     except UnicodeDecodeError as error:
         return not_text(path, error.start)
     except OSError as error:

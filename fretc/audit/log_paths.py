@@ -9,8 +9,8 @@ from pathlib import Path
 
 from compiler.files.text_files import unreadable
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
-from fretc.logs.storage.inputs import STDIN, is_url, shown
 from fretc.logs.storage.listings import below, is_store
+from fretc.logs.storage.log_names import STDIN, is_url, name_of
 from fretc.logs.storage.splits import ACTIVE, is_backup, run_name, split
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
@@ -92,7 +92,7 @@ def _stored(path: str) -> Iterator[str | Diagnostic]:
     if found is None or isinstance(found, Diagnostic):
         yield path if found is None else found
     elif not found:
-        yield _empty(shown(path)) if path.endswith("/") else _no_match(shown(path))
+        yield _empty(path) if path.endswith("/") else _no_match(path)
     else:
         yield from found
 
@@ -172,8 +172,8 @@ def _joined(by_real_path: dict[str, str]) -> Iterator[str]:
 def _empty(path: str) -> Diagnostic:
     return Diagnostic(
         Code.NO_SUCH_FILE,
-        f"no log (`*.mcap`, `*.bag`, `*.db3`) is in `{path}`",
-        Source(path, "").span(),
+        f"no log (`*.mcap`, `*.bag`, `*.db3`) is in `{name_of(path)}`",
+        Source(name_of(path), "").span(),
         help="name the folder that your logs are in",
     )
 
@@ -181,7 +181,7 @@ def _empty(path: str) -> Diagnostic:
 def _no_match(path: str) -> Diagnostic:
     return Diagnostic(
         Code.NO_SUCH_FILE,
-        f"no file matches `{path}`",
-        Source(path, "").span(),
+        f"no file matches `{name_of(path)}`",
+        Source(name_of(path), "").span(),
         help="`*` stands for any part of one name, `**` for folders below each other",
     )

@@ -48,8 +48,7 @@ from fretc.audit.store.recordings import Kept, KnownBy
 from fretc.logs.labels import NO_METADATA, labels, over
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
-from fretc.logs.storage.inputs import STDIN
-from fretc.logs.storage.inputs import shown as called
+from fretc.logs.storage.log_names import STDIN, name_of
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.memory import remembered
 from monitors import kernel
@@ -393,13 +392,13 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogA
         before: its stamp before that was tried; None: it is not known.
     """
     hashes = _hash_of(log, before)
-    records = [unread(called(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
+    records = [unread(name_of(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
     return _with_own_labels(plan, LogAudit(tuple(records), (why,), read=False))
 
 
 def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogAudit:
     """The results of a log for which there was no time: no data. It is not even hashed."""
-    records = [unread(called(log), each.id, why, each.basis) for each in plan.named]
+    records = [unread(name_of(log), each.id, why, each.basis) for each in plan.named]
     return _with_own_labels(plan, LogAudit(tuple(records), (why,), read=False))
 
 

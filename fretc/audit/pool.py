@@ -18,7 +18,7 @@ from multiprocessing.context import ForkProcess
 from typing import Any, TypeVar, overload
 
 from compiler.files.processes import reply
-from fretc.logs.storage.inputs import shown
+from fretc.logs.storage.log_names import name_of
 from fretish.bindings.amounts import exact_duration
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
@@ -74,8 +74,8 @@ def was_late(log: str, how: Late, limits: Limits) -> Diagnostic:
     if how is Late.OWN and limits.each is not None:
         return Diagnostic(
             Code.LOG_OUT_OF_TIME,
-            f"the audit of `{shown(log)}` was ended after {exact_duration(limits.each)}",
-            Source(shown(log), "").span(),
+            f"the audit of `{name_of(log)}` was ended after {exact_duration(limits.each)}",
+            Source(name_of(log), "").span(),
             help="give it more time by `--log-time`, or audit it alone",
             severity=Severity.WARNING,
         )
@@ -97,8 +97,8 @@ def was_killed(log: str, how: str) -> Diagnostic:
     """
     return Diagnostic(
         Code.PROCESS_KILLED,
-        f"the process that audited `{log}` was killed, and again when it ran alone: {how}",
-        Source(log, "").span(),
+        f"the process that audited `{name_of(log)}` was killed, and again when it ran alone: {how}",
+        Source(name_of(log), "").span(),
         help="was there memory enough? audit this log on a machine that has more",
     )
 

@@ -54,7 +54,7 @@ def time_limits(log: str | None, whole: str | None, logs: Sequence[str], engine:
         engine: where.
     """
     from fretc.audit.pool import ENDLESS, Limits
-    from fretc.logs.storage.inputs import STDIN
+    from fretc.logs.storage.log_names import STDIN
 
     limits = Limits(_seconds("--log-time", log), _seconds("--time", whole))
     if limits != ENDLESS and (STDIN in logs or engine != "local"):

@@ -43,8 +43,10 @@ def init(folder: str, log: str | None) -> None:
 
 def _say_next_commands(folder: str, requirements: Path, log: str | None) -> None:
     """Print the commands to run next, so that they can be copied to the present shell."""
+    from fretc.logs.storage.log_names import shell_word
+
     option = "" if folder == "." else f" --requirements {quote(str(requirements))}"
-    log_argument = "LOG" if log is None else quote(log)
+    log_argument = "LOG" if log is None else shell_word(log)
     say_line(visible(f"next: `fretc check{option}` says what is wrong or missing"))
     say_line(visible(f"next: `fretc audit {log_argument}{option}` judges a log"))
 

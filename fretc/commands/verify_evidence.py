@@ -193,7 +193,7 @@ def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tup
 
 def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict[str, str]:
     """Run → where its log is, of those that may be opened; of the others it is said."""
-    from fretc.logs.storage.inputs import is_url, shown
+    from fretc.logs.storage.log_names import is_url, name_of
     from fretc.logs.storage.places import Places
     from fretc.reproduction.results import located
 
@@ -214,7 +214,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
         [
             Diagnostic(
                 Code.FOREIGN_PLACE,
-                f"`{shown(places[run])}` is not opened: {why}",
+                f"`{name_of(places[run])}` is not opened: {why}",
                 help=mend,
                 severity=Severity.WARNING,
             )

@@ -23,7 +23,7 @@ from fretc.audit.pool import Killed, each, was_killed
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.traces import Trace, trace
-from fretc.logs.storage.inputs import STDIN, shown
+from fretc.logs.storage.log_names import STDIN, name_of
 from fretc.testing.suite import Fate, Suite
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -275,7 +275,7 @@ def survey(asked: Inquiry, logs: Sequence[str], jobs: int, tell: Callable[[str],
     runs = [place for place in range(len(logs)) if place not in unread]
     number = {place: run for run, place in enumerate(runs)}
     return Survey(
-        tuple(shown(logs[place]) for place in runs),
+        tuple(name_of(logs[place]) for place in runs),
         asked.suspects,
         frozenset(known),
         {key: (number[place], apart) for key, (place, apart) in first.items()},
@@ -293,5 +293,5 @@ def _each_run(
     with closing(each(partial(of_run, asked), [logs[place] for place in files], jobs)) as done:
         for number, one in done:
             place = files[number]
-            log = shown(logs[place])
+            log = name_of(logs[place])
             yield place, was_killed(log, str(one)) if isinstance(one, Killed) else one

@@ -27,7 +27,8 @@ from fretc.logs.signals.samples import Gap, Recording, Samples
 from fretc.logs.storage import storage_diagnostics
 from fretc.logs.storage.bags import NOWHERE
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder, of_all
-from fretc.logs.storage.inputs import Input, opened, shown
+from fretc.logs.storage.inputs import Input, opened
+from fretc.logs.storage.log_names import name_of
 from fretc.logs.storage.parts import Numbered, Part, around, widened
 from fretc.logs.storage.splits import ACTIVE, run_name, split
 from fretc.logs.topic_columns import Columns
@@ -93,7 +94,7 @@ def read(
     """
     signals = [declarations.signals[name] for name in dict.fromkeys(wanted)]
     reading = partial(_read_log, path, declarations, signals, integrity, beside)
-    return within(0, Source(shown(path), "").span(), reading)
+    return within(0, Source(name_of(path), "").span(), reading)
 
 
 def _read_log(
@@ -124,7 +125,7 @@ def look(path: str, *, words: bool = False) -> Overview | Diagnostic:
     Returns:
         The overview, by log times; or what keeps the whole file from being read.
     """
-    return within(0, Source(shown(path), "").span(), partial(_look, path, words))
+    return within(0, Source(name_of(path), "").span(), partial(_look, path, words))
 
 
 def _look(path: str, words: bool) -> Overview | Diagnostic:
@@ -175,7 +176,7 @@ def _opened(
     vocabulary: Vocabulary | None = None,
 ) -> _Read | Diagnostic:
     """The log at a path: a file, standard input, what is at a URL, or a folder of rosbag2."""
-    place = Source(shown(path), "").span()
+    place = Source(name_of(path), "").span()
     try:
         if is_folder(path):
             run = partial(_folder, folder(path), asked)
@@ -284,11 +285,12 @@ def _folder(
         return about
     if about.compressed:
         return storage_diagnostics.compressed_folder(about.compressed, place)
-    places = [Source(os.path.join(about.path, name), "").span() for name in about.files]
+    paths = [os.path.join(about.path, name) for name in about.files]
+    places = [Source(name_of(path), "").span() for path in paths]
     found: list[Part | Diagnostic] = []
-    for file in places:
+    for path, file in zip(paths, places, strict=True):
         sink.next_file()
-        with opened(file.source.name) as log:
+        with opened(path) as log:
             found.append(
                 log
                 if isinstance(log, Diagnostic)

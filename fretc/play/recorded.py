@@ -18,6 +18,7 @@ from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.plan import Plan
 from fretc.logs.reader import read
 from fretc.logs.signals.traces import Timeline, trace
+from fretc.logs.storage.log_names import path_of
 from fretc.play.starts import MOST, Start, Ticks
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel import Column, Monitor, evaluate
@@ -98,7 +99,7 @@ def of_evidence(rules: Sequence[Formalized], plan: Plan, evidence: EvidenceSourc
     starts: list[Start] = []
     notes: list[str] = []
     for name, sha256 in [*violated][:RUNS]:
-        found = of_log(rules, plan, name)
+        found = of_log(rules, plan, path_of(name))
         if isinstance(found, Diagnostic):
             notes.append(f"violations of {name} are not here: {found.message}")
         elif found.sha256 != sha256:

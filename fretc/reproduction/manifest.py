@@ -14,7 +14,7 @@ from compiler.files.text_files import file_sha256
 from compiler.files.text_files import read as read_text
 from fretc.audit.evidence.schema import Document
 from fretc.logs.storage.folders import METADATA, Folder, folder, is_folder
-from fretc.logs.storage.inputs import is_url
+from fretc.logs.storage.log_names import is_url, name_of
 from fretc.logs.storage.splits import split
 from fretc.reproduction.outcome import Recheck, differs, unknown
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
@@ -31,7 +31,7 @@ class Manifest:
 
     file: str
     logs: Mapping[str, str]
-    """Path, as `_normal` gives it, → SHA-256."""
+    """Name, as `_normal` gives it, → SHA-256."""
 
 
 def _normal(path: str) -> str:
@@ -41,7 +41,7 @@ def _normal(path: str) -> str:
 
 def read(path: str) -> Manifest | tuple[Diagnostic, ...]:
     """Read a manifest; F545 for each line that is none."""
-    source = read_text(path)
+    source = read_text(path, errors="surrogateescape")
     if isinstance(source, Diagnostic):
         return (source,)
     entries = list(_lines(source))
@@ -63,7 +63,8 @@ def _lines(source: Source) -> Iterator[tuple[str, str] | Diagnostic]:
             if text.strip() and not text.startswith("#"):
                 yield _wrong(source, start, end, "this is no line of `sha256sum`")
         else:
-            name = _normal(_unescaped(match["path"]) if match["escape"] else match["path"])
+            log = _unescaped(match["path"]) if match["escape"] else match["path"]
+            name = _normal(name_of(log))
             if name in names:
                 yield _wrong(source, start, end, "the manifest names this log twice")
             names.add(name)
@@ -135,7 +136,9 @@ def _parts(run: str, place: str | None) -> Mapping[str, str | None]:
         described = is_folder(place)
         names = _normal(run) if described else os.path.dirname(_normal(run))
         files = (*about.files, *([METADATA] if described else []))
-        return {_normal(os.path.join(names, n)): os.path.join(about.path, n) for n in files}
+        return {
+            _normal(os.path.join(names, name_of(n))): os.path.join(about.path, n) for n in files
+        }
     return {_normal(run): place}
 
 

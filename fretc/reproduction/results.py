@@ -30,7 +30,7 @@ from fretc.audit.plan import Plan, monitored_requirements
 from fretc.logs.labels import of_path
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
-from fretc.logs.storage.inputs import shown as called
+from fretc.logs.storage.log_names import name_of, path_of
 from fretc.reproduction.completeness import Scope, incomplete
 from fretc.reproduction.manifest import Manifest, matches
 from fretc.reproduction.outcome import ALL_RUNS, FILE, Finding, Recheck, differs, unknown
@@ -51,22 +51,23 @@ def located(runs: Sequence[str], folder: str | None) -> dict[str, str]:
     """
     places: dict[str, str] = {}
     for run in runs:
-        place = run if folder is None else _below(Path(folder), run)
+        log = path_of(run)
+        place = log if folder is None else _below(Path(folder), log)
         if place is not None and ("://" in place or Path(place).exists()):
             places[run] = place
     return places
 
 
-def _below(folder: Path, run: str) -> str | None:
-    name = Path(run).name
+def _below(folder: Path, log: str) -> str | None:
+    name = Path(log).name
     here = [path for path in sorted(folder.rglob("*")) if path.name == name]
-    return str(max(here, key=lambda path: _common_parts(path, Path(run)))) if here else None
+    return str(max(here, key=lambda path: _common_parts(path, Path(log)))) if here else None
 
 
-def _common_parts(path: Path, run: Path) -> int:
+def _common_parts(path: Path, log: Path) -> int:
     """How many parts are the same, from the end."""
-    pairs = zip(reversed(path.parts), reversed(run.parts), strict=False)
-    return next((i for i, (a, b) in enumerate(pairs) if a != b), len(run.parts))
+    pairs = zip(reversed(path.parts), reversed(log.parts), strict=False)
+    return next((i for i, (a, b) in enumerate(pairs) if a != b), len(log.parts))
 
 
 def recheck(
@@ -139,7 +140,7 @@ def _results_now(
             return audit
         results_of_audit = {(one.run, one.requirement): one for one in audit.results}
         results |= {
-            (run, claim.id): results_of_audit[called(places[run]), claim.id]
+            (run, claim.id): results_of_audit[name_of(places[run]), claim.id]
             for run in runs
             for claim in plan.claims
         }

@@ -17,6 +17,7 @@ from compiler.files.templating import render
 from fretc.audit.bindings.draft import draft, drafted_signals, plain_signals
 from fretc.logs.reader import Overview, look, read
 from fretc.logs.signals.samples import Recording
+from fretc.logs.storage.log_names import name_of
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -159,7 +160,7 @@ def _limit(largest: float) -> str:
 def _no_signal(log: str) -> Diagnostic:
     return Diagnostic(
         Code.NOTHING_TO_DO,
-        f"no number of `{log}` can be read throughout: there is nothing to require of it",
-        Source(log, "").span(),
+        f"no number of `{name_of(log)}` can be read throughout: there is nothing to require of it",
+        Source(name_of(log), "").span(),
         help="look at it with `fretc info`, or leave `--from` out",
     )

@@ -27,6 +27,7 @@ from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import CURRENT, SUSPECT, Level
 from fretc.audit.outputs.violated_values import reason
+from fretc.logs.storage.log_names import path_of
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span
 from fretish.documents import Requirement
@@ -174,7 +175,9 @@ def _files(results: Sequence[OneRun], used: Sequence[Requirement]) -> dict[str, 
     files: dict[str, dict[str, Any]] = {}
     for one in results:
         run = one.result.run
-        artifact = files.setdefault(run, {"location": _place(run), "roles": ["analysisTarget"]})
+        artifact = files.setdefault(
+            run, {"location": _place(path_of(run)), "roles": ["analysisTarget"]}
+        )
         size, sha256 = one.result.health.size, one.result.hashes.get("log")
         artifact |= {"length": size} if size is not None else {}
         artifact |= {"hashes": {"sha-256": sha256}} if sha256 else {}
@@ -191,7 +194,7 @@ def _result(one: OneRun, places: _Places) -> dict[str, Any]:
         "kind": "fail",
         "level": one.level.value,
         "message": {"text": message},
-        "analysisTarget": _place(result.run) | {"index": places.files[result.run]},
+        "analysisTarget": _place(path_of(result.run)) | {"index": places.files[result.run]},
         "properties": {
             "verdict": one.verdict,
             "currency": _currency(suspicions),
@@ -256,7 +259,7 @@ def _invocation(diagnostics: Sequence[Diagnostic]) -> dict[str, Any]:
 def _locations(span: Span | None) -> dict[str, Any]:
     if span is None:
         return {}
-    where: dict[str, Any] = {"artifactLocation": _place(span.source.name)}
+    where: dict[str, Any] = {"artifactLocation": _place(path_of(span.source.name))}
     if span.source.text:
         where["region"] = _region(span)
     return {"locations": [{"physicalLocation": where}]}

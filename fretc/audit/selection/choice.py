@@ -8,7 +8,7 @@ from datetime import datetime
 
 from fretc.audit.evidence.schema import Selection
 from fretc.audit.selection.dates import is_older
-from fretc.logs.storage.inputs import shown
+from fretc.logs.storage.log_names import name_of
 
 
 def chosen(
@@ -38,7 +38,7 @@ def chosen(
 
 def _sample(logs: Sequence[str], count: int, seed: int) -> list[str]:
     """Those with the least hashes: one more log displaces at most one of them."""
-    keys = {log: hashlib.sha256(f"{seed}\n{shown(log)}".encode()).digest() for log in logs}
+    keys = {log: hashlib.sha256(f"{seed}\n{name_of(log)}".encode()).digest() for log in logs}
     taken = set(sorted(logs, key=lambda log: (keys[log], log))[:count])
     return [log for log in logs if log in taken]
 

@@ -14,8 +14,9 @@ from compiler.files.dates import now
 from fretc.audit.log_paths import files_of
 from fretc.logs.mcap.container import MAGIC, summary
 from fretc.logs.storage.folders import Folder, folder, is_folder
-from fretc.logs.storage.inputs import STDIN, is_url, opened
+from fretc.logs.storage.inputs import opened
 from fretc.logs.storage.listings import changed, is_store
+from fretc.logs.storage.log_names import STDIN, is_url, name_of
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import within
@@ -79,7 +80,7 @@ def _start_of_file(log: str) -> int | None:
     with opened(log, whole=False) as source:
         if isinstance(source, Diagnostic) or source.stream.read(len(MAGIC)) != MAGIC:
             return None
-        place = Source(log, "").span()
+        place = Source(name_of(log), "").span()
         found = within(source.size, place, lambda: summary(source.stream, source.size))
         if found is None or isinstance(found, Diagnostic) or found.statistics is None:
             return None

@@ -26,6 +26,7 @@ from compiler.files.text_files import Stamp, file_sha256, sha256, stamp, write
 from fretc.logs.signals.integrity import Checked, Integrity
 from fretc.logs.signals.samples import Late, Recording, Samples, Topic
 from fretc.logs.storage.folders import is_folder
+from fretc.logs.storage.log_names import name_of
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
@@ -112,7 +113,7 @@ class Kept:
             write({path: _checked(path, data, self.key) + data})
 
     def _path(self, log: str) -> Path:
-        return self.folder / sha256(f"{log}\0{os.path.realpath(log)}")[:32]
+        return self.folder / sha256(f"{name_of(log)}\0{name_of(os.path.realpath(log))}")[:32]
 
     def _content(self, path: Path) -> tuple[dict[str, Any], list[Array]] | None:
         """What a file holds; None where it is not what this user's fretc wrote there."""

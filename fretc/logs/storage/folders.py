@@ -16,6 +16,7 @@ from typing import Any
 
 from fretc.logs.signals.samples import Gap
 from fretc.logs.storage import storage_diagnostics
+from fretc.logs.storage.log_names import name_of
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import within
@@ -68,7 +69,7 @@ def is_folder(path: str) -> bool:
 def of_all(hashes: Mapping[str, str]) -> str:
     """One SHA-256 of several files: that of the lines that `sha256sum` prints for them."""
     lines = "".join(f"{sha256}  {name}\n" for name, sha256 in hashes.items())
-    return hashlib.sha256(lines.encode()).hexdigest()
+    return hashlib.sha256(lines.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def folder(path: str) -> Folder | Diagnostic:
@@ -78,7 +79,7 @@ def folder(path: str) -> Folder | Diagnostic:
         OSError: it cannot be read.
     """
     file = Path(path) / METADATA
-    place = Source(str(file), "").span()
+    place = Source(name_of(str(file)), "").span()
     with file.open("rb") as stream:
         data = stream.read(_LARGEST)
     return within(

@@ -12,7 +12,6 @@ import errno
 import hashlib
 import io
 import os
-import re
 import shutil
 import stat
 import sys
@@ -25,14 +24,13 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, cast
-from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
 
 from fretc.logs.storage import storage_diagnostics, web
+from fretc.logs.storage.log_names import STDIN, is_url, name_of
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import grant
 
-STDIN = "-"
 _MOST = 2**36
 """The most bytes of a log whose length the server does not state."""
 _SMALL_BLOCK = 2**14
@@ -42,8 +40,6 @@ _HASHED = 2**18
 """Bytes of one step of hashing."""
 _SMALL = 2**20
 """Bytes of a file that is read at once, and hashed by no thread of its own."""
-_URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
-_SECRET = re.compile(r"sig|token|key|cred|secret|passw|auth", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,29 +62,6 @@ class Input:
     """A copy of the bytes that were there when it was opened; None where it has not just grown."""
 
 
-def is_url(path: str) -> bool:
-    """Whether the path is a URL: it names a protocol."""
-    return _URL.fullmatch(path) is not None
-
-
-def shown(path: str) -> str:
-    """The name of a log for output: without the secrets of a URL."""
-    if path == STDIN:
-        return "<stdin>"
-    if not is_url(path):
-        return path
-    try:
-        parts = urlsplit(path)
-        pairs = parse_qsl(parts.query, keep_blank_values=True)
-    except ValueError:
-        return path.partition("://")[0] + "://?"
-    query = parts.query
-    if any(_SECRET.search(name) for name, _ in pairs):
-        hidden = [(name, "..." if _SECRET.search(name) else value) for name, value in pairs]
-        query = urlencode(hidden, safe="./")
-    return urlunsplit((parts.scheme, parts.netloc.rpartition("@")[2], parts.path, query, ""))
-
-
 @contextmanager
 def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
     """The log at a path, open within the context; or why there is none.
@@ -103,9 +76,9 @@ def opened(path: str, *, whole: bool = True) -> Iterator[Input | Diagnostic]:
         try:
             log = _opened(path, stack, whole=whole)
         except FileNotFoundError:
-            log = storage_diagnostics.no_such_file(Source(shown(path), "").span())
+            log = storage_diagnostics.no_such_file(Source(name_of(path), "").span())
         except OSError as error:
-            log = storage_diagnostics.unreadable(error, Source(shown(path), "").span())
+            log = storage_diagnostics.unreadable(error, Source(name_of(path), "").span())
         yield log
 
 
@@ -116,9 +89,9 @@ def _opened(path: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
         return _remote(path, stack, whole=whole)
     mode = os.stat(path).st_mode
     if stat.S_ISDIR(mode):
-        return storage_diagnostics.is_a_directory(Source(path, "").span())
+        return storage_diagnostics.is_a_directory(Source(name_of(path), "").span())
     if not stat.S_ISREG(mode):
-        return storage_diagnostics.not_a_file(Source(path, "").span())
+        return storage_diagnostics.not_a_file(Source(name_of(path), "").span())
     stream = stack.enter_context(Path(path).open("rb"))  # noqa: SIM115
     before = os.fstat(stream.fileno())
     content = stream.read(before.st_size) if before.st_size <= _SMALL else None
@@ -296,7 +269,7 @@ class _Hashed(io.RawIOBase):
 
 
 def _remote(url: str, stack: ExitStack, *, whole: bool) -> Input | Diagnostic:
-    place = Source(shown(url), "").span()
+    place = Source(name_of(url), "").span()
     try:
         import fsspec
 

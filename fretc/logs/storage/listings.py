@@ -13,7 +13,8 @@ from datetime import UTC, datetime
 from typing import Any
 
 from fretc.logs.storage import storage_diagnostics, web
-from fretc.logs.storage.inputs import as_os_error, is_url, shown
+from fretc.logs.storage.inputs import as_os_error
+from fretc.logs.storage.log_names import is_url, name_of
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading.limits import within
@@ -41,7 +42,7 @@ def below(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | Diagnostic
     """
     if not url.endswith("/") and not _PATTERN.search(url):
         return None
-    place = Source(shown(url), "").span()
+    place = Source(name_of(url), "").span()
     try:
         return within(_BYTES, place, lambda: _listed(url, is_log))
     except ImportError as error:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from urllib.parse import unquote, urlsplit
 
-from fretc.logs.storage.inputs import is_url
+from fretc.logs.storage.log_names import is_url
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import PurePosixPath, PureWindowsPath
 
+from fretc.logs.storage.log_names import path_of
 from fretc.report.traceability.chain import Node
 from fretish.bindings import amounts
 from fretish.bindings.amounts import duration as duration
@@ -62,7 +63,7 @@ def place(path: str) -> str:
     """A path without places of one machine: of an absolute path only the last part."""
     if PurePosixPath(path).is_absolute():
         return PurePosixPath(path).name or path
-    if PureWindowsPath(path).drive or path.startswith("\\"):
+    if path_of(path) == path and (PureWindowsPath(path).drive or path.startswith("\\")):
         return PureWindowsPath(path).name or path
     return path
 

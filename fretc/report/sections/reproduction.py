@@ -21,6 +21,7 @@ from fretc.analysis.evidence import AnalyzedSet
 from fretc.audit.evidence.basis import of_all, of_bindings
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.measurements.confidence_intervals import CONFIDENCE
+from fretc.logs.storage.log_names import STDIN, name_of, path_of, shell_word
 from fretc.report.model import phrases
 from fretc.report.model.views import Command, Hash, RequirementView
 from fretc.report.sections.runs import Run
@@ -74,7 +75,8 @@ def _command(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
 
 
 def _log(run: str) -> str:
-    return "-" if run == "<stdin>" else _quoted(run)
+    """Its path, of an absolute one the last part."""
+    return STDIN if run == name_of(STDIN) else shell_word(path_of(phrases.place(run)))
 
 
 def _quoted(path: str) -> str:
@@ -109,7 +111,7 @@ def _files(project: Project) -> list[Source]:
 
 def _check(runs: Sequence[Run]) -> str:
     facts = [run.facts for run in runs if run.facts.log and _is_file(run.facts.run)]
-    return check_of((each.log, phrases.place(each.run)) for each in facts)
+    return check_of((each.log, phrases.place(path_of(each.run))) for each in facts)
 
 
 def _is_file(run: str) -> bool:

@@ -19,6 +19,7 @@ from compiler.files.text_files import regular
 from fretc.logs import log_diagnostics
 from fretc.logs.mcap.container import HEAD, LARGEST, MAGIC, BrokenError, frames, parse, unpacked
 from fretc.logs.storage import storage_diagnostics
+from fretc.logs.storage.log_names import name_of
 from fretc.watch.sources.source import Arrival, Channel, Event, Idle, Missed, Opened, Problem
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source as Text
@@ -37,7 +38,8 @@ class Log:
 
     def __init__(self, path: str, *, follow: bool) -> None:
         """Nothing is opened yet; `follow` waits for what is still to be written."""
-        self.name = path
+        self.name = name_of(path)
+        self._path = path
         self._follow = follow
         self._closed = Flag()
         self._schemas: dict[int, Schema] = {}
@@ -56,7 +58,7 @@ class Log:
         self._wanted = frozenset(topics)
         place = Text(self.name, "").span()
         try:
-            with regular(self.name) as stream:
+            with regular(self._path) as stream:
                 yield Opened(self.name)
                 yield from self._read(stream, place)
         except FileNotFoundError:
@@ -122,7 +124,7 @@ class Log:
         if own.st_size < at:
             return "it has become shorter than what was read of it"
         try:
-            now = os.stat(self.name)
+            now = os.stat(self._path)
         except OSError:
             return "it is gone"
         if (now.st_dev, now.st_ino) != (own.st_dev, own.st_ino):

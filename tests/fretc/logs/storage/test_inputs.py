@@ -25,7 +25,8 @@ from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import Recording
 from fretc.logs.storage import inputs
-from fretc.logs.storage.inputs import is_url, opened, shown
+from fretc.logs.storage.inputs import opened
+from fretc.logs.storage.log_names import is_url, name_of
 from fretc.logs.storage.storage_diagnostics import install
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
@@ -314,12 +315,12 @@ def test_a_url_names_a_protocol() -> None:
 
 
 def test_what_is_secret_in_a_url_is_never_shown() -> None:
-    assert shown("https://me:word@host:8080/a.mcap?X-Amz-Signature=abc&part=1#x") == (
+    assert name_of("https://me:word@host:8080/a.mcap?X-Amz-Signature=abc&part=1#x") == (
         "https://host:8080/a.mcap?X-Amz-Signature=...&part=1"
     )
-    assert shown("https://host/a.mcap?part=1&name=%20") == "https://host/a.mcap?part=1&name=%20"
-    assert shown("-") == "<stdin>"
-    assert shown("runs/a.mcap") == "runs/a.mcap"
+    assert name_of("https://host/a.mcap?part=1&name=%20") == "https://host/a.mcap?part=1&name=%20"
+    assert name_of("-") == "<stdin>"
+    assert name_of("runs/a.mcap") == "runs/a.mcap"
 
 
 def test_a_full_disk_has_its_code(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,90 @@
+"""The name of a log, for every output, and the log of a name: one form, and back.
+
+A file may be called anything but `/` and NUL: no text at all, or one that moves the cursor. Its
+name has an escape for each such byte, so that it is one line of printable text, no two paths have
+the same, and the path can be had again.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+from urllib.parse import parse_qsl, urlencode, urlsplit, urlunsplit
+
+STDIN = "-"
+_STDIN_NAME = "<stdin>"
+_URL = re.compile(r"[A-Za-z][A-Za-z0-9+.:-]*://.*", re.DOTALL)
+_SECRET = re.compile(r"sig|token|key|cred|secret|passw|auth", re.IGNORECASE)
+_ESCAPES = {"\\": r"\\", "\n": r"\n", "\r": r"\r"}
+"""As `sha256sum` writes them; each byte of another character is `\\xff`."""
+_ESCAPED = re.compile(r"(\\(?:\\|n|r|x[0-9a-f]{2}))")
+
+
+def is_url(path: str) -> bool:
+    """Whether the path is a URL: it names a protocol."""
+    return _URL.fullmatch(path) is not None
+
+
+def name_of(path: str) -> str:
+    """The name of a log: printable, of this path alone, and without the secrets of a URL."""
+    if path == STDIN:
+        return _STDIN_NAME
+    if path == _STDIN_NAME:
+        return f"./{path}"
+    public = _without_secrets(path) if is_url(path) else path
+    if public.isprintable() and "\\" not in public:
+        return public
+    return "".join(
+        character if character.isprintable() and character != "\\" else _escape(character)
+        for character in public
+    )
+
+
+def path_of(name: str) -> str:
+    """The path or URL of a log that is called so.
+
+    A name that `name_of` does not give, as of evidence from elsewhere, is taken for a path.
+    """
+    if "\\" not in name:
+        return name
+    back = {escape: character.encode() for character, escape in _ESCAPES.items()}
+    data = b"".join(
+        back.get(part) or bytes.fromhex(part[2:]) if i % 2 else part.encode()
+        for i, part in enumerate(_ESCAPED.split(name))
+    )
+    path = os.fsdecode(data)
+    return path if name_of(path) == name and "\0" not in path else name
+
+
+def shell_word(path: str) -> str:
+    """A path for a command to paste: quoted, and printable whatever its name is; never an option.
+
+    Between `$'` and `'` shells read the escapes of a name as they are read here.
+    """
+    name = f"./{path}" if path.startswith("-") and path != STDIN else path
+    if name.isprintable():
+        return shlex.quote(name)
+    escaped = name_of(name).replace("'", r"\'")
+    return f"$'{escaped}'"
+
+
+def _escape(character: str) -> str:
+    if character in _ESCAPES:
+        return _ESCAPES[character]
+    if "\udc80" <= character <= "\udcff":
+        return f"\\x{ord(character) - 0xDC00:02x}"
+    return "".join(f"\\x{byte:02x}" for byte in character.encode("utf-8", "surrogatepass"))
+
+
+def _without_secrets(url: str) -> str:
+    try:
+        parts = urlsplit(url)
+        pairs = parse_qsl(parts.query, keep_blank_values=True)
+    except ValueError:
+        return url.partition("://")[0] + "://?"
+    query = parts.query
+    if any(_SECRET.search(name) for name, _ in pairs):
+        hidden = [(name, "..." if _SECRET.search(name) else value) for name, value in pairs]
+        query = urlencode(hidden, safe="./", errors="surrogateescape")
+    return urlunsplit((parts.scheme, parts.netloc.rpartition("@")[2], parts.path, query, ""))
