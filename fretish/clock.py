@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
@@ -19,6 +20,7 @@ from fretish.syntax import (
     duration,
     timing_key,
 )
+from fretish.units import nanoseconds
 
 NANOSECONDS: dict[TimeUnit, int] = {
     "microsecond": 10**3,
@@ -83,6 +85,15 @@ class Clock:
             return f"each message of {self.topic}"
         shifted = f" at phase {in_words(self.phase)}" if self.phase else ""
         return f"{in_words(self.period)}{shifted}"
+
+
+_PERIOD = re.compile(r"[0-9.]+ (?:s|ms|us|ns)")
+
+
+def period_of(text: str) -> int | None:
+    """Nanoseconds of a tick, of a text that begins as that of a clock; None: one a message."""
+    match = _PERIOD.match(text)
+    return nanoseconds(match[0]) if match else None
 
 
 def in_words(period: int) -> str:

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fretish import syntax as s
-from fretish.clock import Clock, Rounding, assumed_ticks, in_ticks, in_words
+from fretish.clock import Clock, Rounding, assumed_ticks, in_ticks, in_words, period_of
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
@@ -262,3 +262,14 @@ def test_whatever_satisfies_the_rounded_sentence_satisfies_the_exact_one(
 
     if holds(replace(exact, n=rounded), 1):
         assert holds(exact, parts)
+
+
+@given(st.integers(1, 10**12), st.integers(0, 10**9))
+def test_the_period_of_a_clock_is_read_back_from_its_text(period: int, phase: int) -> None:
+    assert period_of(str(Clock(period, phase=phase % period))) == period
+    assert period_of(f"{Clock(period)}, by log_time") == period
+
+
+def test_a_clock_that_ticks_by_message_has_no_period() -> None:
+    for text in ("each message of /5 s", "each message of /scan, by header.stamp", "", "... s"):
+        assert period_of(text) is None

@@ -28,6 +28,7 @@ from fretc.audit.evidence.schema import (
 )
 from fretc.audit.measurements.trials import Trials
 from fretish.bindings.canonical import digest
+from fretish.clock import period_of
 
 Recorded = tuple[str | UnsetType, ...]
 """SHA-256 of each of `fretc.audit.evidence.basis.KINDS`; unset where it was not known then."""
@@ -408,6 +409,17 @@ def _length(result: Result) -> float:
 
 def _mean_tick(result: Result) -> float:
     """Seconds of a tick of which only the run is known."""
-    if result.start_ns is None or result.end_ns is None or not result.ticks:
-        return 0.0
-    return max(0, result.end_ns - result.start_ns) / 1e9 / result.ticks
+    return (audited_s(result) or 0.0) / result.ticks if result.ticks else 0.0
+
+
+def audited_s(run: RunFacts | Result) -> float | None:
+    """How long a run was audited, in seconds: its ticks, each of one period of the clock.
+
+    By a clock that ticks by message, from the first to the last of the messages. None: the log
+    could not be read.
+    """
+    if run.start_ns is None or run.end_ns is None:
+        return None
+    period = period_of(run.clock)
+    span = max(0, run.end_ns - run.start_ns) if period is None else run.ticks * period
+    return span / 1e9

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from xml.etree import ElementTree
 
 from fretc.audit.evidence import verdicts
+from fretc.audit.evidence.briefs import audited_s
 from fretc.audit.evidence.probabilities import AVERAGE, Estimated
 from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import Level
@@ -80,13 +81,12 @@ def _suite_of_all(
 
 
 def _case(suite: ElementTree.Element, run: str, case: Result, titled: Mapping[str, str]) -> None:
-    length = (case.end_ns or 0) - (case.start_ns or 0)
     node = ElementTree.SubElement(
         suite,
         "testcase",
         name=valid(titled.get(case.requirement, case.requirement)),
         classname=valid(run),
-        time=f"{length / 1e9:.3f}",
+        time=f"{audited_s(case) or 0.0:.3f}",
     )
     kind = verdicts.junit(case.verdict)
     if kind:

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from datetime import date
+from math import fsum
 
 from compiler.files.dates import is_date
 from compiler.files.edition import __version__
 from compiler.logic.claims import Layer
+from fretc.audit.evidence.briefs import audited_s
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED
 from fretc.report.front import violations
 from fretc.report.front.causes import causes, line, link
@@ -97,11 +99,7 @@ def _runs(runs: Sequence[Run]) -> str:
     results = [run.facts for run in runs]
     dates = [each for result in results if (each := day(result.start_ns))]
     when = f" of {days(min(dates), max(dates))}" if dates else ""
-    seconds = sum(
-        (result.end_ns - result.start_ns) / 1e9
-        for result in results
-        if result.start_ns is not None and result.end_ns is not None
-    )
+    seconds = fsum(audited_s(result) or 0.0 for result in results)
     return f"{phrases.times(len(runs), 'run')}{when}, {duration(seconds)}"
 
 

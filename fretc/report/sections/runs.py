@@ -12,7 +12,7 @@ from itertools import takewhile
 
 from compiler.files.records import replace
 from compiler.project.folder import Project
-from fretc.audit.evidence.briefs import Brief, Briefs, RunFacts
+from fretc.audit.evidence.briefs import Brief, Briefs, RunFacts, audited_s
 from fretc.audit.evidence.schema import Checked, Finding, Topic
 from fretc.report.model import phrases
 from fretc.report.model.views import Remark, RunSummary, TopicView, sign_mark
@@ -161,9 +161,8 @@ def topic_views(facts: RunFacts, project: Project) -> tuple[TopicView, ...]:
 
 
 def _duration(facts: RunFacts) -> str:
-    if facts.start_ns is None or facts.end_ns is None:
-        return "not known"
-    return phrases.seconds((facts.end_ns - facts.start_ns) / 1e9)
+    length = audited_s(facts)
+    return "not known" if length is None else phrases.seconds(length)
 
 
 def _checked(checked: Checked | None, *, hashed: bool) -> str:

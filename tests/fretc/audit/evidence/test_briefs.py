@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.files.records import replace
-from fretc.audit.evidence.briefs import stretches
+from fretc.audit.evidence.briefs import audited_s, stretches
 from fretc.audit.evidence.schema import Result
+from fretish.clock import Clock
 from tests.fretc.audit.results import result
 
 TICK = 10**8
@@ -73,3 +74,13 @@ def test_between_messages_of_the_clock_a_tick_lasts_until_the_next() -> None:
         )
     )
     assert found.unknown == ((1.0, 5.0), (6.0, 8.0))
+
+
+@given(st.integers(0, 10**6), st.integers(1, 10**10), st.integers(0, 10**12))
+def test_a_run_is_as_long_as_its_ticks(ticks: int, period: int, span: int) -> None:
+    clock = f"{Clock(period)}, by log_time"
+    one = result(clock=clock, ticks=ticks, start_ns=5, end_ns=5 + span)
+    assert audited_s(one) == ticks * period / 1e9
+    by_message = result(clock="each message of /scan", ticks=ticks, start_ns=5, end_ns=5 + span)
+    assert audited_s(by_message) == span / 1e9
+    assert audited_s(result(clock=clock, ticks=ticks, start_ns=None, end_ns=None)) is None
