@@ -87,6 +87,8 @@ class Result(StrEnum):
     """The claim holds trivially: its condition cannot occur."""
     NOT_CHECKED = "not checked"
     """Nothing is known."""
+    NOT_APPLICABLE = "not applicable"
+    """The claim cannot be made about this requirement, and nobody has asked for it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +125,11 @@ def not_checked(reason: str) -> Outcome:
     return Outcome(Result.NOT_CHECKED, reason)
 
 
+def not_applicable(reason: str) -> Outcome:
+    """The claim cannot be made about this requirement, for this reason."""
+    return Outcome(Result.NOT_APPLICABLE, reason)
+
+
 class Proof(Record, frozen=True):
     """One claim and its outcome, with all that the outcome rests on."""
 
@@ -132,7 +139,7 @@ class Proof(Record, frozen=True):
     layer: Layer
     claim: Annotated[Name, about("one sentence without a full stop")]
     result: Result
-    detail: Annotated[str, about("how much was looked at, or why nothing is known")]
+    detail: Annotated[str, about("how much was examined, or why nothing is known")]
     assumptions: Annotated[
         tuple[str, ...], about("what the result holds under, with where it is declared")
     ]

@@ -21,7 +21,7 @@ Path = str | os.PathLike[str]
 def verify(
     project: Project,
     *,
-    layers: Iterable[str] = tuple(map(str, Layer)),
+    layers: Iterable[str] | None = None,
     provers: Iterable[str] = (),
     ajpf: Iterable[Path] = (),
     limit: int = 60,
@@ -30,20 +30,25 @@ def verify(
 
     Args:
         project: the requirements and their bindings.
-        layers: some of `monitor`, `interceptor`, `loop`, `bounds`, `agent`, `ajpf`.
+        layers: some of `monitor`, `interceptor`, `loop`, `bounds`, `agent`, `ajpf`, for every
+            requirement; None: each of them where it applies, and `agent` where a requirement plans
+            it or `ajpf`.
         provers: `frama-c`, `dafny` or `crosshair`, if they are installed.
         ajpf: results that AJPF has given.
-        limit: seconds of a processor for each claim.
+        limit: CPU seconds for each claim.
 
     Returns:
-        A proof for each claim: `proved`, `counterexample`, `vacuous` or `not checked`.
+        A proof for each claim: `proved`, `counterexample`, `vacuous`, `not checked`, or `not
+        applicable` where neither `layers` nor the requirement's `verify` names the layer.
 
     Raises:
         Refusal: a requirement has a mistake, or no monitor can express it.
     """
     if has_errors(project.diagnostics):
         raise Refusal(each for each in project.diagnostics if each.is_error)
-    chosen_layers = _named("layer", layers, tuple(map(str, Layer)))
+    every = tuple(map(str, Layer))
+    demanded = () if layers is None else _named("layer", layers, every)
+    chosen_layers = demanded if layers is not None else every
     chosen_provers = _named("prover", provers, PROVERS)
     if not project.rules or not chosen_layers:
         raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is nothing to verify"),))
@@ -55,6 +60,7 @@ def verify(
     request = Request(
         [Layer(name) for name in chosen_layers],
         Limits(seconds=limit),
+        demanded=[Layer(name) for name in demanded],
         provers=chosen_provers,
         ajpf=results,
     )

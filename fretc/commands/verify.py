@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from compiler.logic.claims import Proof
     from compiler.project.folder import Project
     from fretc.verification.layers.request import Request
+    from fretc.verification.text_output import Line
     from fretish.diagnostics.source import Source
 
 _LAYERS = tuple(map(str, Layer))
@@ -56,7 +57,7 @@ _HEADINGS = {
         "percepts",
     ),
     "Found by others": ("ajpf",),
-    "Printed and written": ("form", "output", "traces"),
+    "Printed and written": ("form", "every_claim", "output", "traces"),
 }
 """The names of the parameters of `verify`, under the headings of its help."""
 _HELP = f"""Prove that what is made of requirements keeps them, layer by layer.
@@ -65,8 +66,8 @@ FILE holds requirements, or is a folder of such files: in place of `--requiremen
 
 {in_words()}
 
-Exit status: 0 all proved, 1 a claim about a requirement is refuted, 2 bad use or input, 3 something
-is vacuous, not checked, or stays stopped.
+Exit status: 0 all that applies is proved, 1 a claim about a requirement is refuted, 2 bad use or
+input, 3 something is vacuous, not checked, or stays stopped.
 """
 
 
@@ -82,7 +83,8 @@ is vacuous, not checked, or stays stopped.
     "layers",
     multiple=True,
     type=click.Choice(_LAYERS),
-    help="What to look at, maybe several; all six if none is given.",
+    help="The layer to examine, for every requirement; may be repeated. If none is given, each "
+    "layer where it applies.",
 )
 @click.option("--monitor", is_flag=True, help="The same as `--layer monitor`.")
 @click.option(
@@ -111,6 +113,12 @@ is vacuous, not checked, or stays stopped.
 @output_option(
     default="build/verification.json", show_default=True, help="Where evidence goes; `-` prints it."
 )
+@click.option(
+    "--all",
+    "every_claim",
+    is_flag=True,
+    help="List each claim, those that are proved or do not apply too.",
+)
 @path_option("--traces", help="A folder for each counterexample as a table that monitors read.")
 def verify(
     files: tuple[str, ...],
@@ -128,6 +136,7 @@ def verify(
     limit: int,
     form: str,
     output: str,
+    every_claim: bool,
     traces: str | None,
 ) -> None:
     """Prove that what is made of requirements keeps them."""
@@ -136,16 +145,21 @@ def verify(
     from fretc.verification.ajpf_results import written
     from fretc.verification.engines.sandbox import Limits
     from fretc.verification.layers.request import Request
+    from fretc.verification.text_output import lines
     from fretc.verification.verify import refusals
 
     if (agent is None) != (properties is None):
         stop(_half_an_agent(agent))
-    layer_names = _layer_names(layers, monitor=monitor, monitor_file=monitor_file)
+    demanded = _demanded(layers, monitor=monitor, monitor_file=monitor_file)
+    layer_names = demanded or tuple(Layer)
+    if agent is not None:
+        demanded = (*demanded, Layer.AGENT)
     project = _project(files, requirements, bindings)
     results = ajpf or (written() if Layer.AJPF in layer_names else ())
     request = Request(
-        layers=[Layer(name) for name in layer_names],
+        layers=layer_names,
         limits=Limits(seconds=limit),
+        demanded=demanded,
         monitor=(text := _read(monitor_file)),
         header=(header := _header(text, layer_names)),
         interceptor=_read(interceptor),
@@ -164,14 +178,15 @@ def verify(
     options = (monitor_file, own, interceptor, agent, properties, bindings, *results)
     sources = [requirement.wording.source.name for requirement in project.requirements]
     inputs = [*sources, *companions(sources), *(name for name in options if name is not None)]
-    _print_and_write(proofs, form, output, traces, inputs)
+    texts = [*lines(proofs, every_claim=every_claim)] if form == "text" else None
+    _print_and_write(proofs, texts, output, traces, inputs)
     raise SystemExit(_status(proofs))
 
 
-def _layer_names(
+def _demanded(
     layers: Sequence[str], *, monitor: bool, monitor_file: str | None
-) -> Sequence[str]:
-    """The layers to look at, each once.
+) -> tuple[Layer, ...]:
+    """The layers that the options name, each once; none: each layer is examined where it applies.
 
     Args:
         layers: of `--layer`.
@@ -179,10 +194,10 @@ def _layer_names(
         monitor_file: of `--file`. Who gives a monitor and names no layer asks about that monitor
             alone.
     """
-    names = dict.fromkeys((*layers, *([Layer.MONITOR.value] if monitor else [])))
-    if names:
-        return tuple(names)
-    return _LAYERS if monitor_file is None else (Layer.MONITOR.value,)
+    names = dict.fromkeys((*map(Layer, layers), *([Layer.MONITOR] if monitor else [])))
+    if not names and monitor_file is not None:
+        return (Layer.MONITOR,)
+    return tuple(names)
 
 
 def _ajpf_proofs(project: Project, results: Sequence[str]) -> Sequence[Proof]:
@@ -236,7 +251,7 @@ def _read(path: str | None) -> Source | None:
     return source
 
 
-def _header(monitor: Source | None, layers: Sequence[str]) -> Source | None:
+def _header(monitor: Source | None, layers: Sequence[Layer]) -> Source | None:
     """The header that a monitor in C includes, from its folder; None: it is not in C."""
     language = language_of(monitor.name) if monitor else None
     if monitor is None or language is None:
@@ -289,7 +304,11 @@ def _proofs(project: Project, request: Request) -> Sequence[Proof]:
 
 
 def _print_and_write(
-    proofs: Sequence[Proof], form: str, output: str, traces: str | None, inputs: Iterable[str]
+    proofs: Sequence[Proof],
+    text: Iterable[Line] | None,
+    output: str,
+    traces: str | None,
+    inputs: Iterable[str],
 ) -> None:
     """Print the proofs, and write them as JSON and their counterexamples as tables.
 
@@ -297,7 +316,7 @@ def _print_and_write(
 
     Args:
         proofs: all of them.
-        form: how they are printed: `text` or `json`.
+        text: the lines to print; None: the JSON is printed.
         output: the file for the JSON.
         traces: the folder for the tables; None: none are written.
         inputs: files that no output may replace.
@@ -306,15 +325,14 @@ def _print_and_write(
     from compiler.files.records import plain
     from compiler.files.templating import to_json
     from compiler.logic.claims import SCHEMA, Document
-    from fretc.verification.text_output import lines
 
     document = f"{to_json(plain(Document(SCHEMA, __version__, tuple(proofs))))}\n"
     files: dict[Path, str | bytes] = {}
-    if form == "json":
+    if text is None:
         click.echo(document, nl=False)
     elif output != "-":
-        click.echo(coloured([*lines(proofs)]), nl=False)
-    if form != "json" or output != "-":  # else it has just been printed
+        click.echo(coloured(text), nl=False)
+    if text is not None or output != "-":  # else it has just been printed
         files[Path(output)] = document
     if traces is not None:
         files.update(_trace_files(proofs, Path(traces)))
@@ -353,4 +371,5 @@ def _status(proofs: Sequence[Proof]) -> int:
     refuted = (proof.claim for proof in proofs if proof.result is Result.COUNTEREXAMPLE)
     if any(claim != RELEASED for claim in refuted):
         return VIOLATION
-    return SHOWN if all(proof.result is Result.PROVED for proof in proofs) else NOT_SHOWN
+    fine = (Result.PROVED, Result.NOT_APPLICABLE)
+    return SHOWN if all(proof.result in fine for proof in proofs) else NOT_SHOWN

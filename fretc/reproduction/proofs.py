@@ -106,11 +106,16 @@ def _prove(
         layers = [layer for layer in layers if layer != Layer.AGENT]
     rules = [rule for rule in project.rules if rule.id in named and monitor.refuse(rule) is None]
     monitor_text, header = remade(own, project.rules)
+    plans_agent = {
+        each.id for each in project.requirements if {Layer.AGENT, Layer.AJPF} & {*each.verify}
+    }
+    of_agent = {record.requirement for record in own if record.layer is Layer.AGENT}
     request = Request(
         layers,
         limits,
-        monitor_text,
-        header,
+        monitor=monitor_text,
+        header=header,
+        demanded=(Layer.AGENT,) if of_agent - plans_agent else (),
         provers=sorted({_prover(record.engine) for record in records} - {""}),
         ajpf=ajpf_proofs(rules, written())[0] if Layer.AJPF in layers else (),
         progress=progress,
@@ -191,6 +196,6 @@ def _twice(records: Sequence[Proof]) -> Iterator[Recheck]:
 def _left_out(records: Sequence[Proof], proofs_now: Sequence[Proof]) -> Iterator[Recheck]:
     keys = {_key(record) for record in records}
     for record in proofs_now:
-        if _key(record) not in keys:
+        if _key(record) not in keys and record.result is not Result.NOT_APPLICABLE:
             claim = f"{record.layer}: {record.claim}"
             yield differs(PROOFS, record.requirement, "it is left out", claim=claim)

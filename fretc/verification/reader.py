@@ -13,7 +13,7 @@ from compiler.files.checked_json import MisshapenError, parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from compiler.logic.claims import Document, Proof
+from compiler.logic.claims import Document, Proof, Result
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 
@@ -33,8 +33,9 @@ class Proofs:
 
     @property
     def proofs(self) -> tuple[Proof, ...]:
-        """One for each claim."""
-        return self.document.evidence
+        """One for each claim that applies to its requirement."""
+        evidence = self.document.evidence
+        return tuple(each for each in evidence if each.result is not Result.NOT_APPLICABLE)
 
 
 DEFAULT = "build/verification.json"

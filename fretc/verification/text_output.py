@@ -1,14 +1,15 @@
-"""What `fretc verify` prints: a line for each claim, runs as tables, and each assumption once."""
+"""What `fretc verify` prints: an overview, claims with their runs, and each assumption once."""
 
 from __future__ import annotations
 
 import csv
 import io
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import assert_never
 
-from compiler.logic.claims import Proof, Result, Trace
+from compiler.logic.claims import Layer, Proof, Result, Trace
 from fretish.diagnostics import signs
 from fretish.diagnostics.signs import Sign
 from monitors.kernel.verdicts import Truth
@@ -17,8 +18,84 @@ Line = tuple[str, str | None]
 """A line and its colour."""
 
 
-def lines(proofs: Sequence[Proof]) -> Iterator[Line]:
-    """All of it, in the order of the proofs; why something is not checked is said once."""
+def lines(proofs: Sequence[Proof], *, every_claim: bool = False) -> Iterator[Line]:
+    """A table of requirements and layers, and below it each claim that is not proved, worst first.
+
+    Without the table, and with all claims, where it has one cell.
+
+    Args:
+        proofs: all of them.
+        every_claim: whether claims that are proved or do not apply are listed, too.
+    """
+    cells = _cells(proofs)
+    if len(cells) > 1:
+        yield from _overview(cells)
+        yield from _counts(proofs, every_claim=every_claim)
+    is_whole = every_claim or len(cells) == 1
+    worst_first = sorted(proofs, key=lambda proof: _ORDER.index(proof.result))
+    yield from _details([one for one in worst_first if is_whole or one.result in _OPEN])
+
+
+# The table ------------------------------------------------------------------------------------
+
+_Cells = Mapping[tuple[str, Layer], Result]
+"""The worst result of each requirement at each layer, or of a part that all share."""
+
+
+def _cells(proofs: Sequence[Proof]) -> _Cells:
+    cells: dict[tuple[str, Layer], Result] = {}
+    for proof in proofs:
+        place = proof.requirement, proof.layer
+        cells[place] = min(cells.get(place, proof.result), proof.result, key=_ORDER.index)
+    return cells
+
+
+def _overview(cells: _Cells) -> Iterator[Line]:
+    """A row for each requirement, a column for each layer, and a symbol for the worst result."""
+    rows = dict.fromkeys(requirement for requirement, _ in cells)
+    columns = [layer for layer in Layer if any(layer is each for _, each in cells)]
+    width = max(map(len, rows))
+    yield f"{'':<{width}}  {'  '.join(columns)}", None
+    for row in rows:
+        results = [cells.get((row, column)) for column in columns]
+        symbols = (SIGNS[result].glyph if result else "" for result in results)
+        padded = (f"{symbol:<{len(head)}}" for symbol, head in zip(symbols, columns, strict=True))
+        worst = min((result for result in results if result), key=_ORDER.index)
+        yield f"{row:<{width}}  {'  '.join(padded)}".rstrip(), SIGNS[worst].colour
+
+
+def _counts(proofs: Sequence[Proof], *, every_claim: bool) -> Iterator[Line]:
+    """How many claims are proved, and to how many requirements each layer does not apply."""
+    proved = [proof for proof in proofs if proof.result is Result.PROVED]
+    if proved:
+        noun = "claim is" if len(proved) == 1 else "claims are"
+        under = sum(bool(proof.assumptions) for proof in proved)
+        assuming = f", {under} of them under assumptions" if under else ""
+        hint = "" if every_claim else ": `--all` lists them"
+        sign = SIGNS[Result.PROVED]
+        yield f"{sign.glyph} {len(proved)} {noun} proved{assuming}{hint}", sign.colour
+    absent = [each for each in proofs if each.result is Result.NOT_APPLICABLE]
+    if absent:
+        places = dict.fromkeys((each.layer, each.requirement) for each in absent)
+        counts = Counter(layer for layer, requirement in places if requirement != layer)
+        shared = [layer for layer, requirement in places if requirement == layer]
+        parts = [f"{layer} to {_requirements(count)}" for layer, count in counts.items()]
+        hint = "" if every_claim else ": `--all` lists why"
+        sign = SIGNS[Result.NOT_APPLICABLE]
+        yield f"{sign.glyph} does not apply: {', '.join([*parts, *shared])}{hint}", sign.colour
+
+
+def _requirements(count: int) -> str:
+    return f"{count} requirement{'' if count == 1 else 's'}"
+
+
+# Claims ---------------------------------------------------------------------------------------
+
+
+def _details(proofs: Sequence[Proof]) -> Iterator[Line]:
+    """A line for each claim, its run below it; why something is not checked is explained once."""
+    if not proofs:
+        return
     numbers, reasons = _numbers(proofs), dict[tuple[str, ...], str]()
     widths = [
         max(len(proof.requirement) for proof in proofs),
@@ -28,9 +105,10 @@ def lines(proofs: Sequence[Proof]) -> Iterator[Line]:
         sign = SIGNS[proof.result]
         head = f"{sign.glyph} {proof.requirement:<{widths[0]}}  {proof.layer:<{widths[1]}}"
         outcome = _outcome(proof, numbers)
-        if proof.result is Result.NOT_CHECKED:
+        if proof.result in _UNEXAMINED:
             first = reasons.setdefault((proof.layer, outcome), proof.requirement)
-            outcome = outcome if first == proof.requirement else f"not checked: as {first}"
+            words = _UNEXAMINED[proof.result]
+            outcome = outcome if first == proof.requirement else f"{words}: as {first}"
         yield f"{head}  {outcome}", sign.colour
         if proof.run is not None:
             for row in table(proof.run):
@@ -52,8 +130,12 @@ SIGNS: Mapping[Result, Sign] = {
     Result.NOT_CHECKED: signs.UNKNOWN,
     Result.VACUOUS: signs.EMPTY,
     Result.PROVED: signs.GOOD,
+    Result.NOT_APPLICABLE: signs.RETIRED,
 }
 """The worst first, as for verdicts."""
+_ORDER = tuple(SIGNS)
+_OPEN = (Result.COUNTEREXAMPLE, Result.NOT_CHECKED, Result.VACUOUS)
+_UNEXAMINED = {Result.NOT_CHECKED: "not checked", Result.NOT_APPLICABLE: "does not apply"}
 
 
 def _outcome(proof: Proof, numbers: Mapping[str, int]) -> str:
@@ -70,6 +152,8 @@ def _outcome(proof: Proof, numbers: Mapping[str, int]) -> str:
             return f"vacuous{under}: {proof.claim}, but {proof.detail}"
         case Result.NOT_CHECKED:
             return f"not checked: {proof.claim}; {proof.detail}"
+        case Result.NOT_APPLICABLE:
+            return f"does not apply: {proof.claim}; {proof.detail}"
         case _:
             assert_never(proof.result)
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from compiler.logic.claims import Proof
+from compiler.files import records
+from compiler.logic.claims import Proof, Result
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
 from fretc.verification.layers.request import Request
@@ -30,7 +31,20 @@ def prove(project: Project, request: Request) -> tuple[Proof, ...] | Diagnostic:
                 return results
             (single if method.of_requirement else common).extend(results)
     places = {rule.id: place for place, rule in enumerate(project.rules)}
-    return (*sorted(single, key=lambda each: places[each.requirement]), *common)
+    proofs = (*sorted(single, key=lambda each: places[each.requirement]), *common)
+    return tuple(_open_where_demanded(each, project, request) for each in proofs)
+
+
+def _open_where_demanded(proof: Proof, project: Project, request: Request) -> Proof:
+    """A claim that does not apply, and that somebody demands or plans, is open: not checked."""
+    by_id = {rule.id: rule.requirement for rule in project.rules}
+    shared = tuple(by_id.values())
+    own = (by_id[proof.requirement],) if proof.requirement in by_id else shared
+    if proof.result is not Result.NOT_APPLICABLE or not any(
+        request.demands(proof.layer, requirement) for requirement in own
+    ):
+        return proof
+    return records.replace(proof, result=Result.NOT_CHECKED)
 
 
 def refusals(project: Project, request: Request) -> tuple[Diagnostic, ...]:

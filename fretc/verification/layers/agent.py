@@ -1,4 +1,8 @@
-"""Layer AGENT: the text of an agent has its properties."""
+"""Layer AGENT: the text of an agent has its properties.
+
+Of a requirement that plans none, the agent of its bundle is examined only if the user names the
+layer.
+"""
 
 from __future__ import annotations
 
@@ -6,16 +10,18 @@ from collections.abc import Sequence
 
 from compiler.agents.checking import checked
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import Layer, Proof
+from compiler.logic.claims import Layer, Proof, Result, not_applicable
 from compiler.project.folder import Project
 from compiler.targets.ajpf import bundle
 from compiler.targets.ajpf import properties as ajpf
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
-from fretc.verification.layers.request import Request, named_text, unknown
-from fretish.diagnostics.diagnostic import Diagnostic
+from fretc.verification.layers.request import Request, named_text, unexamined, unknown
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 CLAIM = "the agent has its properties"
+_OF_AGENT = (Layer.AGENT, Layer.AJPF)
+"""Who plans AJPF's own verdict means that agent, too."""
 
 
 def prove(
@@ -25,7 +31,12 @@ def prove(
     request.progress("agent: its properties")
     agent, properties = request.agent, request.properties
     if agent is None or properties is None:
-        return tuple(proof for rule in rules for proof in _bundle(rule, request.limits))
+        return tuple(
+            proof
+            for rule in rules
+            if any(request.demands(layer, rule.requirement) for layer in _OF_AGENT)
+            for proof in _bundle(rule, request.limits)
+        )
     proofs = processes.confined(request.limits, checked, agent, properties, request.percepts)
     if isinstance(proofs, Stopped):
         return (unknown("agent", Layer.AGENT, CLAIM, proofs.reason, named_text(agent)),)
@@ -36,7 +47,20 @@ def _bundle(rule: Formalized, limits: Limits) -> tuple[Proof, ...]:
     refused = ajpf.refusal(rule)
     agent = processes.confined(limits, bundle.checked_agent, rule) if refused is None else refused
     if isinstance(agent, Diagnostic):
-        return (unknown(rule.id, Layer.AGENT, CLAIM, f"there is none: {agent.message}"),)
+        return (_without_agent(rule, agent.message),)
     if isinstance(agent, Stopped):
         return (unknown(rule.id, Layer.AGENT, CLAIM, agent.reason),)
+    remark = ajpf.remark(rule)
+    refuted = any(line.result is Result.COUNTEREXAMPLE for line in agent.evidence)
+    if refuted and remark is not None and remark.code in _TOO_SOON:
+        return (_without_agent(rule, f"{remark.message}: {remark.help}"),)
     return agent.evidence
+
+
+_TOO_SOON = (Code.STATE_ZERO, Code.NO_TIME_TO_REACT)
+"""What no reasoning cycle can keep: the agent that breaks it is one that no bundle has."""
+
+
+def _without_agent(rule: Formalized, reason: str) -> Proof:
+    outcome = not_applicable(f"there is none: {reason}")
+    return unexamined(rule.id, Layer.AGENT, CLAIM, outcome)

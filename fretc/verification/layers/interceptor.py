@@ -7,14 +7,14 @@ from collections.abc import Iterator, Sequence
 from compiler.files import records
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import Layer, Proof
+from compiler.logic.claims import Layer, Proof, not_applicable
 from compiler.project.folder import Project
 from compiler.project.interceptor_options import options
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import otherwise
-from fretc.verification.layers.request import Request, interceptor_of, unknown
+from fretc.verification.layers.request import Request, interceptor_of, unexamined, unknown
 from fretc.verification.loop.closed_loop import NamedText
 from fretish.bindings.declarations import Interception
 
@@ -27,7 +27,8 @@ def prove(rules: Sequence[Formalized], project: Project, request: Request) -> It
     declared = project.declarations.interceptor if project.declarations else None
     if file is None or declared is None:
         reason = "the bindings declare no interceptor (`[interceptor]`)"
-        yield unknown("interceptor", Layer.INTERCEPTOR, CLAIM, reason)
+        outcome = not_applicable(reason)
+        yield unexamined("interceptor", Layer.INTERCEPTOR, CLAIM, outcome)
         return
     request.progress("interceptor: its contracts")
     yield from _contracts(file, declared, request.limits)

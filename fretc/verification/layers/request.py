@@ -8,13 +8,14 @@ from pathlib import PurePath
 
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
-from compiler.logic.claims import Layer, Proof, not_checked, proof
+from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof
 from compiler.project.folder import Project
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import stem
 from fretc.verification.engines.sandbox import Limits
 from fretc.verification.loop.closed_loop import NamedText, Setup
 from fretish.diagnostics.source import Source
+from fretish.documents import Requirement
 
 Progress = Callable[[str], None]
 """Is called with what is being worked on from now on, in words."""
@@ -26,6 +27,9 @@ class Request:
 
     layers: Collection[Layer]
     limits: Limits
+    demanded: Collection[Layer] = ()
+    """Those of them that the user names, for every requirement; the others count where they apply,
+    and where the header of a requirement plans them."""
     monitor: Source | None = None
     header: Source | None = None
     """Of the monitor, which is in C then."""
@@ -42,6 +46,10 @@ class Request:
     def names(self, name: str) -> bool:
         """Whether a layer or a prover is asked."""
         return name in self.layers or name in self.provers
+
+    def demands(self, layer: Layer, requirement: Requirement) -> bool:
+        """Whether a claim of a layer is open as long as nothing is known of it."""
+        return layer in self.demanded or str(layer) in requirement.verify
 
 
 def setup_of(rule: Formalized, project: Project, request: Request) -> Setup:
@@ -73,5 +81,12 @@ def unknown(
     requirement: str, layer: Layer, claim: str, reason: str, text: NamedText | None = None
 ) -> Proof:
     """A claim that is not checked, about a text if there is one."""
+    return unexamined(requirement, layer, claim, not_checked(reason), text)
+
+
+def unexamined(
+    requirement: str, layer: Layer, claim: str, outcome: Outcome, text: NamedText | None = None
+) -> Proof:
+    """A claim that no engine was asked about."""
     artefacts = {text.name: sha256(text.text)} if text else {}
-    return proof(requirement, layer, claim, not_checked(reason), "fretc", (), artefacts)
+    return proof(requirement, layer, claim, outcome, "fretc", (), artefacts)

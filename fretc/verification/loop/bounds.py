@@ -19,7 +19,16 @@ from typing import Any
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, meanings
-from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof, proved, refuted
+from compiler.logic.claims import (
+    Layer,
+    Outcome,
+    Proof,
+    not_applicable,
+    not_checked,
+    proof,
+    proved,
+    refuted,
+)
 from compiler.logic.kripke import TooManyStatesError
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
@@ -37,7 +46,7 @@ from fretc.verification.loop.abstraction import (
     relation,
     times_of,
 )
-from fretc.verification.loop.closed_loop import Setup, artefacts, assumptions, case
+from fretc.verification.loop.closed_loop import Setup, artefacts, assumptions, case, inapplicable
 from fretc.verification.loop.drive import Channel, Drive
 from fretc.verification.loop.search import Case, NotALoopError, Parts, as_table, reach
 from fretc.verification.monitor.statements import is_same
@@ -90,9 +99,15 @@ class Answer:
 
 def bounds_proofs(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
     """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
-    query = question(rule, setup)
+    reason = _inapplicable(rule, setup)
+    query = reason or question(rule, setup)
     answer: Answer | Stopped
-    answer = Stopped(query) if isinstance(query, str) else processes.confined(limits, search, query)
+    if reason is not None:
+        answer = Answer(not_applicable(reason), not_applicable(reason))
+    elif isinstance(query, str):
+        answer = Stopped(query)
+    else:
+        answer = processes.confined(limits, search, query)
     if isinstance(answer, Stopped):
         answer = Answer(not_checked(answer.reason), not_checked(answer.reason))
     at_declared, at_any = (
@@ -129,16 +144,24 @@ def _ticks(amount: int) -> str:
 # The question ---------------------------------------------------------------------------------
 
 
+def _inapplicable(rule: Formalized, setup: Setup) -> str | None:
+    """Why there is no bound to ask about; None: there is one."""
+    reason, sentence = inapplicable(rule, setup), rule.sentence
+    if reason is not None:
+        return reason
+    if sentence.scope is not None:
+        return "it has a scope; only requirements about the whole run have bounds"
+    if not (s.deadline(sentence.timing) or s.is_eventual(sentence.timing)):
+        return "its timing is neither `within` nor `eventually`"
+    return None
+
+
 def question(rule: Formalized, setup: Setup) -> Question | str:
-    """The question to prove, or why there is none."""
+    """The question to prove, of a requirement that has a bound; or why it cannot be asked."""
     problem = case(rule, setup)
     if isinstance(problem, str):
         return problem
     sentence = rule.sentence
-    if sentence.scope is not None:
-        return "it has a scope; only requirements about the whole run are looked at"
-    if not (s.deadline(sentence.timing) or s.is_eventual(sentence.timing)):
-        return "its timing is neither `within` nor `eventually`"
     if problem.settings.event_driven:
         return "an interceptor without a timer stops nothing before the next command"
     if problem.channel.edge and not problem.channel.heartbeat:

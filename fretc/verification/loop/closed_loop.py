@@ -16,7 +16,7 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import excluded, exclusion_in_words
 from compiler.logic import spot as automata
-from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof
+from compiler.logic.claims import Layer, Outcome, Proof, not_applicable, not_checked, proof
 from compiler.project.interceptor_options import ASSUMED, options, ticks
 from compiler.project.interceptor_options import assumed as hash_of_assumed
 from compiler.targets.python import monitor as target
@@ -55,9 +55,13 @@ class Setup:
 
 def loop_proofs(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
     """The proofs of both claims: the requirement is kept, and the stop is released."""
-    problem = case(rule, setup)
-    if isinstance(problem, str):
-        results: Results | Stopped = Stopped(problem)
+    reason = inapplicable(rule, setup)
+    problem = reason or case(rule, setup)
+    results: Results | Stopped
+    if reason is not None:
+        results = Results(not_applicable(reason), not_applicable(reason))
+    elif isinstance(problem, str):
+        results = Stopped(problem)
     else:
         results = processes.confined(limits, search, problem)
     if isinstance(results, Stopped):
@@ -94,15 +98,24 @@ def artefacts(rule: Formalized, setup: Setup) -> dict[str, str]:
 # The case -------------------------------------------------------------------------------------
 
 
-def case(rule: Formalized, setup: Setup) -> Case | str:
-    """The case to search, or why there is none."""
-    interception, assumed = setup.interception, setup.assumed
-    if interception is None or setup.interceptor is None:
+def inapplicable(rule: Formalized, setup: Setup) -> str | None:
+    """Why no loop decides the requirement; None: one does."""
+    if setup.interception is None or setup.interceptor is None:
         return "the bindings declare no interceptor (`[interceptor]`)"
-    if assumed is None:
+    if setup.assumed is None:
         return "the bindings assume nothing of the loop (`[assume]`)"
-    if assumed.stands not in {name.id for name in names(rule.sentence.response)}:
-        return f"its response does not speak of `{assumed.stands}`, which is what the loop decides"
+    stands = setup.assumed.stands
+    if stands not in {name.id for name in names(rule.sentence.response)}:
+        return f"its response does not speak of `{stands}`, which is what the loop decides"
+    return None
+
+
+def case(rule: Formalized, setup: Setup) -> Case | str:
+    """The case to search, of a requirement that a loop decides; or why it cannot be searched."""
+    interception, assumed = setup.interception, setup.assumed
+    assert interception is not None
+    assert setup.interceptor is not None
+    assert assumed is not None
     deviation = otherwise(setup.interceptor.text, interception)
     if deviation is not None:
         return deviation

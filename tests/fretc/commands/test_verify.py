@@ -13,6 +13,7 @@ import pytest
 
 from compiler.files.templating import template_root
 from compiler.logic.claims import Proof
+from fretc.verification import reader
 from fretc.verification.engines import crosshair
 from fretc.verification.engines import programs as external
 from fretc.verification.engines import sandbox as confined
@@ -20,6 +21,7 @@ from fretc.verification.engines.programs import Completion
 from fretc.verification.layers import crosshair as layer_crosshair
 from fretc.verification.layers import dafny as layer_dafny
 from tests.command import Fretc, Run, write
+from tests.each import each
 from tests.json_schemas import validate
 from tests.programs import needs, needs_package
 
@@ -77,18 +79,20 @@ def test_a_monitor_that_was_made_before_is_proved(fretc: Fretc, r1: str, made: s
 def test_a_file_with_several_monitors_is_proved_for_each_requirement(fretc: Fretc) -> None:
     path = write("two.fret", f'+++\nid = "A"\n+++\n{R1}\n+++\nid = "BB"\n+++\n{R1}\n')
     assert fretc(path, "--emit", "monitor", "--one-file", "-o", ".").status == 0
-    run = fretc("verify", "--file", "monitors.py", path)
-    assert (run.status, run.out) == (
-        0,
-        f"✔ A   monitor  {PROVED}✔ BB  monitor  {PROVED}",
-    )
+    run = fretc("verify", "--file", "monitors.py", path, "--all")
+    head, a, bb, count, *claims = run.out.splitlines(keepends=True)
+    assert (run.status, "".join(claims)) == (0, f"✔ A   monitor  {PROVED}✔ BB  monitor  {PROVED}")
+    assert (head, a, bb) == ("    monitor\n", "A   ✔\n", "BB  ✔\n")
+    assert count == "✔ 2 claims are proved\n"
 
 
 def test_the_names_of_a_folder_stand_in_one_column(fretc: Fretc) -> None:
     write("all/a.fret", R1)
     write("all/longer.fret", R1)
     assert fretc("verify", "--monitor", "all") == Run(
-        0, f"✔ a       monitor  {PROVED}✔ longer  monitor  {PROVED}", WROTE
+        0,
+        "        monitor\na       ✔\nlonger  ✔\n✔ 2 claims are proved: `--all` lists them\n",
+        WROTE,
     )
 
 
@@ -168,7 +172,10 @@ def test_a_monitor_of_another_requirement_is_not_checked(fretc: Fretc, r1: str, 
     write("r2.fret", R1)
     run = fretc("verify", "--file", made, r1, "r2.fret")
     reason = "the monitor is of other requirements"
-    told = f"✔ r1  monitor  {PROVED}? r2  monitor  not checked: {CLAIM}; {reason}\n"
+    told = (
+        "    monitor\nr1  ✔\nr2  ?\n✔ 1 claim is proved: `--all` lists them\n"
+        f"? r2  monitor  not checked: {CLAIM}; {reason}\n"
+    )
     assert run == Run(3, told, WROTE)
 
 
@@ -178,7 +185,7 @@ def test_why_a_file_is_not_checked_is_told_once(fretc: Fretc, r1: str) -> None:
     file = "build/monitors.mjs"
     assert fretc(r1, "r2.fret", "--emit", "js", "--one-file").status == 0
     edited(file, "rail.signals = [", "globalThis.x = 1; rail.signals = [")
-    first, second = fretc("verify", "--file", file, r1, "r2.fret").out.splitlines()
+    *_, first, second = fretc("verify", "--file", file, r1, "r2.fret").out.splitlines()
     assert first.startswith(f"? r1  monitor  not checked: {CLAIM}; ")
     assert second == "? r2  monitor  not checked: as r1"
     one, other = told(fretc("verify", "--file", file, r1, "r2.fret", "--format", "json"))
@@ -190,7 +197,7 @@ def test_the_worst_of_several_is_the_exit_status(fretc: Fretc, r1: str, made: st
     edited(made, "oldest_1 >= 2", "oldest_1 >= 3")
     run = fretc("verify", "--file", made, r1, "r2.fret")
     assert run.status == 1
-    assert [line[0] for line in run.out.splitlines() if line[0] != " "] == ["✘", "?"]
+    assert [line[0] for line in run.out.splitlines()[3:] if line[0] != " "] == ["✘", "?"]
 
 
 # JSON -----------------------------------------------------------------------------------------
@@ -352,7 +359,10 @@ def test_the_stop_of_r1_is_released(fretc: Fretc) -> None:
     lines = bindings.read_text().splitlines(keepends=True)
     bindings.write_text("".join(line for line in lines if not line.startswith("heartbeat")))
     run = fretc("verify", "requirements/r1.fret", "--layer", "loop")
-    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (3, ["✔", "✘"])
+    assert (run.status, [line[0] for line in run.out.splitlines() if line[0] in "✔✘"]) == (
+        3,
+        ["✘", "✔"],
+    )
 
 
 @pytest.mark.slow
@@ -431,7 +441,10 @@ def test_bounds_are_of_the_monitor_that_fretc_writes(
 def test_a_stop_that_stays_is_no_violation(fretc: Fretc, loop: Callable[..., str]) -> None:
     path = loop(400, ("[assume]", "latching = true\n\n[assume]"))
     run = fretc("verify", "--layer", "loop", path)
-    assert (run.status, [line[0] for line in run.out.splitlines()[:2]]) == (3, ["✔", "✘"])
+    assert (run.status, [line[0] for line in run.out.splitlines() if line[0] in "✔✘"]) == (
+        3,
+        ["✘", "✔"],
+    )
 
 
 @pytest.mark.parametrize(
@@ -473,7 +486,7 @@ def test_without_bindings_there_is_no_loop(fretc: Fretc, r1: str) -> None:
     run = fretc("verify", "--layer", "loop", "--layer", "bounds", r1)
     assert run.status == 3
     reason = "the bindings declare no interceptor (`[interceptor]`)"
-    assert [line.endswith(f"; {reason}") for line in run.out.splitlines()] == [True] * 4
+    assert [line.endswith(f"; {reason}") for line in run.out.splitlines()[2:]] == [True] * 4
 
 
 def test_an_interceptor_of_other_bindings_is_not_checked(
@@ -523,7 +536,9 @@ def test_nothing_is_proved_of_an_interceptor_that_flies_otherwise(
 
 @pytest.mark.slow
 def test_all_five_layers_have_a_line(fretc: Fretc, loop: Callable[..., str]) -> None:
-    run = fretc("verify", loop(400), "--format", "json")
+    path = loop(400)
+    write(path, f'+++\nverify = ["agent"]\n+++\n{NEAR.format(400)}\n')
+    run = fretc("verify", path, "--format", "json")
     assert {record["layer"] for record in told(run)} == {
         "monitor",
         "interceptor",
@@ -531,7 +546,48 @@ def test_all_five_layers_have_a_line(fretc: Fretc, loop: Callable[..., str]) -> 
         "bounds",
         "agent",
     }
-    assert run.status == 3, "no agent is named"
+    assert run.status == 3, "it plans an agent, which cannot keep a bound"
+
+
+# What applies ---------------------------------------------------------------------------------
+
+SHARED = {"interceptor": "interceptor"}
+
+
+@each("layer", ["interceptor", "loop", "bounds", "agent"])
+@each("planned", [False, True])
+@each("named", [False, True])
+def test_what_does_not_apply_is_open_only_if_somebody_asks_for_it(
+    layer: str, planned: bool, named: bool, fretc: Fretc
+) -> None:
+    header = f'+++\nverify = ["{layer}"]\n+++\n' if planned else ""
+    path = write("r1.fret", f"{header}the sw shall always satisfy q\n")
+    options = ("--layer", layer, "--layer", "monitor") if named else ()
+    run = fretc("verify", path, *options, "--format", "json")
+    results = {record["layer"]: record["result"] for record in told(run)}
+    is_open = planned or named
+    expected = "not checked" if is_open else "not applicable" if layer != "agent" else None
+    assert results.get(layer) == expected
+    assert results["monitor"] == "proved"
+    assert run.status == (3 if is_open else 0)
+    text = fretc("verify", path, *options, "-o", "other.json")
+    assert text.status == run.status
+    subject = SHARED.get(layer, "r1")
+    marked = [line for line in text.out.splitlines() if line.startswith(f"? {subject}")]
+    assert bool(marked) == is_open
+    read = reader.read("other.json")
+    assert isinstance(read, reader.Proofs)
+    shown = {proof.layer for proof in read.proofs}
+    assert (layer in shown) == is_open
+
+
+@each("timing", ["immediately", "always", "within 2 ticks"])
+def test_an_agent_that_cannot_be_in_time_is_no_counterexample(timing: str, fretc: Fretc) -> None:
+    path = write("r1.fret", f"whenever p the sw shall {timing} satisfy q")
+    run = fretc("verify", path, "--layer", "agent")
+    assert run.status == 3
+    (line,) = run.out.splitlines()
+    assert line.startswith("? r1  agent  not checked: the agent has its properties; there is none:")
 
 
 # Other provers --------------------------------------------------------------------------------
