@@ -41,6 +41,8 @@ _VARIABLE_FIELDS = frozenset(
     "_id project component_name variable_name dataType idType description reqs".split()
 )
 _IGNORED_FIELDS = frozenset({"modeldoc", "_rev", OWN})
+KEPT = "variable"
+"""The records of `[[fret.variable]]`: variables of FRET that are none here."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,8 +101,9 @@ def _from_json(source: Source) -> Import:
     requirements, variables = parts
     diagnostics: list[Diagnostic] = []
     entries = list(_requirements(requirements, source, diagnostics))
-    declared = _variables(variables, source, diagnostics)
-    files = [*_documents(entries), *_glossary(declared)]
+    kept: list[Mapping[str, Any]] = []
+    declared = _variables(variables, source, diagnostics, kept)
+    files = [*_documents(entries), *_glossary(declared, kept)]
     return Import(tuple(files), tuple(diagnostics), len(entries), len(declared))
 
 
@@ -247,19 +250,30 @@ def _pair(requirement: Imported) -> str:
 
 
 def _variables(
-    records: Iterable[Mapping[str, Any]], source: Source, diagnostics: list[Diagnostic]
+    records: Iterable[Mapping[str, Any]],
+    source: Source,
+    diagnostics: list[Diagnostic],
+    kept: list[Mapping[str, Any]],
 ) -> dict[str, dict[str, Any]]:
     """`[variable.NAME]` tables: names are those of one folder, whatever project they are of.
 
     What a name is for another component stands in a table `of` that component. Of several
-    variables of one name and one component the first stays; F530 names the differences of the
+    variables of one name and one component the first is read; F530 names the differences of the
     others.
+
+    Args:
+        records: of the export.
+        source: the export.
+        diagnostics: where what there is to say goes.
+        kept: where records go that are not read: what FRET has of a model, and other ones of a
+            variable that is read.
     """
     tables: dict[str, dict[str, Any]] = {}
     components: dict[str, dict[str, dict[str, Any]]] = {}
     for record in records:
         name = _text(record.get("variable_name"))
         if not name or record.get("modeldoc") is True:
+            kept.append(_record(record))
             continue
         table = _variable(record)
         component = table.get("component", "")
@@ -268,6 +282,7 @@ def _variables(
             own = {key: value for key, value in table.items() if key != "component"}
             first, table = components.setdefault(name, {}).setdefault(component, own), own
         if first != table:
+            kept.append(_record(record))
             diagnostics.append(_merged(name, first, table, source))
     for component in ("", *dict.fromkeys(chain.from_iterable(components.values()))):
         own = {name: components.get(name, {}).get(component, tables[name]) for name in tables}
@@ -317,9 +332,22 @@ def _variable(record: Mapping[str, Any]) -> dict[str, Any]:
         "role": role,
         "text": _text(record.get("description")),
         "value": "" if value is None else expression(value),
-        "fret": {**fret, **_of_project(record)},
+        "fret": {**fret, **_id_of_variable(record), **_of_project(record)},
     }
     return {key: value for key, value in table.items() if value}
+
+
+def _id_of_variable(record: Mapping[str, Any]) -> dict[str, str]:
+    """The `_id` that FRET does not make of the names of project, component and variable."""
+    names = ("project", "component_name", "variable_name")
+    id = _text(record.get("_id"))
+    return {"_id": id} if id not in ("", "".join(_text(record.get(n)) for n in names)) else {}
+
+
+def _record(record: Mapping[str, Any]) -> dict[str, Any]:
+    """All that FRET keeps of a variable, as TOML has it."""
+    ignored = {"_rev", OWN}
+    return {k: _plain(v) for k, v in record.items() if k not in ignored and v is not None}
 
 
 def assignment_field(role: str) -> str:
@@ -359,14 +387,16 @@ def _merged(
     ]
     fields, second_fields = first.get("fret", {}), second.get("fret", {})
     lost += sorted(
-        key for key in {*fields, *second_fields} if fields.get(key) != second_fields.get(key)
+        key
+        for key in {*fields, *second_fields} - {"_id"}
+        if fields.get(key) != second_fields.get(key)
     )
     differences = ", ".join(
         f"{key} `{second.get(key, second_fields.get(key, ''))}`" for key in lost
     )
     return _warning(
         Code.MERGED_VARIABLE,
-        f"a second variable `{name}` is left out: it has {differences}",
+        f"a second variable `{name}` is kept for FRET, and not read: it has {differences}",
         source,
         "import each project into a folder of its own, or make the two say the same",
     )
@@ -380,6 +410,8 @@ def _plain(value: Any) -> Any:
         return value
     if isinstance(value, list) and None not in value:
         return [_plain(item) for item in value]
+    if isinstance(value, dict) and None not in value.values():
+        return {key: _plain(item) for key, item in value.items()}
     return json.dumps(value)
 
 
@@ -388,15 +420,19 @@ def _of_project(record: Mapping[str, Any]) -> dict[str, str]:
     return {"project": project} if project else {}
 
 
-def _glossary(tables: Mapping[str, Mapping[str, Any]]) -> Iterator[Artifact]:
-    if tables:
+def _glossary(
+    tables: Mapping[str, Mapping[str, Any]], kept: Sequence[Mapping[str, Any]]
+) -> Iterator[Artifact]:
+    if tables or kept:
+        content: dict[str, Any] = {"variable": {name: dict(t) for name, t in tables.items()}}
+        content |= {"fret": {KEPT: [dict(each) for each in kept]}} if kept else {}
         text = (
             "# The variables of the requirements, as FRET's glossary has them. To audit logs,\n"
             "# declare a [clock], and bind each variable by a [proposition.NAME] over signals.\n\n"
         )
         yield Artifact(
             PurePosixPath("bindings.toml"),
-            text + tomli_w.dumps({"variable": {name: dict(t) for name, t in tables.items()}}),
+            text + tomli_w.dumps(content),
         )
 
 

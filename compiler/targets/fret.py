@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 from typing import Any
@@ -19,7 +19,7 @@ from compiler.targets.target import DEFAULT, Options, Target, not_expressible
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.comparisons import is_mixed
-from fretish.bindings.declarations import Role, Variable
+from fretish.bindings.declarations import Declarations, Role, Variable
 from fretish.bindings.definitions import expanded
 from fretish.checking import conditions, has_units
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -39,7 +39,7 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
     rules = tuple(map(_in_fretish, rules))
     content = {
         "requirements": [requirement(entry, rule) for entry, rule in _ordered(rules, options)],
-        "variables": variables(rules),
+        "variables": variables(rules, options.declarations),
     }
     text = render("fret-json/fret.json.j2", content=content)
     return (Artifact(PurePosixPath("fret.json"), text),)
@@ -224,8 +224,15 @@ def _spans(tree: s.Sentence) -> dict[str, Span | None]:
     }
 
 
-def variables(rules: Sequence[Formalized]) -> list[dict[str, Any]]:
-    """FRET's records of all variables; types and roles as far as the bindings know them."""
+def variables(
+    rules: Sequence[Formalized], declarations: Declarations | None = None
+) -> list[dict[str, Any]]:
+    """FRET's records of all variables; types and roles as far as the bindings know them.
+
+    Those that no sentence names follow, and those that `fretc import` has kept without reading
+    them. A kept one stands in the place of what would be said of its project's variable by that
+    of another project.
+    """
     records: dict[tuple[str, str, str], dict[str, Any]] = {}
     for rule in rules:
         project = rule.requirement.fret.get("project", "")
@@ -236,18 +243,63 @@ def variables(rules: Sequence[Formalized]) -> list[dict[str, Any]]:
                 key, _variable(rule.glossary.get(name), project, component, name)
             )
             record["reqs"].append(_id(rule.requirement))
-    names = {name for _, _, name in records}
-    for name, variable in rules[0].glossary.items() if rules else ():
-        if name not in names:
-            project = variable.fret.get("project", "")
-            record = _variable(variable, project, variable.component, name)
-            records[project, variable.component, name] = record
-    return list(records.values())
+    named = [*records]
+    own: set[tuple[str, str, str]] = set()
+    for name, variable in _glossary(rules, declarations):
+        project, component = variable.fret.get("project", ""), variable.component
+        key = (project, component, name)
+        own.add(key)
+        if not any(_is_of(key, each) for each in named):
+            records[key] = _variable(variable, project, component, name)
+    return _with_kept(records, own, declarations.fret if declarations else ())
+
+
+def _is_of(variable: tuple[str, str, str], named: tuple[str, str, str]) -> bool:
+    """Whether a sentence names it: who writes bindings by hand need not say whose a variable is."""
+    return variable[2] == named[2] and all(
+        a == b or not a or (place == 0 and not b)
+        for place, (a, b) in enumerate(zip(variable[:2], named[:2], strict=True))
+    )
+
+
+def _glossary(
+    rules: Sequence[Formalized], declarations: Declarations | None
+) -> Iterator[tuple[str, Variable]]:
+    """Each name with what it is, of each component."""
+    if declarations is None:
+        yield from rules[0].glossary.items() if rules else ()
+        return
+    for name, variable in declarations.variables.items():
+        yield from ((name, each) for each in (variable, *variable.of.values()))
+
+
+def _with_kept(
+    records: Mapping[tuple[str, str, str], dict[str, Any]],
+    own: Collection[tuple[str, str, str]],
+    kept: Sequence[Mapping[str, Any]],
+) -> list[dict[str, Any]]:
+    """All records: what FRET has said of a variable stands there as it is."""
+    found = dict(records)
+    more: list[dict[str, Any]] = []
+    for each in kept:
+        fields = ("project", "component_name", "variable_name")
+        project, component, name = (str(each.get(field, "")) for field in fields)
+        key = (project, component, name)
+        if key in records and key not in own and found[key] is records[key]:
+            found[key] = {**each, "reqs": records[key]["reqs"]}
+        else:
+            more.append(dict(each))
+    return [*found.values(), *more]
 
 
 def _variable(glossary: Variable | None, project: str, component: str, name: str) -> dict[str, Any]:
     fret = dict(glossary.fret) if glossary else {}
-    fret.pop("project", None)
+    is_own = (fret.pop("project", ""), glossary.component if glossary else "") == (
+        project,
+        component,
+    )
+    if not is_own:
+        fret.pop("_id", None)
     role = glossary.role if glossary else ""
     if glossary is not None and glossary.value is not None:
         fret |= _assignment(glossary, fret)
@@ -265,8 +317,8 @@ def _variable(glossary: Variable | None, project: str, component: str, name: str
         "modeRequirement": "",
         "modeldoc": False,
         "completed": False,
-        **fret,
         "_id": f"{project}{component}{name}",
+        **fret,
     }
 
 

@@ -340,6 +340,8 @@ class Declarations:
     map: Map | None = None
     labels: Mapping[str, tuple[LabelSource, ...]] = field(default_factory=dict)
     """`[run.label]`: each label of runs, with its sources; the first that says something counts."""
+    fret: tuple[Mapping[str, Any], ...] = ()
+    """`[[fret.variable]]`: FRET's records of variables that are none here; nothing reads them."""
     environment: tuple[Requirement, ...] = ()
     """`[[assume.requirement]]`: what the environment is taken to keep, where requirements are
     asked whether they can be kept together; no verdict on a log depends on it."""

@@ -19,7 +19,8 @@ from fretish.diagnostics.source import Source
 from fretish.reading.limits import within
 from fretish.reading.toml_text import Tables, read
 
-_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run")
+_TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
+           "fret")  # fmt: skip
 T = TypeVar("T", Signal, Proposition)
 
 
@@ -77,6 +78,7 @@ class _Reader(Fields):
             notes.mistakes,
             MapTable(tables, notes, of_signals.known).map(),
             Labels(tables, notes).labels(),
+            VariableTables(tables, notes).kept(),
             loop.sentences(),
         )
 

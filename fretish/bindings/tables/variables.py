@@ -34,6 +34,21 @@ class VariableTables(Fields):
             self._check_definitions(own, component)
         return variables
 
+    def kept(self) -> tuple[Mapping[str, Any], ...]:
+        """The records of `[[fret.variable]]`, which only FRET reads."""
+        table = self._field(self.tables.data, ("fret",), dict, "a table") or {}
+        self._check_keys(table, ("variable",), "[fret]", "fret")
+        records = self._field(table, ("fret", "variable"), list, "tables of FRET's fields") or []
+        if all(isinstance(each, dict) for each in records):
+            return tuple(records)
+        self._say(
+            Code.BAD_BINDING_FIELD,
+            "`variable` must hold tables",
+            self.tables.value("fret", "variable"),
+            "write `[[fret.variable]]`",
+        )
+        return ()
+
     def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
         at = ("variable", name)
         self._check_keys(table, _VARIABLE, f"[variable.{name}]", *at)

@@ -201,9 +201,20 @@ def test_a_glossary_alone_is_read(fretc: Fretc) -> None:
     assert run.err == "wrote requirements/bindings.toml\nimported 0 requirements, 1 variables\n"
 
 
-def test_imported_signals_of_models_are_no_variables(fretc: Fretc) -> None:
+def test_imported_signals_of_models_are_no_variables_and_are_kept(fretc: Fretc) -> None:
     signal = {**SPEED, "modeldoc": True, "portType": "Inport"}
-    assert fretc("import", export([signal])).err == "imported 0 requirements, 0 variables\n"
+    run = fretc("import", export([signal]))
+    assert run.err == "wrote requirements/bindings.toml\nimported 0 requirements, 0 variables\n"
+    assert written()["bindings.toml"].endswith(
+        "[[fret.variable]]\n"
+        'project = "Rover"\n'
+        'component_name = "rover"\n'
+        'variable_name = "speed"\n'
+        'dataType = "double"\n'
+        'idType = "Internal"\n'
+        "modeldoc = true\n"
+        'portType = "Inport"\n'
+    )
 
 
 def test_null_and_lists_stand_where_there_is_no_text(fretc: Fretc) -> None:
@@ -379,7 +390,9 @@ def test_a_variable_that_says_something_else_is_told(
         "import", export({"requirements": [], "variables": [STOPPED, {**STOPPED, **change}]})
     )
     assert run.status == 0
-    warning = f"F530 warning: a second variable `stopped` is left out: it has {lost}\n"
+    warning = (
+        f"F530 warning: a second variable `stopped` is kept for FRET, and not read: it has {lost}\n"
+    )
     assert warning in run.err
     assert 'component = "rover"' in written()["bindings.toml"]
 

@@ -479,7 +479,8 @@ ASSIGNMENTS = (
 TEXTS = st.sampled_from(["", "plain", 'say "no"', "two\nlines"])
 VARIABLE = st.fixed_dictionaries(
     {
-        "project": st.just("Rover"),
+        "project": st.sampled_from(["Rover", "Rover", "Other"]),
+        "variable_name": st.sampled_from(["a0", "a1", "other", "not_used"]),
         "component_name": st.sampled_from(["rover", "arm"]),
         "dataType": st.sampled_from(
             ["", "boolean", "integer", "unsigned integer", "single", "double", "enum"]
@@ -492,8 +493,10 @@ VARIABLE = st.fixed_dictionaries(
         "smvAssignment": TEXTS,
         "assignmentVariables": st.sampled_from([[], ["a", "b"]]),
         "moduleName": TEXTS,
-        "modeldoc": st.just(False),
-        "modeldoc_id": st.just(""),
+        "modeldoc": st.sampled_from([False, False, True]),
+        "modeldoc_id": st.sampled_from(["", "block 3"]),
+        "modelComponent": st.sampled_from([[], ["m/n"], {"path": "m/n", "ports": [1, 2]}]),
+        "_id": st.sampled_from(["", "", "an id of its own"]),
         "modeldoc_vectorIndex": st.sampled_from(["", 3]),
         "completed": st.booleans(),
         "smvCompleted": st.booleans(),
@@ -507,7 +510,7 @@ def variables_of(records: list[dict[str, Any]]) -> Any:
         {key: v for key, v in record.items() if key != "reqs" and v not in ("", [], None, False)}
         for record in records
     ]
-    return sorted(said, key=lambda record: record["variable_name"])
+    return sorted(json.dumps(record, sort_keys=True) for record in said)
 
 
 @pytest.mark.slow
@@ -516,17 +519,26 @@ def variables_of(records: list[dict[str, Any]]) -> Any:
 def test_what_fret_says_of_its_variables_comes_back(
     fretc: Fretc, variables: list[dict[str, Any]]
 ) -> None:
-    for number, variable in enumerate(variables):
-        name = variable["variable_name"] = f"a{number}"
-        variable["_id"] = f"Rover{variable['component_name']}{name}"
-    sentence = "the sw shall always satisfy other"
-    requirement = {**EXPORT["requirements"][0], "fulltext": sentence}
-    content = {"requirements": [requirement], "variables": variables}
+    for each in variables:
+        names = (each["project"], each["component_name"], each["variable_name"])
+        if each["variable_name"] == "other":  # of the sentences
+            each |= {"dataType": "boolean", "assignment": "", "modeRequirement": ""}
+        each["_id"] = each["_id"] or "".join(names)
+    sentences = [
+        {**EXPORT["requirements"][0], "fulltext": f"the {component} shall always satisfy other",
+         "project": project, "reqid": f"R-{project}-{component}", "parent_reqid": "",
+         "_id": f"u-{project}-{component}"}
+        for component, project in (("rover", "Rover"), ("arm", "Rover"), ("rover", "Other"))
+    ]  # fmt: skip
+    content = {"requirements": sentences, "variables": variables}
     for folder in (Path("first"), Path("second"), Path("requirements")):
         shutil.rmtree(folder, ignore_errors=True)
     first, again, second = there_and_back(fretc, content)
-    found = [v for v in again["variables"] if v["variable_name"] != "other"]
-    assert variables_of(found) == variables_of(variables)
+    back, there = variables_of(again["variables"]), set(variables_of(variables))
+    assert there <= {*back}
+    made = [json.loads(text) for text in back if text not in there]
+    assert {each["variable_name"] for each in made} <= {"other"}  # FRET had not declared it there
+    assert {each["_id"] for each in again["requirements"]} == {each["_id"] for each in sentences}
     assert first["rover.fret"] == second["rover.fret"]
 
 
