@@ -17,6 +17,7 @@ from fretish.reading.toml_text import as_key
 
 _VARIABLE = ("component", "type", "role", "text", "value", "fret", "of", "modality", "action")
 _OF_COMPONENT = ("type", "role", "text", "value", "fret")
+_FRET = ("variable",)
 _MOST_NAMES = 12
 """Of a circle that a message shows."""
 
@@ -37,7 +38,7 @@ class VariableTables(Fields):
     def kept(self) -> tuple[Mapping[str, Any], ...]:
         """The records of `[[fret.variable]]`, which only FRET reads."""
         table = self._field(self.tables.data, ("fret",), dict, "a table") or {}
-        self._check_keys(table, ("variable",), "[fret]", "fret")
+        self._check_keys(table, _FRET, "[fret]", "fret")
         records = self._field(table, ("fret", "variable"), list, "tables of FRET's fields") or []
         if all(isinstance(each, dict) for each in records):
             return tuple(records)
