@@ -79,7 +79,10 @@ def package(folder: Path, kind: str, count: int, time: str) -> Path:
     paths = listed([str(project_folder)])
     assert not isinstance(paths, Diagnostic)
     project = load(paths)
-    target, options = TARGETS["ros1-package"], Options(declarations=project.declarations)
+    target, options = (
+        TARGETS["ros1-package"],
+        Options(declarations=project.declarations, attribution=project.attribution),
+    )
     assert [target.refuse(rule) for rule in project.rules] == [None] * count
     files = target.emit(project.rules, options)
     assert deliver({folder / file.path: file.text for file in files}) is None

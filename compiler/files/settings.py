@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from compiler.files.attribution import FIELDS, NOBODY, Attribution, Unfit, attribution
 from compiler.files.text_files import read as read_text
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
@@ -22,7 +23,7 @@ from fretish.reading.toml_text import read as read_tables
 NAME, SHARED = "fretc.toml", "pyproject.toml"
 _TABLE = ("tool", "fretc")
 """Of the settings in `pyproject.toml`, which is that of other tools, too."""
-_FIELDS = ("parents", "accept")
+_FIELDS = ("parents", "accept", "project")
 OUTSIDE: ContextVar[tuple[str, ...]] = ContextVar("OUTSIDE", default=())
 """Folders outside of the project in which parents may be, as the command line names them."""
 
@@ -37,6 +38,8 @@ class Settings:
     """Documents of other tools in which parents of requirements live."""
     accept: Mapping[str, str | Mapping[str, str]] = field(default_factory=dict)
     """Code of a warning → why it is accepted: wherever it comes, or by what it is about."""
+    project: Attribution = NOBODY
+    """Who answers for what is made of the project."""
     tables: Tables | None = None
     table: tuple[str, ...] = ()
     """The table of the file that the settings are in."""
@@ -140,7 +143,27 @@ def _settings(empty: Settings, table: Any) -> Settings | Diagnostic:
         if not all(isinstance(each, str) for each in reasons):
             message = f"`{code}` must have a reason, or a table of reasons"
             return _bad_settings(empty, message, f"write {_ACCEPT}", "accept", code)
-    return replace(empty, parents=tuple(parents), accept=accept)
+    project = _project_table(empty, table.get("project", {}))
+    if isinstance(project, Diagnostic):
+        return project
+    return replace(empty, parents=tuple(parents), accept=accept, project=project)
+
+
+def _project_table(empty: Settings, table: Any) -> Attribution | Diagnostic:
+    """`[project]`."""
+    assert empty.tables is not None
+    if not isinstance(table, dict):
+        return _bad_settings(empty, "`project` must be a table", "write `[project]`", "project")
+    for key in table:
+        if key not in FIELDS:
+            span = empty.tables.place(*empty.table, "project", key)
+            where = f"[{'.'.join((*empty.table, 'project'))}]"
+            return unknown_key(Code.BAD_SETTINGS, key, FIELDS, span, where)
+    found = attribution(table)
+    if isinstance(found, Unfit):
+        message = f"`{found.field}` {found.what}"
+        return _bad_settings(empty, message, found.mend, "project", found.field)
+    return found
 
 
 _ACCEPT = '`F631 = "the reason"`, or `F315 = { "/battery" = "the reason" }`, under `[accept]`'

@@ -8,6 +8,7 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from compiler.files.attribution import NOBODY, Attribution
 from compiler.files.settings import Settings, settings
 from compiler.files.text_files import read
 from compiler.formalization.formalize import duplicates, formalize, unreadable_sentence
@@ -60,6 +61,8 @@ class Project:
     """What other tools have, by its id; read where hazards are."""
     acceptances: tuple[Acceptance, ...] = ()
     """The warnings that are accepted, and why; those among `diagnostics` are marked."""
+    attribution: Attribution = NOBODY
+    """Who answers for what is made of it, by its settings."""
 
     @property
     def without_rule(self) -> tuple[Requirement, ...]:
@@ -116,6 +119,7 @@ def load(
         mistaken,
         above,
         accepted,
+        chosen.project if isinstance(chosen, Settings) else NOBODY,
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from compiler.files.artifact import Artifact
+from compiler.files.attribution import NOBODY, Attribution
 from compiler.formalization.formalized import Formalized
 from compiler.logic import formula as f
 from fretish.bindings.declarations import Declarations
@@ -31,6 +32,8 @@ class Options:
     """Whether a target may say less than the requirement, where it then says so."""
     declarations: Declarations | None = None
     """What the bindings declare, for files about the robot and not about one rule."""
+    attribution: Attribution = NOBODY
+    """Who answers for what is made, for manifests of packages."""
 
 
 DEFAULT = Options()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING
@@ -96,7 +97,15 @@ def compile_(
     from compiler.targets.target import Options
 
     free_texts = tuple(f.requirement for f in project.failed)
-    options = Options(notation, simplify, one_file, free_texts, weaken, project.declarations)
+    options = Options(
+        notation,
+        simplify,
+        one_file,
+        free_texts,
+        weaken,
+        project.declarations,
+        project.attribution,
+    )
     if kinds:
         _emit(project, dict.fromkeys(kinds), output, options, undecided)
     else:
@@ -156,7 +165,7 @@ def _emit(
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
     outputs = [(target, *_emitted(target, project.rules, options)) for target in targets]
-    refusals = [diagnostic for _, _, wrong in outputs for diagnostic in wrong]
+    refusals = list(dict.fromkeys(chain.from_iterable(wrong for _, _, wrong in outputs)))
     jobs = [(target, rules) for target, rules, _ in outputs if rules is not None]
     say(refusals)
     of_rules = [d for target, rules in jobs for rule in rules if (d := target.remark(rule))]

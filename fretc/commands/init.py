@@ -8,6 +8,9 @@ from shlex import quote
 
 import click
 
+from compiler.files.attribution import EXAMPLE
+from compiler.files.settings import NAME as SETTINGS
+from compiler.files.settings import settings
 from fretc.terminal.options import PATH, path_option
 from fretc.terminal.output import REQUIREMENTS_FOLDER, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -37,6 +40,8 @@ def init(folder: str, log: str | None) -> None:
         stop(beginning)
     say(beginning.findings)
     files = {requirements / name: text for name, text in beginning.files.items()}
+    if not _has_settings(Path(folder)):
+        files[requirements / SETTINGS] = _settings_to_fill_in()
     deliver(files, [log] if log else [])
     _say_next_commands(folder, requirements, log)
 
@@ -49,6 +54,18 @@ def _say_next_commands(folder: str, requirements: Path, log: str | None) -> None
     log_argument = "LOG" if log is None else shell_word(log)
     say_line(visible(f"next: `fretc check{option}` says what is wrong or missing"))
     say_line(visible(f"next: `fretc audit {log_argument}{option}` judges a log"))
+
+
+def _has_settings(folder: Path) -> bool:
+    """Whether settings of a folder above hold: another file would take their place."""
+    found = settings(str(folder))
+    return isinstance(found, Diagnostic) or found.tables is not None
+
+
+def _settings_to_fill_in() -> str:
+    """`fretc.toml` with a comment for all that only the owner of the project knows."""
+    table = "".join(f"# {line}\n" for line in EXAMPLE.splitlines())
+    return f"# Settings. To do: say who answers for packages that are made, as for ROS.\n{table}"
 
 
 def _is_empty_folder(path: Path) -> bool:

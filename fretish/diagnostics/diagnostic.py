@@ -209,6 +209,7 @@ class Code(Enum):
     UNWATCHED = ("F631", "the interceptor does not notice that a channel is silent")
     EVENT_DRIVEN = ("F632", "the interceptor speaks only when a command comes")
     LATCHING = ("F633", "the interceptor's first stop is for ever")
+    NO_ATTRIBUTION = ("F634", "nobody says whose a package is")
 
     NO_SUCH_FILE = ("F901", "there is no such file")
     IS_A_DIRECTORY = ("F902", "the file is a directory")

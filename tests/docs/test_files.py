@@ -250,7 +250,7 @@ def settings_of(name: str, table: Table) -> object:
     Path("fretc.toml").write_text(tomli_w.dumps(table), "utf-8")
     found = settings.settings(".")
     assert not isinstance(found, Diagnostic), found
-    return found.parents, found.accept
+    return found.parents, found.accept, found.project
 
 
 def value_of(cell: str) -> Any:

@@ -27,7 +27,9 @@ def write(requirements: Path, folder: Path, kind: str = "ros2-package") -> Path:
     project = load(paths)
     assert {each.severity for each in project.diagnostics} <= {Severity.WARNING}
     assert [no.message for rule in project.rules if (no := target.refuse(rule))] == []
-    artifacts = target.emit(project.rules, Options(declarations=project.declarations))
+    options = Options(declarations=project.declarations, attribution=project.attribution)
+    assert target.refuse_project(options) is None
+    artifacts = target.emit(project.rules, options)
     for artifact in artifacts:
         path = folder / artifact.path
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -11,7 +11,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
+from compiler.files.attribution import EXAMPLE, Attribution
 from compiler.files.edition import __version__
+from compiler.files.settings import NAME as SETTINGS
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.signals.policies import instant
@@ -68,11 +70,9 @@ class Package:
     parameters: tuple[Parameter, ...]
     bindings: str
     """The name of their file."""
+    attribution: Attribution
     interception: Interception | None = None
     version: str = "0.1.0"
-    maintainer: str = "Maintainer"
-    email: str = "maintainer@example.org"
-    license: str = "0BSD"
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -80,7 +80,7 @@ class Package:
         return tuple(rule.id for rule in self.rules)
 
     @property
-    def description(self) -> str:
+    def summary(self) -> str:
         """One line, without characters that any format would have to escape."""
         return f"Runtime monitor of {', '.join(self.ids)}, which stops the robot"
 
@@ -141,6 +141,20 @@ def _refusal(rule: Formalized, what: str, place: Span, mend: str) -> Diagnostic:
     return Diagnostic(Code.NOT_EXPRESSIBLE, message, place, help=mend)
 
 
+def refuse_project(options: Options) -> Diagnostic | None:
+    """F634 where nobody says whose the package is: its manifest may not leave that out."""
+    missing = options.attribution.missing
+    if not missing:
+        return None
+    return Diagnostic(
+        Code.NO_ATTRIBUTION,
+        f"the manifest of a package needs what `[project]` of {SETTINGS} does not say: "
+        f"{', '.join(missing)}",
+        help=f"say it in {SETTINGS}, in the folder of the requirements or above it:",
+        paste=EXAMPLE,
+    )
+
+
 def remarks(options: Options) -> tuple[Diagnostic, ...]:
     """F323 where nobody carries out a stop; F630 to F633 of the interceptor."""
     declared = options.declarations
@@ -183,6 +197,7 @@ def package(rules: Sequence[Formalized], options: Options) -> Package:
         clock.time,
         tuple(_parameters(rules, signals, options, clock.period)),
         PurePosixPath(declared.source.name).name,
+        options.attribution,
         declared.interceptor,
     )
 

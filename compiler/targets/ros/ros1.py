@@ -74,6 +74,7 @@ TARGET = Target(
     shared.refuse,
     remark,
     remarks=shared.remarks,
+    refuse_project=shared.refuse_project,
     per_rule=False,
     together=True,
     next_step="its folder belongs into the `src` of a catkin workspace; its README.md says more",

@@ -113,7 +113,8 @@ TARGET = Target(
     shared.refuse,
     monitor.remark,
     remarks=shared.remarks,
+    refuse_project=shared.refuse_project,
     per_rule=False,
     together=True,
-    next_step="`colcon build` builds it; fill in the maintainer and the license of `{}`",
+    next_step="`colcon build` builds it, in the `src` of a workspace",
 )

@@ -17,7 +17,7 @@ from tests.command import write as put
 from tests.fretc.logs.logs import MS, TWELVE, S, Sent, number, write
 
 ROOT = Path(__file__).parents[3]
-NAMES = ("r1.fret", "bindings.toml", "hazards.toml")
+NAMES = ("r1.fret", "bindings.toml", "hazards.toml", "fretc.toml")
 
 
 def odometry() -> list[Sent]:
@@ -58,6 +58,7 @@ def test_a_project_without_a_log_has_no_mistake(fretc: Fretc) -> None:
     assert run.err == (
         "wrote requirements/r1.fret\nwrote requirements/bindings.toml\n"
         "wrote requirements/hazards.toml\n"
+        "wrote requirements/fretc.toml\n"
         "next: `fretc check` says what is wrong or missing\n"
         "next: `fretc audit LOG` judges a log\n"
     )

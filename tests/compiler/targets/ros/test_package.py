@@ -31,7 +31,8 @@ def described(path: str) -> p.Package:
     project = load(paths)
     assert project.rules
     assert [d for each in project.rules if (d := p.refuse(each))] == []
-    return p.package(project.rules, Options(declarations=project.declarations))
+    options = Options(declarations=project.declarations, attribution=project.attribution)
+    return p.package(project.rules, options)
 
 
 def written(package: p.Package, folder: Path) -> Path:

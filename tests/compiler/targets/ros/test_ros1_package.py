@@ -28,7 +28,7 @@ def files(path: str) -> dict[str, str]:
     paths = listed([str(ROOT / path)])
     assert not isinstance(paths, Diagnostic)
     project = load(paths)
-    options = Options(declarations=project.declarations)
+    options = Options(declarations=project.declarations, attribution=project.attribution)
     return {
         str(file.path): file.text for file in TARGETS["ros1-package"].emit(project.rules, options)
     }
