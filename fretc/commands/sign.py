@@ -63,7 +63,7 @@ def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: s
     taken from FRETC_PASSPHRASE). The signature is a line of `FILE.intoto.jsonl`: an envelope (DSSE)
     with a statement (in-toto). Signatures of others stay.
     """
-    _installed()
+    installed()
     signables = [_signable(path, key, reviewer, verification) for path in dict.fromkeys(files)]
     for each in signables:
         for line in each.lines:
@@ -77,7 +77,8 @@ def _merged(parts: Iterable[Mapping[Path, str]]) -> dict[Path, str]:
     return {path: text for part in parts for path, text in part.items()}
 
 
-def _installed() -> None:
+def installed() -> None:
+    """Stop where what signatures need is not installed."""
     from fretc.attestation.signatures import missing
 
     absent = missing()
@@ -91,7 +92,7 @@ def private(path: str) -> PrivateKey:
     from fretc.attestation.keys import UnusableKeyError, private_key
     from fretc.attestation.signers import bad_key
 
-    _installed()
+    installed()
     try:
         return private_key(content(path), lambda: _passphrase(path))
     except OSError as error:
@@ -433,7 +434,7 @@ def demand(evidence: EvidenceSource, by: str, others: Mapping[str, str | None]) 
     from fretc.attestation.signatures import book
     from fretc.attestation.signers import trusted
 
-    _installed()
+    installed()
     keys = trusted(by)
     if isinstance(keys, Diagnostic):
         stop(keys)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.sign import demand
+from fretc.commands.sign import demand, installed
 from fretc.terminal.options import (
     PATH,
     analysis_option,
@@ -43,10 +43,12 @@ from fretish.diagnostics.diagnostic import (
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from compiler.project.folder import Project
     from fretc.analysis.evidence import AnalyzedSet
+    from fretc.attestation.signatures import SignatureBook
+    from fretc.audit.evidence.reader import Evidence
     from fretc.audit.evidence.schema import Document
     from fretc.audit.plan import Plan
     from fretc.report.traceability.lock import Lock
@@ -88,6 +90,13 @@ if TYPE_CHECKING:
     help="A public key (id_ed25519.pub), or a list of signers: one of them must have signed FILE, "
     "and what --report, --verification and --analysis name.",
 )
+@click.option(
+    "--strict",
+    is_flag=True,
+    help="Demand a manifest, a signature of FILE and of the review of each requirement, and of the "
+    "report, proofs and analysis that there are. Files are signed by --signed-by, else by the list "
+    "`allowed_signers` beside the requirements, which also says whose key a reviewer has.",
+)
 @click.option("--no-proofs", is_flag=True, help="Prove nothing again: proofs are not checked.")
 @click.option("--no-analysis", is_flag=True, help="Do not analyze again: that is not checked.")
 @label_option
@@ -106,6 +115,7 @@ def verify_evidence(
     verification: str | None,
     analysis: str | None,
     signed_by: str | None,
+    strict: bool,
     no_proofs: bool,
     no_analysis: bool,
     labels: tuple[str, ...],
@@ -118,9 +128,9 @@ def verify_evidence(
     FILE must have a result of every requirement in force in each run, every run that the lock
     beside the requirements names, and every log of the manifest. Of every log the SHA-256 is taken
     again, every requirement is audited again, every proof is made again, and whether all can be
-    kept together is asked again; what comes out is compared with what is written. Exit status: 0
-    it stands, 1 something differs or is missing, 3 something was not checked, 2 bad use or bad
-    input.
+    kept together is asked again; what comes out is compared with what is written. Exit status:
+    0 it stands, 1 something differs or is missing (with --strict a signature or a manifest, too),
+    3 something was not checked, 2 bad use or bad input.
     """
     from fretc.analysis.evidence import written as analyzed
     from fretc.audit.store.anywhere import required
@@ -146,6 +156,9 @@ def verify_evidence(
     results += _reproved(project, proofs, scope, limit, skip=no_proofs)
     if known is not None:
         results += _asked_again(project, known, scope, skip=no_analysis)
+    if strict:
+        there = {"report": report, "proofs": verification, "analysis": analysis}
+        results += _unmet(evidence, scope, requirements, signed_by, there, log_hashes)
     sources = (file, verification, analysis, requirements)
     same = _report(project, report, *sources) if report is not None else None
     against = _against(scope, requirements, manifest)
@@ -291,6 +304,47 @@ def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
     naming = " and ".join(filter(None, (lock, f"`{manifest}`" if manifest else "")))
     runs = f"runs by {naming}" if naming else "no lock and no manifest says which runs there are"
     return f"{extent}; {runs}"
+
+
+def _unmet(
+    evidence: Evidence,
+    scope: Scope,
+    requirements: str,
+    signed_by: str | None,
+    others: Mapping[str, str | None],
+    manifest: Manifest | None,
+) -> Sequence[Recheck]:
+    """What `--strict` demands and is missing."""
+    from compiler.project.paths import beside
+    from fretc.attestation.signatures import SIGNERS
+    from fretc.report.traceability.lock import NAME
+    from fretc.reproduction.strictness import unmet_demands
+
+    installed()
+    listed, lock = (beside(requirements, name) for name in (SIGNERS, NAME))
+    there = {kind: path for kind, path in others.items() if path is not None}
+    of_files = _signatures([evidence.file, *there.values()], signed_by or listed)
+    of_reviews = _signatures([lock] if lock else [], listed or signed_by)
+    is_listed = manifest is not None
+    return [*unmet_demands(evidence, scope, of_files, of_reviews, there, is_listed=is_listed)]
+
+
+def _signatures(files: Sequence[str], signers: str | None) -> SignatureBook:
+    """The signatures of files; those that do not verify end the command."""
+    from fretc.attestation.signatures import book
+    from fretc.attestation.signers import trusted
+
+    known = trusted(signers) if signers is not None else None
+    if isinstance(known, Diagnostic):
+        stop(known)
+    signatures = book(files, known)
+    if isinstance(signatures, Diagnostic):
+        stop(signatures)
+    broken = list(signatures.diagnostics())
+    say(broken)
+    if has_errors(broken):
+        raise SystemExit(BAD)
+    return signatures
 
 
 # Made again -------------------------------------------------------------------------------------

@@ -194,6 +194,24 @@ class Store(Headed):
         for _, part in self._parts():
             yield from self._table(part, RUNS, ("results",))["results"].to_pylist()
 
+    def check_tables(self, results: Sequence[Result]) -> None:
+        """Hold each table against the one that the results give.
+
+        Args:
+            results: all of the store, in order.
+
+        Raises:
+            StoreError: what a table says of a result is not so.
+        """
+        for start, part in self._parts():
+            expected = tables.tabled(results[start : start + part.results], self.manifest.fretc)
+            for name in TABLES:
+                found = self._table(part, name)
+                for column in found.column_names:
+                    if not found[column].equals(expected[name][column]):
+                        what = f"`{column}` of `{name}` is not what the results give"
+                        raise self._error(f"cannot be read: {what}")
+
     def register(self) -> list[Entry]:
         """What each log was, in the order of the runs; empty where it is not known."""
         file = self.manifest.register
@@ -253,12 +271,14 @@ def evidence(store: Store) -> Evidence:
     """
     manifest = store.manifest
     places = range(sum(part.results for part in manifest.parts))
+    results = tuple(result for _, result in store.details(places))
+    store.check_tables(results)
     document = Document(
         schema=EVIDENCE,
         fretc=manifest.fretc,
         bindings=manifest.bindings,
         requirements=manifest.requirements,
-        results=tuple(result for _, result in store.details(places)),
+        results=results,
         probabilities=manifest.probabilities,
         selection=manifest.selection,
     )
