@@ -132,14 +132,16 @@ def some_of(fields: Fields) -> st.SearchStrategy[dict[str, Any]]:
     return st.fixed_dictionaries({}, optional=chosen)
 
 
+def table(least: Mapping[str, Any], fields: Fields) -> st.SearchStrategy[dict[str, Any]]:
+    """A table with what it must have."""
+    return some_of(fields).map(lambda more: {**least, **more})
+
+
 def tables(
     known: Mapping[str, tuple[Mapping[str, Any], Fields]],
 ) -> st.SearchStrategy[dict[str, Any]]:
     """All tables of one kind, in some order."""
-    parts = {
-        name: some_of(fields).map(lambda more, least=least: {**least, **more})
-        for name, (least, fields) in known.items()
-    }
+    parts = {name: table(*each) for name, each in known.items()}
     return st.permutations([*parts]).flatmap(
         lambda names: st.fixed_dictionaries({name: parts[name] for name in names})
     )
