@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 
-from fretc.audit.evidence.schema import Document, Result
+from fretc.audit.evidence.schema import Document, Result, Selection
 from fretc.report.traceability.chain import LOG
 from fretc.report.traceability.lock import Lock, Review
 from fretc.reproduction.outcome import FILE, Recheck, differs, unknown
@@ -44,6 +44,8 @@ def incomplete(
     """
     yield from _requirements(document, scope)
     yield from _results(document, scope)
+    if document.selection and not _is_of(document.selection, document):
+        yield differs(FILE, "", "what it says of the logs that were chosen contradicts its runs")
     if scope.lock is not None:
         once = cache(prints)
         prints_of = {run: partial(once, place) for run, place in places.items()}
@@ -76,6 +78,20 @@ def _results(document: Document, scope: Scope) -> Iterator[Recheck]:
                 yield differs(run, id, "its result is left out")
             elif id not in named:
                 yield differs(run, id, "the file does not name it among its requirements")
+
+
+def _is_of(selection: Selection, document: Document) -> bool:
+    """Whether the choice is one that `fretc.audit.selection.choice` makes, of these runs."""
+    runs = len({result.run for result in document.results})
+    sample = selection.sample_of
+    recent = selection.named - selection.older
+    return (
+        selection.audited == runs <= recent
+        and sample == (None if selection.seed is None else recent)
+        and (selection.since is not None or selection.older == 0)
+        and (selection.since is not None or sample is not None)
+        and (sample is not None or runs == recent)
+    )
 
 
 # The lock ---------------------------------------------------------------------------------------

@@ -497,3 +497,20 @@ def test_a_proof_that_is_planned_and_is_not_there_is_missed(audited: Fretc) -> N
     run = audited("verify-evidence")
     assert run.status == 3
     assert "r1  not checked: r1 plans `loop` and no proof says anything of it\n" in run.out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("chosen", [("--sample", "1"), ("--since", "1970-01-01"), ()])
+def test_what_is_said_of_the_choice_of_logs_fits_the_runs(
+    audited: Fretc, chosen: tuple[str, ...]
+) -> None:
+    assert audited("audit", "logs", "-o", "build/evidence.json", *chosen).status in (0, 1)
+    assert audited("verify-evidence").status == 0
+    known = json.loads(Path("build/evidence.json").read_text())
+    selection = known.get("selection", {"named": 2, "older": 0, "audited": 2})
+    whole = {"since": None, "sample_of": None, "seed": None, **selection}
+    for name in ("named", "older", "sample_of", "seed", "audited"):
+        for other in {0, 1, 2, 3, None if name in ("sample_of", "seed") else 9} - {whole[name]}:
+            changed(selection={**whole, name: other})
+            is_other_chance = name == "seed" and None not in (other, whole["seed"])
+            assert audited("verify-evidence").status == (0 if is_other_chance else 1), name
