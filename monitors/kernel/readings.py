@@ -119,6 +119,28 @@ def number(value: object, name: str) -> Reading:
     return _real(value)
 
 
+def measurement(value: object, name: str, *infinite: str) -> Reading:
+    """A number that a step is given; an infinite one is unknown, unless it means something.
+
+    Args:
+        value: what is given.
+        name: of the variable.
+        infinite: `+inf`, `-inf`: those that mean something, as the bindings say of the signal.
+
+    Raises:
+        TypeError: it is no number.
+    """
+    if type(value) is float and -inf < value < inf:
+        return value
+    reading = number(value, name)
+    if isinstance(reading, int):
+        double = _double(reading)
+        reading = reading if isfinite(double) else double
+    if reading is None or -inf < reading < inf:
+        return reading
+    return reading if ("+inf" if reading > 0 else "-inf") in infinite else None
+
+
 def _real(value: Any) -> Reading:
     """A number of another kind: of 80-bit floats, for example, which hold more whole numbers."""
     try:

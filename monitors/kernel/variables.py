@@ -24,6 +24,8 @@ class Variable(NamedTuple):
     """`number`, `truth` or `word`."""
     words: tuple[str, ...] = ()
     """What a word may be."""
+    infinite: tuple[str, ...] = ()
+    """Of a number `+inf`, `-inf`, where they mean something; else they are unknown."""
 
 
 _ROWS = 4096

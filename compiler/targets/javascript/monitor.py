@@ -91,6 +91,7 @@ def body(*rules: Formalized) -> Body:
         propositions=propositions,
         variables=[
             {"name": name, "variable": f"v_{names[name]}", "kind": each.kind, "words": each.words}
+            | {"infinite": each.infinite}
             for name, each in inputs.items()
         ]
         or [{"name": name, "kind": TRUTH, "words": ()} for name in propositions],

@@ -22,7 +22,7 @@ from compiler.logic.printing import is_compound
 from fretish import expressions as e
 from fretish.bindings.comparisons import is_measured
 from fretish.bindings.constants import called, computed, whole_exponent
-from fretish.bindings.declarations import Signal
+from fretish.bindings.declarations import Reading, Reduce, Signal
 from fretish.checking import conditions
 from fretish.reading.recursion import deep
 from fretish.units import unit
@@ -40,6 +40,8 @@ class Input:
     kind: str
     words: tuple[str, ...] = ()
     """What a word may be."""
+    infinite: tuple[str, ...] = ()
+    """Of a number `+inf`, `-inf`, where they mean something; else they are unknown."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,12 +143,24 @@ def _compared(tree: e.Comparison, rule: Formalized) -> Compared | None:
     if spoken is not None:
         ids, words = spoken
         return Compared({variable(id): Input(WORD, words) for id in ids}, tree, units)
-    compared = Compared({variable(id): Input(NUMBER) for id in names}, tree, units)
+    numbers = {variable(id): Input(NUMBER, infinite=_infinite(signals.get(id))) for id in names}
+    compared = Compared(numbers, tree, units)
     try:
         Writer(dict.fromkeys(compared.inputs, "x")).comparison(compared)
     except NotCompiledError:
         return None
     return compared
+
+
+def _infinite(signal: Signal | None) -> tuple[str, ...]:
+    """The infinities that a sample of a signal can be: what is far, and what is near."""
+    if signal is None:
+        return ()
+    invalid = signal.invalid
+    meant = (invalid.nan, invalid.positive_infinity, invalid.negative_infinity, invalid.other)
+    far, near = Reading.FAR in meant, Reading.NEAR in meant
+    is_gap = signal.reduce is Reduce.OUTLINE  # of which the nearest is 0
+    return ("+inf",) * far + ("-inf",) * (near and not is_gap)
 
 
 def _spoken(
@@ -189,8 +203,8 @@ _CALLS = {
 }
 _ENDS = {"min": "lesser", "max": "greater"}
 FUNCTIONS = frozenset(
-    "number truth_value word exact compared is_word plus minus times over modulo power negative "
-    "absolute lesser greater in_base first".split()
+    "measurement truth_value word exact compared is_word plus minus times over modulo power "
+    "negative absolute lesser greater in_base first".split()
 )
 """What the text of a front calls."""
 NAMES = FUNCTIONS | {"kept"}

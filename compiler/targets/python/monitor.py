@@ -208,6 +208,7 @@ class _Variable:
     name: str
     kind: str
     words: tuple[str, ...]
+    infinite: tuple[str, ...]
     annotation: str
 
 
@@ -240,7 +241,14 @@ class _Lines:
             for name, each in compared.comparisons.items()
         )
         variables = tuple(
-            _Variable(name, parameters[name], each.kind, each.words, ANNOTATIONS[each.kind])
+            _Variable(
+                name,
+                parameters[name],
+                each.kind,
+                each.words,
+                each.infinite,
+                ANNOTATIONS[each.kind],
+            )
             for name, each in compared.inputs.items()
         )
         earlier = tuple((name, *texts) for texts, name in writer.earlier.items())

@@ -16,7 +16,7 @@ from fretc.logs.signals.measures import COMPARE, Measure, Scope, term, together
 from fretc.logs.signals.outline import distances, places
 from fretc.logs.signals.propositions import TRUE, truth
 from fretc.logs.signals.samples import EXACT, Numbers, Values, scaled
-from fretc.logs.signals.signals import clearance, unrounded
+from fretc.logs.signals.signals import clearance, mean, unrounded
 from fretish import expressions as e
 from fretish.bindings.declarations import Invalid, Reading, Reduce, Signal
 from fretish.expressions import MIRRORED
@@ -282,7 +282,7 @@ def _reduced(signal: Signal, readings: Values, sibling_values: Mapping[str, Numb
 
 def _mean(readings: Values) -> float:
     measured = readings[~np.isnan(readings)]
-    return float(measured.mean()) if len(measured) else float("nan")
+    return mean(measured) if len(measured) else float("nan")
 
 
 # The robot's outline

@@ -327,9 +327,16 @@ def _reduced(reduce: Reduce | None, readings: Values) -> float:
         case Reduce.MAX:
             return _python(readings.max()) + 0
         case Reduce.MEAN:
-            return float(readings.mean())
+            return mean(readings)
         case _:
             raise AssertionError(f"{reduce} takes more than the numbers")
+
+
+def mean(readings: Values) -> float:
+    """Of at least one number; that of finite ones is finite, also where their sum is not."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        found = float(readings.mean())
+        return found if isfinite(found) else float((readings / len(readings)).sum())
 
 
 def _python(value: np.floating[Any]) -> float:

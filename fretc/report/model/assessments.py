@@ -191,8 +191,8 @@ def assessments(
     for requirement, standing in zip(project.requirements, standing_of_each, strict=True):
         anchors.append(_anchor(requirement.id, anchors))
         rule = rules.get(id(requirement))
-        basis = basis_of[id(requirement)] if rule is not None else None
-        suspicions = AboutResults(basis, audited_by)
+        basis = basis_of[id(requirement)]
+        suspicions = AboutResults(basis, audited_by, formalized=rule is not None)
         audits = tuple(
             SingleAudit(result, suspicions.of(result), place)
             for place, result in results.get(requirement.id, ())

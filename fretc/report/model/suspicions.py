@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from fretc.audit.evidence.basis import Basis, why
+from fretc.audit.evidence.basis import KINDS, MONITOR, Basis, why
 from fretc.audit.evidence.briefs import Brief, Recorded
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.measurements.confidence_intervals import SUPPORTED
@@ -22,14 +22,15 @@ from monitors import kernel
 class AboutResults:
     """Why results of one requirement do not count; what many have in common is compared once."""
 
-    def __init__(self, basis: Basis | None, audited_by: str) -> None:
+    def __init__(self, basis: Basis, audited_by: str, *, formalized: bool = True) -> None:
         """Begin with what a verdict would rest on now.
 
         Args:
-            basis: None: the sentence cannot be formalized.
+            basis: of the requirement.
             audited_by: the version of fretc that wrote the evidence.
+            formalized: whether the sentence is.
         """
-        self._basis, self._audited_by = basis, audited_by
+        self._basis, self._audited_by, self._formalized = basis, audited_by, formalized
         self._outdated: dict[Recorded, tuple[str, ...]] = {}
 
     def of(self, result: Brief) -> tuple[str, ...]:
@@ -40,10 +41,12 @@ class AboutResults:
         return (*self._outdated[recorded], *_about_log(result))
 
     def _changes(self, recorded: Recorded) -> Iterator[str]:
-        if self._basis is None:
-            yield "the sentence cannot be formalized now"
-        else:
+        if self._formalized:
             yield from map(why, outdated(recorded, self._audited_by, self._basis))
+        elif recorded[KINDS.index(MONITOR)] == self._basis[MONITOR]:  # there was none, either
+            yield "the sentence cannot be formalized, and could not at the audit"
+        else:
+            yield "the sentence could be formalized at the audit, and cannot be now"
 
 
 def _about_log(result: Brief) -> Iterator[str]:

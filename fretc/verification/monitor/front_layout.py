@@ -24,7 +24,7 @@ from monitors.kernel.variables import Variable
 
 _CONSTANT = re.compile(r"-?[0-9]{1,4300}(?:\.[0-9]{1,60}|/[1-9][0-9]{0,4300})?", re.ASCII)
 _SIGNS = frozenset({"<", "<=", ">", ">=", "=", "!="})
-_COMPUTED = FUNCTIONS - {"number", "truth_value", "word", "exact", "power", "compared", "is_word"}
+_COMPUTED = FUNCTIONS - {*"measurement truth_value word exact power compared is_word".split()}
 """The functions whose arguments are numbers only."""
 
 
@@ -39,9 +39,9 @@ def declared_variables(node: ast.stmt) -> Mapping[str, Variable]:
         case ast.AnnAssign(ast.Name("VARIABLES"), _, ast.Dict(keys, values)):
             for key, value in zip(keys, values, strict=True):
                 match key, value:
-                    case ast.Constant(str(name)), ast.Call(ast.Name("Variable"), args, []):
+                    case ast.Constant(str(name)), ast.Call(ast.Name("Variable"), args, more):
                         demand(name not in found, node)
-                        found[name] = _variable(args, node)
+                        found[name] = _variable(args, more, node)
                     case _:
                         demand(False, node)
         case _:
@@ -50,11 +50,17 @@ def declared_variables(node: ast.stmt) -> Mapping[str, Variable]:
     return found
 
 
-def _variable(args: Sequence[ast.expr], node: ast.stmt) -> Variable:
-    match args:
-        case [ast.Constant(str(parameter)), ast.Constant("number" | "truth" as kind)]:
+def _variable(args: Sequence[ast.expr], more: Sequence[ast.keyword], node: ast.stmt) -> Variable:
+    match args, more:
+        case [ast.Constant(str(parameter)), ast.Constant("number" | "truth" as kind)], []:
             return Variable(parameter, kind)
-        case [ast.Constant(str(parameter)), ast.Constant("word"), words]:
+        case [ast.Constant(str(parameter)), ast.Constant("number")], [
+            ast.keyword("infinite", value)
+        ]:
+            infinite = tuple(each for each in ("+inf", "-inf") if each in constants(value))
+            demand(bool(infinite) and infinite == constants(value), node)
+            return Variable(parameter, NUMBER, infinite=infinite)
+        case [ast.Constant(str(parameter)), ast.Constant("word"), words], []:
             texts = tuple(word for word in constants(words) if isinstance(word, str))
             demand(bool(texts) and texts == constants(words), node)
             return Variable(parameter, WORD, texts)
@@ -102,9 +108,9 @@ def _tuple(names: Iterable[str]) -> str:
 
 def _given(variables: Mapping[str, Variable]) -> Iterator[str]:
     """The statements that take the variables."""
-    for name, (parameter, kind, words) in variables.items():
-        function = {NUMBER: "number", TRUTH: "truth_value", WORD: "word"}[kind]
-        more = f", {words!r}" if kind == WORD else ""
+    for name, (parameter, kind, words, infinite) in variables.items():
+        function = {NUMBER: "measurement", TRUTH: "truth_value", WORD: "word"}[kind]
+        more = f", {words!r}" if kind == WORD else "".join(f", {each!r}" for each in infinite)
         yield f"{parameter} = {function}({parameter}, {name!r}{more})"
 
 

@@ -85,7 +85,8 @@ class _Parts:
         if variables is None:
             variables = {name: Variable(p, "truth") for name, p in propositions.items()}
         given: dict[str, Term] = {
-            v.parameter: ("given", name, v.kind, v.words) for name, v in variables.items()
+            v.parameter: ("given", name, v.kind, v.words, v.infinite)
+            for name, v in variables.items()
         }
         parts = cls(propositions, given)
         for statement in truths:
@@ -188,7 +189,7 @@ def _numbers(texts: Sequence[str]) -> Iterator[float | None]:
                 case ast.Call(ast.Name("exact"), [ast.Constant(str(digits))]):
                     constant = exact(digits)
                     number = constant.double
-                    yield from (number, nextafter(number, inf), nextafter(number, -inf))
+                    yield from (number, -number, nextafter(number, inf), nextafter(number, -inf))
                     yield from (number + 1, number - 1, 2 * number, number / 2)
                     if constant.exact.denominator == 1:
                         yield constant.exact.numerator

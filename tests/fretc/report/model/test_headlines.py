@@ -90,10 +90,21 @@ def test_red_stays_red_where_the_sentence_cannot_be_read_any_more(tmp_path: Path
     now = project(tmp_path, R1.replace("eventually", "evntually"))
     content = as_json(report_of(now, tmp_path, broken))
     assert content["overall"]["headline"] == (
-        f"{NAME} was violated, and the sentence cannot be formalized now."
+        f"{NAME} was violated, "
+        "and the sentence could be formalized at the audit, and cannot be now."
     )
     assert content["requirements"][0]["reasons"][0].startswith("a: violated, ")
     assert content["requirements"][0]["reasons"][1].startswith("F107: ")
+
+
+def test_a_sentence_that_could_never_be_read_is_not_called_one_that_could_be(
+    tmp_path: Path,
+) -> None:
+    known = project(tmp_path, R1.replace("eventually", "evntually"))
+    content = as_json(report_of(known, tmp_path, red(known, "R1")))
+    assert content["overall"]["headline"] == (
+        f"{NAME} was violated, and the sentence cannot be formalized, and could not at the audit."
+    )
 
 
 def test_one_current_violation_is_enough_for_a_current_verdict(tmp_path: Path) -> None:

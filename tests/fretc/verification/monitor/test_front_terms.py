@@ -15,7 +15,7 @@ SENTENCE = "whenever battery < 20 & preReal(0, speed) < 2 the agv shall within 1
 LESS = 'compared(battery, "<", exact("20"))'
 KEPT = "self.kept = (speed,)"
 EARLIER = '_earlier_1 = first(exact("0")) if kept is None else kept[0]'
-NUMBER = 'battery = number(battery, "battery")'
+NUMBER = 'battery = measurement(battery, "battery")'
 WRONG, REFUSED, SAME = Result.COUNTEREXAMPLE, Result.NOT_CHECKED, Result.PROVED
 
 FAULTS = (
@@ -46,8 +46,8 @@ FAULTS = (
     # What is given, and what of it is unknown.
     (f"        {NUMBER}\n", "", REFUSED),
     (NUMBER, "battery = battery or 0.0", REFUSED),
-    (NUMBER, 'battery = number(speed, "battery")', REFUSED),
-    (NUMBER, 'battery = number(battery, "speed")', REFUSED),
+    (NUMBER, 'battery = measurement(speed, "battery")', REFUSED),
+    (NUMBER, 'battery = measurement(battery, "speed")', REFUSED),
     ('docking = truth_value(docking, "docking")', "docking = bool(docking)", REFUSED),
     ("battery: Number, speed: Number, docking: Truth, level: Number) -> tuple", "battery: Number, speed: Number, docking: Truth, level: Number = 3) -> tuple", REFUSED),
     ("def truths(self, battery: Number, speed", "def truths(self, speed: Number, battery", REFUSED),
