@@ -185,7 +185,7 @@ def _lanes(
     rule: Formalized, drawn: Template, trace: Trace, found: Sequence[Window], end: int
 ) -> Iterator[Lane]:
     """From above: where, when, until when, and what."""
-    sentence = rule.sentence
+    sentence = rule.written
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     if scope is not None:
         yield Lane(Kind.MODE, expression(scope.mode), "true", _true(trace.m))
@@ -204,7 +204,7 @@ def _lanes(
 
 
 def _needs(rule: Formalized, drawn: Template, found: Sequence[Window], end: int) -> Iterator[Lane]:
-    q = expression(rule.sentence.response)
+    q = expression(rule.written.response)
     several = len(found) > 1
     for window in found:
         whose = window.trigger if several else None

@@ -175,7 +175,11 @@ def visible_lines(block: str) -> str:
 
 
 def _table(explained: Explanation, shown: Shown) -> str:
-    names = [drawing.shortened(visible(name), _NAME) for name in explained.propositions]
+    wordings = explained.rule.wordings
+    names = [
+        drawing.shortened(visible(wordings.get(name, name)), _NAME)
+        for name in explained.propositions
+    ]
     labels = [_label(row) for row in shown.rows]
     width = max(map(len, [*labels, "tick"])) + 2
     head = "".join(f"{name}  " for name in names).rstrip()

@@ -57,7 +57,7 @@ def why(
 
 def _nothing(rule: Formalized, counted: Template, m: Column) -> str:
     """No demand begins."""
-    scope, condition = rule.sentence.scope, rule.sentence.condition
+    scope, condition = rule.written.scope, rule.written.condition
     if not intervals(counted.scope, m):
         return "the sentence is enforced at none of these ticks: nothing is demanded"
     assert condition is not None, "without a condition each interval has a trigger"
@@ -103,11 +103,11 @@ class _Teller:
 
     @property
     def _name(self) -> str:
-        return f"`{expression(self.rule.sentence.response)}`"
+        return f"`{expression(self.rule.written.response)}`"
 
     @property
     def _stop(self) -> str:
-        stop = s.stop(self.rule.sentence.timing)
+        stop = s.stop(self.rule.written.timing)
         assert stop is not None
         return f"`{expression(stop)}`"
 

@@ -14,7 +14,7 @@ from compiler.formalization.predicates import Past
 from compiler.logic.formula import Formula, atoms
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Variable
-from fretish.bindings.definitions import Definitions
+from fretish.bindings.definitions import Definitions, expanded
 from fretish.checking import LOOK_BACK, conditions
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source, Span
@@ -120,6 +120,25 @@ class Formalized:
                 found |= {variable(part.id): quoted} if quoted is not None else {}
             inside |= isinstance(part, e.Call)
             waiting.extend((each, inside) for each in e.children(part))
+        return found
+
+    @cached_property
+    @deep
+    def wordings(self) -> Mapping[str, str]:
+        """How atoms are shown to people: with the numbers and units that the sentence has.
+
+        By the names that formulas give them; those that are written so already are left out.
+        """
+        whole = expanded(self.written, self.definitions)
+        assert isinstance(whole, Sentence), "the rule has been made of it"
+        found: dict[str, str] = {}
+        waiting = [*zip(conditions(self.sentence), conditions(whole), strict=True)]
+        while waiting:
+            own, part = waiting.pop()
+            if isinstance(own, e.Comparison | e.Call) and expression(own) != expression(part):
+                found.setdefault(atom(own), f"({expression(part)})")
+            if not isinstance(own, e.Comparison):
+                waiting.extend(zip(e.children(own), e.children(part), strict=True))
         return found
 
     @cached_property

@@ -272,4 +272,5 @@ def _lines(
     declared = rule.declarations.propositions if rule.declarations else {}
     bound = (declared[name] for name in rule.watched if name in declared)
     signals = (signal for each in bound for signal in each.signals)
-    yield from shown(suite, show, [*rule.variables, *demands(rule).atoms, *signals], roles)
+    names = [*rule.variables, *demands(rule).atoms, *signals]
+    yield from shown(suite, show, names, roles, rule.wordings)

@@ -148,7 +148,7 @@ def _data(
         "comparisons": [
             {
                 "proposition": place,
-                "label": visible(name.strip("()")),
+                "label": visible(_written(name, rules).strip("()")),
                 "limit": _limit(front.comparisons[name], places),
             }
             for place, name in enumerate(made.propositions)
@@ -226,6 +226,11 @@ def _variable(name: str, front: Front) -> dict[str, Any]:
         "note": f"in {unit}" if unit else "",
         "candidates": candidates,
     }
+
+
+def _written(name: str, rules: Sequence[Formalized]) -> str:
+    """A comparison as the first sentence that has it writes it."""
+    return next((found for rule in rules if (found := rule.wordings.get(name))), name)
 
 
 def _limit(compared: Compared, places: Mapping[str, int]) -> tuple[int, float] | None:

@@ -175,7 +175,13 @@ def _surviving(mutant: Mutated) -> Iterator[Line]:
 # Tests of one requirement -----------------------------------------------------------------------
 
 
-def shown(suite: Suite, id: str, names: Sequence[str], roles: Mapping[str, Role]) -> Iterator[Line]:
+def shown(
+    suite: Suite,
+    id: str,
+    names: Sequence[str],
+    roles: Mapping[str, Role],
+    wordings: Mapping[str, str],
+) -> Iterator[Line]:
     """The tests of a requirement, tick by tick.
 
     Args:
@@ -183,6 +189,7 @@ def shown(suite: Suite, id: str, names: Sequence[str], roles: Mapping[str, Role]
         id: the requirement.
         names: its atoms and variables: the lanes.
         roles: of those that have one.
+        wordings: of atoms that are shown in other words than by their names.
     """
     tested = next(each for each in suite.requirements if each.id == id)
     yield f"{id}  {tested.sentence}", None
@@ -191,16 +198,18 @@ def shown(suite: Suite, id: str, names: Sequence[str], roles: Mapping[str, Role]
     for test in suite.tests:
         if test.requirement == id:
             yield "", None
-            yield from _test(test, names, roles)
+            yield from _test(test, names, roles, wordings)
 
 
-def _test(test: Test, names: Sequence[str], roles: Mapping[str, Role]) -> Iterator[Line]:
+def _test(
+    test: Test, names: Sequence[str], roles: Mapping[str, Role], wordings: Mapping[str, str]
+) -> Iterator[Line]:
     sign = _SIGNS[test.verdict]
     yield f"{sign.glyph} {test.name}: {test.verdict}", sign.colour
     yield f"  {test.words}", None
     lanes = [name for name in names if any(name in row.values for row in test.rows)]
     play = [
-        {name: row.values.get(name, "") for name in lanes}
+        {wordings.get(name, name): row.values.get(name, "") for name in lanes}
         for row in test.rows
         for _ in range(row.count)
     ]

@@ -201,8 +201,9 @@ def undecided(rule: Formalized, monitor: Monitor, word: Word, atom: str) -> Expe
         finite[value] = defined(rule, letters(rule, known))[1]
     assert finite[True] is not finite[False], (rule.id, word)
     says = {True: "kept", False: "broken"}
+    shown = rule.wordings.get(atom, atom)
     because = (
-        f"`{atom}` is unknown at tick {at.bit_length() - 1}: {rule.id} is {says[finite[True]]} if "
+        f"`{shown}` is unknown at tick {at.bit_length() - 1}: {rule.id} is {says[finite[True]]} if "
         f"it is true there, and {says[finite[False]]} if it is false"
     )
     found = _monitored(monitor, word, because)
