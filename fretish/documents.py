@@ -153,7 +153,9 @@ def _requirement(
 
 
 def _stem(source: Source) -> str:
-    return PurePath(source.name).stem.strip("<>") or "requirement"
+    """The name of the file, with `_` for what is no printable text: names may be any bytes."""
+    stem = PurePath(source.name).stem.strip("<>") or "requirement"
+    return "".join(each if each.isprintable() else "_" for each in stem)
 
 
 def _called(source: Source, wording: Span, *, alone: bool) -> str:

@@ -204,3 +204,9 @@ def test_a_header_without_a_sentence_has_an_empty_wording() -> None:
 def test_an_empty_file_has_an_empty_sentence() -> None:
     (found,) = read("")
     assert (found.id, found.wording.text) == ("r1", "")
+
+
+@pytest.mark.parametrize("name", ["r\udcff.fret", "r\n.fret", "r\x1b.fret", "d\udcff/r\u202e.fret"])
+def test_an_id_is_text_whatever_the_file_is_called(name: str) -> None:
+    ((only,), _) = requirements(Source(name, "the sw shall satisfy p"))
+    assert only.id == "r_"
