@@ -166,7 +166,8 @@ def drawn(sentence: str) -> str:
     """What `--show` prints of one sentence."""
     subject = rule(sentence)
     roles = {"start": Role.INPUT, "run": Role.OUTPUT}
-    return _printed("fretc test --show R1", shown(_suite([subject]), "R1", subject.watched, roles))
+    lanes, words = subject.watched, subject.wordings
+    return _printed("fretc test --show R1", shown(_suite([subject]), "R1", lanes, roles, words))
 
 
 def _suite(rules: Sequence[Formalized]) -> Suite:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import isfinite
 from typing import Any
 
 from fretish import expressions as e
@@ -40,15 +41,34 @@ class VariableTables(Fields):
         table = self._field(self.tables.data, ("fret",), dict, "a table") or {}
         self._check_keys(table, _FRET, "[fret]", "fret")
         records = self._field(table, ("fret", "variable"), list, "tables of FRET's fields") or []
-        if all(isinstance(each, dict) for each in records):
-            return tuple(records)
-        self._say(
-            Code.BAD_BINDING_FIELD,
-            "`variable` must hold tables",
-            self.tables.value("fret", "variable"),
-            "write `[[fret.variable]]`",
-        )
-        return ()
+        if not all(isinstance(each, dict) for each in records):
+            self._say(
+                Code.BAD_BINDING_FIELD,
+                "`variable` must hold tables",
+                self.tables.value("fret", "variable"),
+                "write `[[fret.variable]]`",
+            )
+            return ()
+        self._check_fret(records, ("fret", "variable"))
+        return tuple(records)
+
+    def _check_fret(self, value: object, at: tuple[str, ...]) -> None:
+        """F303 for what FRET's files, which are JSON, cannot have: a date, or no number."""
+        waiting = [value]
+        while waiting:
+            part = waiting.pop()
+            if isinstance(part, dict):
+                waiting.extend(part.values())
+            elif isinstance(part, list):
+                waiting.extend(part)
+            elif not (isinstance(part, str | int) or (isinstance(part, float) and isfinite(part))):
+                self._say(
+                    Code.BAD_BINDING_FIELD,
+                    f"FRET can keep no `{part}`",
+                    self.tables.value(*at),
+                    "put it in quotes: texts, numbers, truth values, lists and tables can be kept",
+                )
+                return
 
     def _variable(self, name: str, table: Mapping[str, Any]) -> Variable:
         at = ("variable", name)
@@ -84,6 +104,7 @@ class VariableTables(Fields):
             for key in ("component", "type", "role", "text")
         }
         fret = self._field(table, (*at, "fret"), dict, "a table of texts") or {}
+        self._check_fret(fret, (*at, "fret"))
         value, place = self._value(table, (*at, "value"))
         if value is not None and texts["role"] not in ("", Role.INTERNAL, Role.MODE):
             self._say(

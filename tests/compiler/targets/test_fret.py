@@ -542,6 +542,17 @@ def test_what_fret_says_of_its_variables_comes_back(
     assert first["rover.fret"] == second["rover.fret"]
 
 
+@pytest.mark.parametrize("table", ["[variable.p.fret]\n{}", "[[fret.variable]]\n{}"])
+@pytest.mark.parametrize("value", ["1979-05-27", "[[1], 07:32:00]", "{ a = nan }", "-inf"])
+def test_what_json_has_not_is_refused_where_it_is_kept_for_fret(
+    fretc: Fretc, table: str, value: str
+) -> None:
+    write("bindings.toml", table.format(f"field = {value}\n"))
+    run = fretc(write("r.fret", "the sw shall satisfy p"), "--emit", "fret-json")
+    assert run.status == 2
+    assert "F303 FRET can keep no `" in run.err
+
+
 def test_a_constant_stays_a_name_in_what_fret_reads(fretc: Fretc) -> None:
     bindings = '[variable.limit]\ntype = "double"\nvalue = "1.5"\n'
     found = variables(fretc, "the rover shall always satisfy speed < limit", bindings=bindings)
