@@ -10,7 +10,9 @@ from compiler.situations.situations import Situation, situations
 from fretc.audit.measurements.situations import Encounter, encounters, nowhere_known
 from monitors.kernel import Column
 from monitors.kernel.verdicts import Truth
+from tests.compiler.situations.by_index import At
 from tests.each import each
+from tests.effort import some
 from tests.emitting import rule
 from tests.monitoring import packed
 from tests.strategies import Template, templates
@@ -85,6 +87,29 @@ def test_seen_is_what_every_completion_shows_and_never_what_none_does(template: 
         possible = [*completions(run)]
         expected = {one.key: exact(one, [met(one, run, each) for each in possible]) for one in of}
         assert shown(of, run) == expected
+
+
+def by_table(template: Template, run: Sequence[Mapping[str, bool]]) -> dict[str, int]:
+    """The first tick of each situation of a run, by lists of intervals and triggers alone."""
+    columns = {name: [row[name] for row in run] for name in "mpqs"}
+    ticks = [At(template, columns, at) for at in range(len(run))]
+    found: dict[str, int] = {}
+    for tick in ticks:
+        for key in (*tick.keys(), *(tick.at_end() if tick is ticks[-1] else ())):
+            found.setdefault(key, tick.at)
+    return found
+
+
+@each("template", some(templates((0, 1, 3)), 16, 7))
+def test_every_situation_is_that_of_the_table_whatever_is_unknown(template: Template) -> None:
+    made = rule(template.sentence)
+    if template.scope != "null" and "m" not in made.propositions:
+        return  # it is about tick 0 alone: nothing reads the mode
+    of = [one for one in situations(made, exact=True) if ":" not in one.key]
+    for run in runs(template, unknowns=5):
+        tables = [by_table(template, completion) for completion in completions(run)]
+        firsts = {one.key: [table.get(one.key) for table in tables] for one in of}
+        assert shown(of, run) == {one.key: exact(one, firsts[one.key]) for one in of}, run
 
 
 def test_a_proposition_without_a_column_is_unknown_throughout() -> None:
