@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from compiler.emit import TARGETS
+from compiler.files.attribution import Attribution
 from compiler.project.folder import load
 from compiler.project.paths import listed
 from compiler.targets.target import Options
@@ -15,6 +16,7 @@ from fretish.diagnostics.diagnostic import Severity
 from tests.ros2.messages import message_class
 from tests.ros2.world import Process, World
 
+OWNER = Attribution("Ada Meier", "ada@robots.org", "0BSD", "Stops the robot")
 FORWARD = 0.4
 """Metres per second that the planner wants."""
 
@@ -27,7 +29,7 @@ def write(requirements: Path, folder: Path, kind: str = "ros2-package") -> Path:
     project = load(paths)
     assert {each.severity for each in project.diagnostics} <= {Severity.WARNING}
     assert [no.message for rule in project.rules if (no := target.refuse(rule))] == []
-    options = Options(declarations=project.declarations, attribution=project.attribution)
+    options = Options(declarations=project.declarations, attribution=OWNER)
     assert target.refuse_project(options) is None
     artifacts = target.emit(project.rules, options)
     for artifact in artifacts:

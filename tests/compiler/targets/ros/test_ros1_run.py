@@ -11,16 +11,19 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 from xmlrpc.client import ServerProxy
 
 import pytest
+import tomli_w
 
 from compiler.files.text_files import write as deliver
 from tests.fretc.watch.watched import ROOT, Watched
 from tests.programs import DEBIANS_PATH, DEBIANS_PYTHON, installed
 from tests.ros1 import Ended, Ros, ended, ros, ros1_or_skip, until
+from tests.ros2.emitted import OWNER
 
 FAR, NEAR, WALL = 0.8, 0.4, 0.03
 """Clearances of the robot, m: where it is put, where it must stop, where it can go no further."""
@@ -123,6 +126,8 @@ def package(folder: Path) -> Path:
         texts = {f"{id}.fret": sentence for id, sentence in sentences.items()}
         for file, text in {"bindings.toml": BINDINGS, **texts}.items():
             assert deliver({folder / name / file: text}) is None
+    settings = tomli_w.dumps({"project": asdict(OWNER)})
+    assert deliver({folder / "fretc.toml": settings}) is None
     made = fretc(folder, "halt", "--emit", "ros1-package", "-o", ".")
     assert made.returncode == 0, made.stderr
     return folder / "halt_monitor"
