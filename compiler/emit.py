@@ -9,7 +9,10 @@ from collections.abc import Iterator, Mapping
 from importlib import import_module
 from typing import TYPE_CHECKING, cast
 
+from compiler.logic.printing import is_compound
+
 if TYPE_CHECKING:
+    from compiler.formalization.formalized import Formalized
     from compiler.targets.target import Target
 
 _MODULES: Mapping[str, str] = {
@@ -50,3 +53,13 @@ class _Targets(Mapping[str, "Target"]):
 
 
 TARGETS: Mapping[str, Target] = _Targets()
+
+
+def renamed(rule: Formalized) -> dict[str, dict[str, str]]:
+    """Kind of file → name of the user → what it is called there, where that is another name."""
+    found: dict[str, dict[str, str]] = {}
+    for kind, target in TARGETS.items():
+        names = target.names(rule).items()
+        own = {name: new for name, new in names if name != new and not is_compound(name)}
+        found |= {kind: own} if own else {}
+    return found

@@ -10,19 +10,9 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.mends import Mend
 from fretish.diagnostics.source import Span
 from fretish.expressions import depth
+from fretish.keywords import UNUSED
 from fretish.reading.recursion import MOST
 from fretish.syntax import Sentence, stop
-
-RESERVED = frozenset(
-    "A E F G H O R S T U V X Y Z AF AG AX EF EG EX ABF ABG EBF EBG BU "
-    "ASSIGN COMPASSION COMPUTE CONSTANTS CONSTRAINT CTLSPEC CTLWFF DEFINE FAIRNESS FROZENVAR "
-    "FTSPEC FUN IN INIT INPUT INVAR INVARSPEC ISA ITYPE IVAR JUSTICE LTLSPEC LTLWFF MAX MDEFINE "
-    "MIN MIRROR MODULE NAME NEXTWFF PRED PREDICATES PSLSPEC PTSPEC ENUM PTWFF SIMPWFF STRUCT "
-    "TRANS VAR FALSE TRUE LAST what "
-    "abs array bool boolean case count esac extend float init int integer max min process real "
-    "resize self signed sizeof swconst union unsigned uwconst word word1 xnor".split()
-)
-"""Words that the languages FRET exports to keep for themselves; not allowed but as component."""
 
 _NUMERIC_PREDICATES = frozenset({"preInt", "preReal"})
 _NUMERIC_FUNCTIONS = frozenset({"absReal", "absInt", "maxReal", "maxInt", "minReal", "minInt"})
@@ -72,9 +62,21 @@ def has_units(sentence: Sentence) -> bool:
 
 
 def check_names(sentence: Sentence) -> Iterator[Diagnostic]:
-    """F109 for each name that is a reserved word."""
-    for expression in conditions(sentence):
-        yield from _reserved(expression)
+    """F109 for each name without quotes that FRET's grammar keeps for itself."""
+    found = [each for expression in conditions(sentence) for each in _names(expression)]
+    for _, span in [(sentence.component, sentence.component_span), *found]:
+        if span is not None and span.text.lower() in UNUSED:
+            yield key_word_as_name(span)
+
+
+def key_word_as_name(word: Span) -> Diagnostic:
+    """F109."""
+    return Diagnostic(
+        Code.RESERVED,
+        f"`{word.text}` is a key word of FRETish and cannot be a name",
+        word,
+        help=f'choose another name, or quote it: `"{word.text}"`',
+    )
 
 
 def check_value(expression: e.Expression, place: Span) -> Iterator[Diagnostic]:
@@ -82,21 +84,8 @@ def check_value(expression: e.Expression, place: Span) -> Iterator[Diagnostic]:
     if depth(expression) > MOST:
         yield _too_deep(place)
         return
-    yield from _reserved(expression)
     is_truth = _is_boolean(expression, expected=True)
     yield from _check_kinds(expression, place, boolean=is_truth)
-
-
-def _reserved(expression: e.Expression) -> Iterator[Diagnostic]:
-    """F109."""
-    for id, span in _names(expression):
-        if id in RESERVED:
-            yield Diagnostic(
-                Code.RESERVED,
-                f"`{id}` is reserved by the languages that requirements are exported to",
-                span,
-                help=f"choose another name, such as `{id}_`",
-            )
 
 
 def _names(expression: e.Expression) -> Iterator[tuple[str, Span | None]]:

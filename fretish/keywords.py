@@ -9,10 +9,15 @@ KEYWORDS = (
 ).split()
 """As one would write them; for suggestions."""
 
+UNUSED = frozenset({"what"})
+"""A key word of FRET's grammar that begins nothing which FRET formalizes."""
 RESERVED = frozenset(
     [
         *KEYWORDS,
         *"sec secs microsec microsecs millisec millisecs true false".split(),
+        *UNUSED,
     ]
 )
-"""All of them, in lower case; they are reserved in any case."""
+"""All of them, in lower case; they are reserved in any case. `what` begins nothing that FRET
+formalizes. No other word is reserved: what a target's language keeps for itself is written in
+another way there (`compiler.logic.spelling.reserved_words`)."""

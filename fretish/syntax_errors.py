@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable
 from fractions import Fraction
 
+from fretish.checking import key_word_as_name
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from fretish.diagnostics.mends import Mend, left_out
 from fretish.diagnostics.source import Span
@@ -340,12 +341,7 @@ def _missing_component(u: Unexpected) -> Diagnostic | None:
 def _key_word_as_name(u: Unexpected) -> Diagnostic | None:
     if not u.wants("ID") or u.lexeme.word.lower() not in KEYWORDS:
         return None
-    return Diagnostic(
-        Code.RESERVED,
-        f"`{u.lexeme.word}` is a key word of FRETish and cannot be a name",
-        u.lexeme.span,
-        help=f'choose another name, or quote it: `"{u.lexeme.word}"`',
-    )
+    return key_word_as_name(u.lexeme.span)
 
 
 def _does_not_fit(u: Unexpected) -> Diagnostic:

@@ -16,7 +16,8 @@ ORDER = """
 monitors.kernel  monitors
 fretish.diagnostics  fretish.reading  fretish.mistakes  fretish  fretish.bindings
 fretish.bindings.tables
-compiler.files  compiler.logic.ordering  compiler.logic  compiler.formalization
+compiler.files  compiler.logic.ordering  compiler.logic.spelling  compiler.logic
+compiler.formalization
 compiler.situations  compiler.project  compiler.agents  compiler.program  compiler.signals
 compiler.targets  compiler.targets.python  compiler.targets.c  compiler.targets.rust
 compiler.targets.ros  compiler.targets.javascript  compiler.targets.automata  compiler.targets.ajpf

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from itertools import count, islice
 
 from compiler.logic.printing import identifier, is_compound
 
@@ -15,15 +16,30 @@ _OPERATORS = {
 _SYMBOL = re.compile("|".join(re.escape(symbol) for symbol in _OPERATORS))
 
 
+def numbered(name: str) -> Iterator[str]:
+    """`name`, `name_2`, `name_3` ..."""
+    yield name
+    yield from (f"{name}_{number}" for number in count(2))
+
+
+def underlined(name: str) -> Iterator[str]:
+    """`name`, `name_`, `name__` ..."""
+    return (name + "_" * times for times in count())
+
+
 def legal_names(
     propositions: Iterable[str],
-    reserved: Collection[str],
+    reserved: Container[str],
     prefix: str = "",
     names: Mapping[str, str] | None = None,
+    *,
+    variants: Callable[[str], Iterator[str]] = numbered,
+    brings: Callable[[str], Iterable[str]] = lambda name: (name,),
 ) -> Mapping[str, str]:
     """A name for each proposition: letters, digits and `_`, none of them twice or reserved.
 
-    Names as they are come first: `x_gt_3` keeps its name, and the comparison `(x > 3)` beside it
+    What is legal as it is keeps its name, whatever the others are: `init_2` stays beside `init`,
+    which becomes `init_3`. Comparisons come last: `x_gt_3` keeps its name, and `(x > 3)` beside it
     becomes `x_gt_3_2`.
 
     Args:
@@ -31,14 +47,29 @@ def legal_names(
         reserved: what a name may not be; capitals count.
         prefix: what all names begin with.
         names: what some propositions are called where that is not reserved.
+        variants: a name, and what it becomes where it is taken.
+        brings: all the identifiers that come with a name; none of them is reserved, or another's.
     """
-    taken = set(reserved)
+    taken = set[str]()
     found: dict[str, str] = {}
+
+    def is_free(name: str) -> bool:
+        return not any(each in reserved or each in taken for each in brings(name))
+
     everything = tuple(dict.fromkeys(propositions))
-    for name in sorted(everything, key=is_compound):
-        wanted = prefix + (names or {}).get(name, _plain(name))
-        found[name] = next(free for free in _variants(wanted) if free not in taken)
-        taken.add(found[name])
+    wanted = {name: prefix + (names or {}).get(name, _plain(name)) for name in everything}
+    # Where the reserved names are all that begin so, only another beginning helps.
+    wanted = {
+        name: f"v_{text}" if all(each in reserved for each in islice(variants(text), 3)) else text
+        for name, text in wanted.items()
+    }
+
+    def late(name: str) -> tuple[bool, bool]:
+        return is_compound(name), wanted[name] != prefix + name or not is_free(wanted[name])
+
+    for name in sorted(everything, key=late):
+        found[name] = next(filter(is_free, variants(wanted[name])))
+        taken.update(brings(found[name]))
     return {name: found[name] for name in everything}
 
 
@@ -49,11 +80,3 @@ def _plain(name: str) -> str:
         name = "_".join(re.findall(r"\w+", spelt))
     text = identifier(name)
     return text if re.match("[A-Za-z]", text) else f"v_{text}"
-
-
-def _variants(name: str) -> Iterable[str]:
-    yield name
-    number = 2
-    while True:
-        yield f"{name}_{number}"
-        number += 1

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from compiler.logic import formula as f
+from compiler.logic.spelling.reserved_words import FRET as FRET_WORDS
+from compiler.logic.spelling.reserved_words import NOTATION
+from compiler.logic.spelling.reserved_words import SPOT as SPOT_WORDS
 from fretish.reading.recursion import deep
 
 _ATOMIC, _UNARY, _BINARY, _AND, _OR, _XOR, _IMPLIES, _IFF = range(8)
@@ -36,10 +39,25 @@ def is_compound(name: str) -> bool:
 
 
 def _plain_atom(name: str) -> str:
-    return name if is_compound(name) else identifier(name)
+    """In quotes, as in a sentence, where it would be an operator: `G` is no name of a formula."""
+    text = name if is_compound(name) else identifier(name)
+    return f'"{text}"' if text in NOTATION else text
 
 
-_PLAIN_TO_SPOT = re.compile(r"(?!true$|false$|xor$)[A-EH-LN-QSTYZa-z_][A-Za-z0-9_]*")
+def _escaped(words: Container[str]) -> Callable[[str], str]:
+    """As FRET writes names in quotes, with `_DQT_` for these: in a text without quotes."""
+
+    def atom(name: str) -> str:
+        text = name if is_compound(name) else identifier(name)
+        return _WORD.sub(lambda word: _DQT.format(word[0]) if word[0] in words else word[0], text)
+
+    return atom
+
+
+_DQT = "_DQT_{}_DQT_"
+_WORD = re.compile(r'"[^"\n]*"|[A-Za-z_][A-Za-z0-9_.%]*')
+"""In the text of an atom: a word of a signal, or a name."""
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 
 
 def _quoted_atom(name: str) -> str:
@@ -48,8 +66,10 @@ def _quoted_atom(name: str) -> str:
     So is a name that begins like one of Spot's operators: `Fault` would be `F ault`.
     """
     text = name if is_compound(name) else identifier(name)
-    if _PLAIN_TO_SPOT.fullmatch(text):
+    if text not in SPOT_WORDS and _IDENTIFIER.fullmatch(text):
         return text
+    if text == "LAST":
+        text = _DQT.format(text)  # Spot takes `"LAST"` for the same proposition as `LAST`
     escaped = re.sub(r'(["\\])', r"\\\1", text)
     return f'"{escaped}"'
 
@@ -102,7 +122,7 @@ def _latex_atom(name: str) -> str:
 
 
 PLAIN = Dialect("plain")
-FRET = Dialect("fret", operators=_frozen(R="V"), has_bounded_since=False)
+FRET = Dialect("fret", operators=_frozen(R="V"), atom=_escaped(FRET_WORDS), has_bounded_since=False)
 NUSMV = Dialect(
     "nusmv",
     operators=_frozen(R="V"),
@@ -147,7 +167,9 @@ _FULL_FUTURE = Dialect(
     full=True,
 )
 PCTL = Dialect("pctl", constants=("false", "true"), full=True)
-_FULL_PAST = Dialect("full past", not_="! ", full=True, has_bounded_since=False)
+_FULL_PAST = Dialect(
+    "full past", not_="! ", atom=_escaped(NOTATION), full=True, has_bounded_since=False
+)
 
 
 def readable(formula: f.Formula) -> str:

@@ -271,7 +271,7 @@ def _variables(
     tables: dict[str, dict[str, Any]] = {}
     components: dict[str, dict[str, dict[str, Any]]] = {}
     for record in records:
-        name = _text(record.get("variable_name"))
+        name = unquoted(_text(record.get("variable_name")))
         if not name or record.get("modeldoc") is True:
             kept.append(_record(record))
             continue
@@ -291,6 +291,11 @@ def _variables(
         name: {**table, "of": components[name]} if name in components else table
         for name, table in tables.items()
     }
+
+
+def unquoted(name: str) -> str:
+    """FRET keeps the quotes of a name; in a sentence `"T"` is `T`."""
+    return name[1:-1] if re.fullmatch(r'"[^"\n]+"', name) else name
 
 
 def _without_circles(tables: Mapping[str, dict[str, Any]], source: Source) -> Iterator[Diagnostic]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from typing import assert_never
 
+from compiler.logic.spelling.reserved_words import LUSTRE
 from fretish import expressions as e
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
@@ -162,7 +163,7 @@ def _has(part: e.Expression) -> bool:
         case e.Quantity() | e.Word() | e.Persistence() | e.Arithmetic("^"):
             return False
         case e.Name(id) | e.Call(id):
-            return re.fullmatch(r"[A-Za-z_]\w*", id) is not None
+            return re.fullmatch(r"[A-Za-z_]\w*", id) is not None and id not in LUSTRE
         case _:
             return True
 

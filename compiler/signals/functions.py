@@ -6,7 +6,7 @@ target places them in its template, and says by a `Language` how it writes what 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 
 from compiler.files.edition import __version__
@@ -82,7 +82,7 @@ def functions(
     rules: Sequence[Formalized],
     names: Mapping[str, str],
     language: Language,
-    reserved: Collection[str] = (),
+    reserved: Container[str] = (),
 ) -> Functions | None:
     """The functions for a monitor; None where no bindings say what its propositions are.
 
@@ -131,7 +131,7 @@ def _notes(rules: Sequence[Formalized], found: Instant) -> tuple[str, ...]:
 
 
 def _durations(
-    found: Instant, names: Mapping[str, str], reserved: Collection[str]
+    found: Instant, names: Mapping[str, str], reserved: Container[str]
 ) -> Mapping[str, tuple[str, ...]]:
     """The inputs of each proposition that say what has held."""
     wanted = {

@@ -48,10 +48,19 @@ def _meaning(rule: Formalized, atom: str, part: e.Expression | None) -> e.Expres
     return part if declared is None else declared.expression
 
 
-def definitions(rule: Formalized) -> Mapping[str, str]:
-    """The same by the names: `battery_lt_20` is `battery < 20 %`."""
+def definitions(rule: Formalized, names: Mapping[str, str]) -> Mapping[str, str]:
+    """By the names in a text, what stands for something else: `battery_lt_20` for `battery < 20 %`.
+
+    Args:
+        rule: the requirement.
+        names: what its propositions are called there.
+    """
     meanings = in_words(rule)
-    return {name: meanings[atom] for atom, name in comparison_names(rule).items()}
+    return {
+        name: meanings.get(atom, f"the proposition `{atom}`")
+        for atom, name in names.items()
+        if name != atom
+    }
 
 
 def impossible(rule: Formalized, names: Mapping[str, str]) -> list[str]:
@@ -66,7 +75,7 @@ def notes(rule: Formalized) -> list[str]:
     """Definitions, and what no numbers make true, a sentence each."""
     names = comparison_names(rule)
     return [
-        *(f"{name}: {meaning}" for name, meaning in definitions(rule).items()),
+        *(f"{name}: {meaning}" for name, meaning in definitions(rule, names).items()),
         *(f"never at one tick: {together}" for together in impossible(rule, names)),
     ]
 

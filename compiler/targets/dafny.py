@@ -33,6 +33,8 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, temporal_predicate
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
+from compiler.logic.identifiers import legal_names, underlined
+from compiler.logic.spelling.reserved_words import DAFNY
 from compiler.project.interceptor_options import options as core
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.dafny_claims import CHANNELS, Delay, delay, loopless
@@ -164,7 +166,7 @@ _TRIGGERS: Mapping[ConditionKind | None, Trigger] = {
 
 def _monitor(rule: Formalized) -> str:
     sentence, timing = rule.sentence, rule.sentence.timing
-    fields = _fields(atoms_of(sentence), comparison_names(rule))
+    fields = _names(rule)
     stop, shape = s.stop(timing), s.SHAPES[type(timing)]
     return render(
         f"dafny/{_COUNTERS[type(timing)]}.dfy.j2",
@@ -212,36 +214,24 @@ def _bound(rule: Formalized) -> Mapping[str, object]:
     }
 
 
-_RESERVED = frozenset(
-    """abstract allocated allows array as assert assume bool break by calc case char class
-    codatatype
-    colemma const constructor continue copredicate datatype decreases downto else ensures exists
-    expect export extends false forall fresh from function ghost greatest hides if imap import in
-    include inductive int invariant is iset iterator label labels least lemma map match method
-    modifies modify module multiset nameonly nat new newtype null object old opaque opened
-    ORDINAL original predicate print protected provides reads real refines requires return returns
-    reveal reveals seq set static string then this trait true twostate type unchanged var where
-    while witness yield yields""".split()
-)
-"""The key words of Dafny 2.3 and 4, and those of its types that one might write as a name."""
-
-
 def _fields(atoms: Sequence[str], comparisons: Mapping[str, str]) -> Mapping[str, str]:
     """Atom → a name in Dafny, no two alike; a tick without propositions has one that nobody reads.
 
     A name ends neither with `?` nor in digits that look like an array's, and begins with a letter.
     """
-    names: dict[str, str] = {}
-    for atom in atoms:
-        wanted = comparisons.get(atom, atom)
-        name = re.sub(r"[^A-Za-z0-9]+", "_", wanted).strip("_") or "p"
-        name = name if name[0].isalpha() else f"p_{name}"
-        if name in _RESERVED or re.fullmatch(r"(array|bv)\d+\??", name):
-            name = f"{name}_"
-        while name in names.values():
-            name = f"{name}_"
-        names[atom] = name
+    wanted = {atom: _field(comparisons.get(atom, atom)) for atom in atoms}
+    names = legal_names(atoms, DAFNY, names=wanted, variants=underlined)
     return names or {"no proposition": "unused"}
+
+
+def _field(name: str) -> str:
+    """Letters, digits and single `_` between them."""
+    text = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_") or "p"
+    return text if text[0].isalpha() else f"p_{text}"
+
+
+def _names(rule: Formalized) -> Mapping[str, str]:
+    return _fields(atoms_of(rule.sentence), comparison_names(rule))
 
 
 def _dafny(expression: e.Expression, fields: Mapping[str, str]) -> str:
@@ -309,4 +299,5 @@ TARGET = Target(
     emit,
     refuse,
     next_step="`dafny verify {}` proves it",
+    names=_names,
 )

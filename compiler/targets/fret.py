@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import uuid
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -13,7 +14,8 @@ from compiler.files.templating import render
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import Formalized
 from compiler.logic import printing
-from compiler.project.fret_import import OWN, STATUSES, assignment_field
+from compiler.logic.spelling.reserved_words import FRET
+from compiler.project.fret_import import OWN, STATUSES, assignment_field, unquoted
 from compiler.project.lustre import fretish, lustre
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible
 from fretish import expressions as e
@@ -25,9 +27,10 @@ from fretish.checking import conditions, has_units
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import Requirement
+from fretish.keywords import RESERVED
 from fretish.meaning import meaning
 from fretish.parser import parse
-from fretish.printer import expression, sentence, timing
+from fretish.printer import expression, identifier, sentence, timing
 
 _STATUSES = {"approved": "completed", "retired": "deprecated"}
 _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
@@ -36,10 +39,13 @@ _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
 
 def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
     """`fret.json` with all rules: `{"requirements": [...], "variables": [...]}`."""
-    rules = tuple(map(_in_fretish, rules))
+    read = {id(rule.requirement): _in_fretish(rule) for rule in rules}
+    ordered = [(entry, read.get(id(entry))) for entry in _ordered(rules, options)]
     content = {
-        "requirements": [requirement(entry, rule) for entry, rule in _ordered(rules, options)],
-        "variables": variables(rules, options.declarations),
+        "requirements": [
+            requirement(rule.requirement if rule else entry, rule) for entry, rule in ordered
+        ],
+        "variables": variables([*read.values()], options.declarations),
     }
     text = render("fret-json/fret.json.j2", content=content)
     return (Artifact(PurePosixPath("fret.json"), text),)
@@ -73,8 +79,47 @@ def _in_fretish(rule: Formalized) -> Formalized:
     whole = expanded(rule.written, rule.definitions)
     assert isinstance(whole, s.Sentence), "it has been formalized"
     if has_units(whole):
-        return _without_units(rule)
-    return _with_names(rule) if rule.definitions else rule
+        return _in_quotes(_without_units(rule))
+    return _in_quotes(_with_names(rule) if rule.definitions else rule)
+
+
+def _in_quotes(rule: Formalized) -> Formalized:
+    """The rule of the same sentence, with quotes around names that FRET does not read without."""
+    wording = rule.requirement.wording
+    component = rule.written.component_span
+    places = () if component is None else (component.start - wording.start,)
+    text = quoted(wording.text, places)
+    if text == wording.text:
+        return rule
+    span = Source(wording.source.name, text).span()
+    written = parse(span)
+    assert written == rule.written, "quotes change nothing"
+    requirement = replace(rule.requirement, wording=span)
+    sentence = written if rule.sentence == written else rule.sentence
+    return replace(rule, requirement=requirement, written=written, sentence=sentence)
+
+
+_NAMES = re.compile(r'"[^"\n]*"|[A-Za-z][A-Za-z0-9_.%]*')
+
+
+def quoted(text: str, others: Collection[int] = ()) -> str:
+    """A text of FRETish in which `T` is `"T"`: a name that FRET's editor refuses without quotes.
+
+    Args:
+        text: a sentence, or a part of it.
+        others: where a name begins that is left alone.
+    """
+    return _NAMES.sub(lambda m: _name(m[0]) if m.start() not in others else m[0], text)
+
+
+def _name(id: str) -> str:
+    """`"T"` for `T`; a key word of FRETish is none of them, whatever its case."""
+    return f'"{id}"' if id in FRET and id.lower() not in RESERVED else id
+
+
+def _variable_name(id: str) -> str:
+    """As FRET names the variable of a sentence: with the quotes that it has there."""
+    return f'"{id}"' if id in FRET else identifier(id)
 
 
 def _with_names(rule: Formalized) -> Formalized:
@@ -107,17 +152,12 @@ def _without_units(rule: Formalized) -> Formalized:
     return replace(rule, requirement=requirement, written=written, sentence=written, definitions={})
 
 
-def _ordered(
-    rules: Sequence[Formalized], options: Options
-) -> list[tuple[Requirement, Formalized | None]]:
-    """Rules and free texts in the order of their files, and of each file."""
-    pairs: list[tuple[Requirement, Formalized | None]] = [
-        (rule.requirement, rule) for rule in rules
-    ]
-    pairs += [(entry, None) for entry in options.free_texts]
-    files = list(dict.fromkeys(entry.wording.source.name for entry, _ in pairs))
+def _ordered(rules: Sequence[Formalized], options: Options) -> list[Requirement]:
+    """Those of rules and free texts, in the order of their files, and of each file."""
+    entries = [*(rule.requirement for rule in rules), *options.free_texts]
+    files = list(dict.fromkeys(entry.wording.source.name for entry in entries))
     return sorted(
-        pairs, key=lambda pair: (files.index(pair[0].wording.source.name), pair[0].wording.start)
+        entries, key=lambda each: (files.index(each.wording.source.name), each.wording.start)
     )
 
 
@@ -170,10 +210,10 @@ def semantics(rule: Formalized) -> dict[str, Any]:
         "probability": "bound" if tree.probability else "null",
         "timing": s.timing_key(tree),
         "response": "satisfaction",
-        "variables": list(rule.variables),
+        "variables": list(map(_variable_name, rule.variables)),
         "component_name": tree.component,
         "component": tree.component,
-        "post_condition": f"({expression(tree.response)})",
+        "post_condition": f"({quoted(expression(tree.response))})",
         "description": meaning(tree, rule.ticks, rule.clock),
         "ft": printing.text(rule.ft_finite, printing.FRET),
         "pt": printing.text(rule.pt, printing.FRET),
@@ -194,9 +234,9 @@ def _parts(tree: s.Sentence) -> dict[str, Any]:
     """The fields that only some sentences have."""
     fields: dict[str, Any] = {}
     if tree.scope is not None:
-        fields["scope_mode"] = expression(tree.scope.mode)
+        fields["scope_mode"] = quoted(expression(tree.scope.mode))
     if tree.condition is not None:
-        condition = f"({expression(tree.condition.expression)})"
+        condition = f"({quoted(expression(tree.condition.expression))})"
         fields |= {
             "qualifier_word": tree.condition.word,
             "pre_condition": condition,
@@ -204,14 +244,14 @@ def _parts(tree: s.Sentence) -> dict[str, Any]:
         }
     stop = s.stop(tree.timing)
     if stop is not None:
-        fields["stop_condition"] = f"({expression(stop)})"
+        fields["stop_condition"] = f"({quoted(expression(stop))})"
     duration = s.duration(tree.timing)
     if duration is not None:
         fields["duration"] = str(duration.amount)
     if tree.probability is not None:
         fields["probability_bound"] = [tree.probability.op, tree.probability.digits]
     if timing(tree.timing):
-        fields["timingText"] = timing(tree.timing)
+        fields["timingText"] = quoted(timing(tree.timing))
     return fields
 
 
@@ -284,7 +324,7 @@ def _with_kept(
     for each in kept:
         fields = ("project", "component_name", "variable_name")
         project, component, name = (str(each.get(field, "")) for field in fields)
-        key = (project, component, name)
+        key = (project, component, unquoted(name))
         if key in records and key not in own and found[key] is records[key]:
             found[key] = {**each, "reqs": records[key]["reqs"]}
         else:
@@ -307,7 +347,7 @@ def _variable(glossary: Variable | None, project: str, component: str, name: str
     return {
         "project": project,
         "component_name": component,
-        "variable_name": name,
+        "variable_name": _variable_name(name),
         "reqs": [],
         "dataType": glossary.type if glossary else "",
         "idType": role.capitalize(),
@@ -317,7 +357,7 @@ def _variable(glossary: Variable | None, project: str, component: str, name: str
         "modeRequirement": "",
         "modeldoc": False,
         "completed": False,
-        "_id": f"{project}{component}{name}",
+        "_id": f"{project}{component}{_variable_name(name)}",
         **fret,
     }
 
@@ -335,5 +375,10 @@ def _assignment(glossary: Variable, fret: Mapping[str, Any]) -> dict[str, Any]:
 
 
 TARGET = Target(
-    "fret-json", "requirements and variables, as FRET imports them", emit, refuse, per_rule=False
+    "fret-json",
+    "requirements and variables, as FRET imports them",
+    emit,
+    refuse,
+    per_rule=False,
+    names=lambda rule: {name: _variable_name(name) for name in rule.variables},
 )

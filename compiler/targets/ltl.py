@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePosixPath
 
@@ -11,6 +11,8 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
 from compiler.logic import printing
+from compiler.logic.identifiers import legal_names
+from compiler.logic.spelling.reserved_words import SMV
 from compiler.targets.comparison_names import comparison_names, definitions
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.rendering import visible
@@ -27,7 +29,7 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
 def text(rule: Formalized, options: Options = DEFAULT) -> str:
     """What a person reads: the sentence, its meaning, and its formulas."""
     dialect = printing.DIALECTS[options.notation]
-    names = comparison_names(rule) if dialect in _WITHOUT_NUMBERS else {}
+    names = _names(rule, dialect)
     if names:
         spelt = dialect.atom
         dialect = replace(dialect, atom=lambda atom: names[atom] if atom in names else spelt(atom))
@@ -45,7 +47,7 @@ def text(rule: Formalized, options: Options = DEFAULT) -> str:
     )
     if rule.pctl is not None:
         lines["PCTL*"] = printing.pctl(rule.pctl)
-    lines |= definitions(rule) if names else {}
+    lines |= definitions(rule, names)
     return render(
         "ltl/requirement.ltl.j2",
         id=rule.id,
@@ -56,8 +58,14 @@ def text(rule: Formalized, options: Options = DEFAULT) -> str:
     )
 
 
-_WITHOUT_NUMBERS = (printing.SPOT, printing.NUSMV)
-"""The notations in which a comparison is one proposition."""
+def _names(rule: Formalized, dialect: printing.Dialect) -> Mapping[str, str]:
+    """What propositions are called in a notation, where it is not what they are."""
+    if dialect == printing.SPOT:
+        return comparison_names(rule)  # any other is in quotes where it has to be
+    if dialect != printing.NUSMV:
+        return {}
+    names = legal_names(rule.propositions, SMV | {"LAST"}, names=comparison_names(rule))
+    return {atom: name for atom, name in names.items() if name != printing.identifier(atom)}
 
 
 def _simplified(rule: Formalized) -> str:

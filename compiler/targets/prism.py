@@ -22,7 +22,9 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.record import wording
 from compiler.logic import formula as f
 from compiler.logic import printing
-from compiler.logic.identifiers import legal_names
+from compiler.logic.identifiers import legal_names, numbered
+from compiler.logic.printing import identifier as identifier_of
+from compiler.logic.spelling.reserved_words import PRISM
 from compiler.targets.comparison_names import comparison_names, impossible, in_words
 from compiler.targets.target import (
     DEFAULT,
@@ -41,14 +43,6 @@ from fretish.reading.recursion import deep
 
 _MOST_STEPS = 64
 """Of a chain of `X`: the automaton of a longer one is beyond any model checker."""
-_RESERVED = frozenset(
-    "A bool clock const ctmc C double dtmc E endinit endinvariant endmodule endobservables "
-    "endplayer endrewards endsystem false formula filter func F global G init invariant I int "
-    "label max mdp min module X nondeterministic observable observables of Pmax Pmin P player "
-    "pomdp popta probabilistic prob pta rate rewards Rmax Rmin R S smg stochastic system true U W "
-    "deadlock round floor ceil pow mod log".split()
-)
-"""Key words, functions and labels of PRISM and Storm."""
 
 
 @deep
@@ -96,19 +90,31 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
     return tuple(file for rule in rules for file in _files(rule))
 
 
+def _names(rule: Formalized) -> Mapping[str, str]:
+    # Storm's parser of models ends a module at this word, also within a name.
+    parted = {
+        name: identifier_of(name).replace("endmodule", "end_module")
+        for name in rule.propositions
+        if "endmodule" in name
+    }
+    return legal_names(rule.propositions, PRISM, names={**comparison_names(rule), **parted})
+
+
 def _files(rule: Formalized) -> Iterator[Artifact]:
     assert rule.pctl is not None, "refused"
-    names = legal_names(rule.propositions, _RESERVED, names=comparison_names(rule))
+    names = _names(rule)
     meanings = in_words(rule)
-    chances = legal_names(names.values(), _RESERVED | {*names.values()}, "p_")
-    modules = legal_names(names.values(), {*names.values(), *chances.values()}, "draw_")
+    chances = legal_names(names.values(), PRISM | {*names.values()}, "p_")
+    modules = legal_names(names.values(), PRISM | {*names.values(), *chances.values()}, "draw_")
     inputs = [
         (name, meanings.get(proposition, proposition), chances[name], modules[name])
         for proposition, name in names.items()
     ]
     values = {
         "id": rule.id,
-        "identifier": identifier(rule),
+        "identifier": next(
+            each for each in numbered(identifier(rule)) if each not in names.values()
+        ),  # PRISM reads a name in quotes as a property before it takes it for a label
         "sentence": wording(rule.requirement),
         "inputs": inputs,
     }
@@ -245,4 +251,6 @@ def _chain(formula: f.Formula) -> int:
             return max(map(_chain, f.children(formula)), default=0)
 
 
-TARGET = Target("prism", "a property and a frame of a model, for PRISM and Storm", emit, refuse)
+TARGET = Target(
+    "prism", "a property and a frame of a model, for PRISM and Storm", emit, refuse, names=_names
+)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -73,6 +73,8 @@ class Target:
     """Whether all rules always become one monitor; `per_rule` is False then."""
     next_step: str = ""
     """A command for the first file, `{}`, and what it does; for whoever makes one anew."""
+    names: Callable[[Formalized], Mapping[str, str]] = lambda rule: {}
+    """What its texts call the propositions of a rule that it does not refuse."""
     weak: Target | None = None
     """The same target where weakening is allowed: it refuses less, and remarks what is lost."""
 

@@ -139,10 +139,14 @@ def _only_failed(project: Project) -> bool:
 
 def _deliver_formulas(project: Project, output: str) -> None:
     """The array of `--emit ltl --format json`, in the order of the files."""
+    from compiler.emit import renamed
     from compiler.files.templating import to_json
     from compiler.formalization.record import failed, formulas
 
-    records = {id(rule.requirement): formulas(rule) for rule in project.rules}
+    records = {}
+    for rule in project.rules:
+        names = renamed(rule)
+        records[id(rule.requirement)] = formulas(rule) | ({"names": names} if names else {})
     records |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
     text = to_json([records[id(r)] for r in project.requirements])
     deliver({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})

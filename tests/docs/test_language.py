@@ -75,7 +75,6 @@ def forms(name: str) -> str:
 def listed(name: str) -> str:
     words = {
         "keywords": sorted(keywords.RESERVED),
-        "reserved": sorted(checking.RESERVED, key=lambda word: (word.lower(), word)),
         "units": list(units.NAMES),
         "statuses": list(documents.STATUSES),
     }[name]

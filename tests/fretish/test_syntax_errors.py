@@ -353,7 +353,7 @@ def test_a_mistake_is_told_with_its_place_and_its_mend(text: str, message: str) 
         ("the sw shall within 2e1 ticks satisfy p", "F108", "2e1"),
         ("the sw shall with probability > 1.5 satisfy q", "F110", "with probability > 1.5"),
         ("the sw shall with probability < 0 satisfy q", "F110", "with probability < 0"),
-        ("the sw shall satisfy U", "F109", "U"),
+        ("the sw shall satisfy What", "F109", "What"),
     ],
 )
 def test_a_mistake_has_its_code_and_its_place(text: str, code: str, place: str) -> None:

@@ -22,6 +22,7 @@ from compiler.files.templating import render, to_json
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Proof, Result
+from compiler.targets.ajpf import names
 from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.ajpf.safety_function import Reaction, Sif, sif
 from compiler.targets.target import DEFAULT, Options, Target, stem
@@ -93,9 +94,7 @@ def checked_agent(
     agents: list[CheckedAgent] = []
     for form in candidates:
         files = texts(rule, form, options)
-        agents.append(
-            CheckedAgent(form, agent_evidence(rule, files, form.percepts, limit or STATES))
-        )
+        agents.append(CheckedAgent(form, agent_evidence(rule, files, form.drawn, limit or STATES)))
         if agents[-1].is_proved:
             return agents[-1]
         if any(line.result is Result.NOT_CHECKED for line in agents[-1].evidence):
@@ -184,7 +183,7 @@ def _configuration(rule: Formalized, form: Sif, options: Options) -> dict[str, s
         "Env.java": render(
             "ajpf-bundle/Env.java.j2",
             package=name,
-            percepts=form.percepts,
+            percepts=form.drawn,
         )
     }
     for agent in ("SIF", "SIF_mutant"):
@@ -261,6 +260,7 @@ def _atom(rule: Formalized, form: Sif, name: str) -> dict[str, Any]:
     declared = rule.glossary.get(name)
     return {
         "proposition": name,
+        **({"name": form.names[name]} if form.names[name] != name else {}),
         "modality": str(declared.modality if declared else Modality.BELIEF),
         "part": "percept" if name in form.percepts else "response",
         "role": declared.role if declared else "",
@@ -342,5 +342,6 @@ TARGET = Target(
     emit,
     _refuse,
     _remark,
+    names=names.everything,
     weak=Target("ajpf-bundle", _SUMMARY, emit, _refuse_weak, _remark_weak),
 )

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Literal, assert_never
 
-from compiler.agents.psl_grammar import AGENT, FUNCTOR, KEY_WORDS
 from compiler.agents.psl_printing import property_text
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
@@ -24,8 +23,9 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
 from compiler.formalization.resolution import candidates
 from compiler.logic import formula as f
+from compiler.targets.ajpf import names
 from compiler.targets.ajpf import without_next as nextfree
-from compiler.targets.comparison_names import comparison_names, definitions
+from compiler.targets.comparison_names import comparison_names
 from compiler.targets.target import (
     DEFAULT,
     Options,
@@ -39,7 +39,8 @@ from fretish.bindings.comparisons import FUNCTIONS
 from fretish.bindings.declarations import Modality
 from fretish.checking import LOOK_AHEAD, LOOK_BACK, NUMBERS_BACK, calls, conditions
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
-from fretish.expressions import Comparison, names
+from fretish.expressions import Comparison
+from fretish.expressions import names as names_of
 from fretish.printer import timing as printing_of
 from fretish.reading.recursion import deep
 
@@ -139,7 +140,7 @@ def _refused_timing(rule: Formalized, options: Options) -> Diagnostic | None:
     if rule.pctl is not None:
         return _not(rule, "the probability", "leave it out, or use a probabilistic tool")
     for expression in conditions(rule.sentence):
-        for name in (*calls(expression), *(n.id for n in names(expression))):
+        for name in (*calls(expression), *(n.id for n in names_of(expression))):
             if name in LOOK_BACK | LOOK_AHEAD:
                 mend = (
                     "it has no past, and counts no steps ahead: make it a proposition, and bind it"
@@ -172,24 +173,16 @@ def _counts_states(timing: s.Timing) -> bool:
 
 
 def _refused_name(rule: Formalized) -> Diagnostic | None:
-    agent = rule.sentence.component
-    if not AGENT.fullmatch(agent) or agent in KEY_WORDS:
-        mend = "begin with a letter, use letters, digits and `_` only, and no key word of AJPF"
-        return _not(rule, f"the agent name `{agent}`", mend)
-    spelt = comparison_names(rule)
+    spoken = comparison_names(rule)
     compared = {
         atom
         for atom, part in candidates(rule.sentence)
         if isinstance(part, Comparison) and FUNCTIONS.keys() - NUMBERS_BACK >= {*calls(part)}
     }
     for atom in rule.propositions:
-        if atom in spelt and atom not in compared:
+        if atom in spoken and atom not in compared:
             mend = "give it a name of its own that begins with a small letter, and bind that"
             return _not(rule, f"the proposition `{atom}`", mend)
-        name = spelt.get(atom, atom)
-        if not FUNCTOR.fullmatch(name):
-            mend = "begin with a small letter, and use letters, digits and `_` only"
-            return _not(rule, f"the proposition `{name}`", mend)
     return None
 
 
@@ -262,12 +255,12 @@ def _controls(rule: Formalized, key: str) -> Iterator[tuple[str, f.Formula, str]
 
 
 def _text(formula: f.Formula, rule: Formalized) -> str:
-    agent, spelt = rule.sentence.component, comparison_names(rule)
+    agent, functors = names.agent(rule), names.spelt(rule)
 
     def spell(name: str) -> str:
         declared = rule.glossary.get(name)
         modality = declared.modality if declared else Modality.BELIEF
-        return f"{modality}({agent},{spelt.get(name, name)})"
+        return f"{modality}({agent},{functors[name]})"
 
     return property_text(formula, spell)
 
@@ -326,7 +319,7 @@ def text(rule: Formalized, options: Options = DEFAULT) -> str:
         id=rule.id,
         sentence=" ".join(rule.requirement.wording.text.split()),
         loss=weakened(rule, options),
-        definitions=definitions(rule),
+        definitions=names.definitions(rule),
         properties=properties(rule, options),
     )
 
@@ -354,6 +347,7 @@ TARGET = Target(
     emit,
     _refuse,
     _remark,
+    names=names.everything,
     weak=Target("ajpf", _SUMMARY, emit, _refuse_weak, _remark_weak),
 )
 

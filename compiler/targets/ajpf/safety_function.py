@@ -13,10 +13,12 @@ that they have.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from compiler.agents.gwendolen import Action, Change, Deed, Guard
 from compiler.formalization.formalized import Formalized
+from compiler.targets.ajpf import names
 from compiler.targets.comparison_names import comparison_names
 from compiler.targets.target import not_expressible
 from fretish import expressions as e
@@ -24,12 +26,11 @@ from fretish import syntax as s
 from fretish.bindings.declarations import Modality
 from fretish.diagnostics.diagnostic import Diagnostic
 
-RESERVED = frozenset(("achieve", "perform"))
 _BUILT_IN = frozenset(
     "sum minus div times append toString print printstate printagentstate remove_shared "
-    "assert_shared query substring".split()
+    "assert_shared query substring achieve perform".split()
 )
-"""Actions that MCAPL carries out itself, with arguments that it expects."""
+"""Actions that MCAPL carries out itself, with arguments that it expects; and its key words."""
 _TARGET = "an agent"
 
 
@@ -50,6 +51,8 @@ class Sif:
     percepts: tuple[str, ...]
     """Propositions of the scope, the condition and the stop condition, in this order."""
     responses: tuple[str, ...]
+    names: Mapping[str, str]
+    """What percepts, responses and other propositions are called in the texts."""
     plans: tuple[Reaction, ...]
     mutant: tuple[Reaction, ...]
     """The plans without the deeds that make the response true."""
@@ -57,6 +60,11 @@ class Sif:
     """Whether the response is taken back when the trigger goes."""
     over_responds: bool
     """Whether plans skip the rest of the condition, and so respond without it too."""
+
+    @property
+    def drawn(self) -> tuple[str, ...]:
+        """The percepts by their names in the texts."""
+        return tuple(self.names[name] for name in self.percepts)
 
 
 Term = tuple[tuple[str, bool], ...]
@@ -92,16 +100,19 @@ def sif(rule: Formalized, guarded: bool = True) -> Sif | Diagnostic:
     released = len(terms) == len(terms[0]) == len(responses) == len(believed) == 1
     answer = tuple(deed for name in responses for deed in _answer(rule, name))
     spoilt = tuple(Action(_action(rule, name)) for name in believed)
-    last = Guard(False, believed[-1]) if believed and not released else None
+    spelt = names.spelt(rule)
+    terms = tuple(tuple((spelt[name], value) for name, value in term) for term in terms)
+    last = Guard(False, spelt[believed[-1]]) if believed and not released else None
     plans, mutant = (
         (
             *_reactions(terms if guarded else _alone(terms), deeds, last),
-            *(_releases(terms, responses) if released else ()),
+            *(_releases(terms, spelt[responses[0]]) if released else ()),
         )
         for deeds in (answer, spoilt)
     )
     bare = not guarded and terms != _alone(terms)
-    return Sif(sentence.component, percepts, responses, plans, mutant, released, bare)
+    agent = names.agent(rule)
+    return Sif(agent, percepts, responses, spelt, plans, mutant, released, bare)
 
 
 def _terms(rule: Formalized, condition: e.Expression) -> tuple[Term, ...] | Diagnostic:
@@ -139,9 +150,9 @@ def _literal(expression: e.Expression) -> tuple[str, bool] | None:
 def _responses(rule: Formalized) -> tuple[str, ...] | Diagnostic:
     response = rule.sentence.response
     parts = response.args if isinstance(response, e.And) else (response,)
-    names = [part.id for part in parts if isinstance(part, e.Name)]
-    if len(names) == len(parts):
-        return tuple(dict.fromkeys(names))
+    ids = [part.id for part in parts if isinstance(part, e.Name)]
+    if len(ids) == len(parts):
+        return tuple(dict.fromkeys(ids))
     mend = "an agent does things: state what is to be so, as `a` or `a & b`"
     return not_expressible(_TARGET, rule, "the shape of the response", mend)
 
@@ -172,15 +183,12 @@ def _wrong_name(
         if _modality(rule, name) not in (Modality.BELIEF, Modality.DONE):
             mend = 'an agent brings about a belief ("B") or does an action ("D")'
             return not_expressible(_TARGET, rule, f"the response `{name}`, neither,", mend)
-        action = name if _modality(rule, name) is Modality.DONE else _action(rule, name)
-        if action in _BUILT_IN or action in RESERVED:
+        done = _modality(rule, name) is Modality.DONE
+        action = names.spelt(rule)[name] if done else _action(rule, name)
+        if action in _BUILT_IN:
             mend = "MCAPL has an action or a word of that name: use another"
             return not_expressible(_TARGET, rule, f"the action `{action}`", mend)
-    reserved = next((n for n in (*percepts, *responses) if n in RESERVED), None)
-    if reserved is None:
-        return None
-    mend = "it is a reserved word of Gwendolen: use another"
-    return not_expressible(_TARGET, rule, f"the name `{reserved}`", mend)
+    return None
 
 
 def _modality(rule: Formalized, name: str) -> Modality:
@@ -195,14 +203,14 @@ def _is_belief(rule: Formalized, *names: str) -> bool:
 def _answer(rule: Formalized, name: str) -> tuple[Deed, ...]:
     """An action and the belief that it was done; only the action where that is the response."""
     if not _is_belief(rule, name):
-        return (Action(name),)
-    return Action(_action(rule, name)), Change("+", name)
+        return (Action(names.spelt(rule)[name]),)
+    return Action(_action(rule, name)), Change("+", names.spelt(rule)[name])
 
 
 def _action(rule: Formalized, name: str) -> str:
     """What the agent does to make it true, as the bindings call it."""
     declared = rule.glossary.get(name)
-    return (declared.action if declared else "") or f"do_{name}"
+    return (declared.action if declared else "") or f"do_{names.spelt(rule)[name]}"
 
 
 def _reactions(
@@ -224,9 +232,8 @@ def _reactions(
     return tuple(dict.fromkeys(plans))
 
 
-def _releases(terms: tuple[Term, ...], responses: tuple[str, ...]) -> tuple[Reaction, ...]:
+def _releases(terms: tuple[Term, ...], response: str) -> tuple[Reaction, ...]:
     """The only response is taken back when the only trigger goes."""
     (((trigger, _),),) = terms
-    (response,) = responses
     deeds = (Action(f"undo_{response}"), Change("-", response))
     return (Reaction(Change("-", trigger), (), deeds),)

@@ -21,20 +21,13 @@ from compiler.formalization.record import wording
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
 from compiler.logic.orders import Exclusion
+from compiler.logic.spelling.reserved_words import SMV
 from compiler.targets.automata.expressibility import no_automaton
 from compiler.targets.automata.smv_symbols import monitor
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.target import DEFAULT, Options, Target, identifier, stem
-from fretish.checking import RESERVED
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import deep
-
-_RESERVED = RESERVED | frozenset(
-    "ABU BU EBG COMPID CONSTARRAY COMPWFF READ WRITE W always and assert before bool clock cos "
-    "count exp floor in inside last_run first_run ln main mod never next noncontinuous not of or "
-    "outside over pi sin tan time toint typeof until urandom within word xor xnor".split()
-)
-"""Key words of NuSMV, nuXmv and PSL; and the phases, as constants are known in all modules."""
 
 
 def refuse(rule: Formalized) -> Diagnostic | None:
@@ -60,12 +53,8 @@ class Spec:
 def _text(rule: Formalized) -> str:
     demanded = obligation(rule.sentence, rule.ticks or 0)
     plain = identifier(rule)
-    monitor_name = f"monitor_{plain}"
-    instance = f"the_{monitor_name}"
-    # Formulas may lack some propositions: `only after m` drops m where it demands nothing.
-    propositions = tuple(dict.fromkeys((*rule.propositions, *atoms_of(rule.sentence))))
-    reserved = _RESERVED | {instance, monitor_name}
-    names = legal_names(propositions, reserved, names=comparison_names(rule))
+    monitor_name, instance = _modules(rule)
+    names = _names(rule)
     meanings = in_words(rule)
     module = monitor(demanded)
     dialect = replace(printing.NUSMV, atom=names.__getitem__, full=True)
@@ -79,7 +68,7 @@ def _text(rule: Formalized) -> str:
         "smv/monitor.smv.j2",
         id=rule.id,
         sentence=wording(rule.requirement),
-        variables=[(names[name], meanings.get(name, name)) for name in propositions],
+        variables=[(names[name], meanings.get(name, name)) for name in names],
         impossible=[_together(each, names) for each in excluded(rule)],
         instance=instance,
         module_name=monitor_name,
@@ -88,6 +77,18 @@ def _text(rule: Formalized) -> str:
         negated=demanded.scope is not None and demanded.scope.negates,
         specs=_specs(rule, demanded, (plain, instance), dialect),
     )
+
+
+def _modules(rule: Formalized) -> tuple[str, str]:
+    """The name of the module, and that of its instance."""
+    name = f"monitor_{identifier(rule)}"
+    return name, f"the_{name}"
+
+
+def _names(rule: Formalized) -> Mapping[str, str]:
+    """Of all propositions; formulas may lack some: `only after m` drops m if it demands nothing."""
+    propositions = (*rule.propositions, *atoms_of(rule.sentence))
+    return legal_names(propositions, SMV | {*_modules(rule)}, names=comparison_names(rule))
 
 
 def _together(exclusion: Exclusion, names: Mapping[str, str]) -> str:
@@ -134,4 +135,5 @@ TARGET = Target(
     emit,
     refuse,
     next_step="`NuSMV {}` checks its properties",
+    names=_names,
 )

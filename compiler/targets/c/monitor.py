@@ -17,6 +17,7 @@ from compiler.files.edition import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.logic.identifiers import legal_names
+from compiler.logic.spelling.reserved_words import C_LIBRARY, C
 from compiler.program.lowering import program
 from compiler.program.program import Counter
 from compiler.program.rails import Reading, Ring, rail
@@ -29,24 +30,6 @@ from compiler.targets.target import DEFAULT, Options, Target, not_expressible, s
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import deep
 
-_RESERVED = frozenset(
-    """
-    alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto bitand bitor
-    bool break case catch char char8_t char16_t char32_t class co_await co_return co_yield compl
-    concept const const_cast consteval constexpr constinit continue decltype default delete do
-    double dynamic_cast else enum explicit export extern false float for friend goto if inline int
-    long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected
-    public reflexpr register reinterpret_cast requires restrict return short signed sizeof static
-    static_assert static_cast struct switch synchronized template this thread_local throw true try
-    typedef typeid typename typeof union unsigned using virtual void volatile wchar_t while xor
-    xor_eq
-    NULL EOF TRUE FALSE IN OUT ERROR INFINITY NAN I errno assert stdin stdout stderr offsetof
-    signbit near far small interface min max linux unix i386 arm mips sparc sun vax hpux sgi none
-    """.split()
-)
-"""Key words of C and C++; names that compilers and usual headers have as macros."""
-_TAKEN = re.compile(r"U?INT\w*_(MAX|MIN|C|WIDTH)|u?int\w*_t|fretc_\w+|FRETC_\w+")
-"""What `stdint.h` and our own header name."""
 _MOST_BITS = 2**23
 """Of a ring: a mebibyte on each rail."""
 
@@ -86,6 +69,7 @@ def _apart(rules: Sequence[Formalized]) -> Iterator[tuple[str, str, Formalized]]
     bases = prefixes_of([rule.id for rule in rules])
     for rule in rules:
         base = re.sub(r"_sample(?=_|$)", "_sample_", bases[rule.id])
+        base = f"{base}_" if base in C_LIBRARY else base
         yield f"{module(stem(rule))}_monitor", base, rule
 
 
@@ -136,13 +120,7 @@ def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact,
         Artifact(PurePosixPath(f"{name}.{ending}"), text)
         for ending, text in (("c", source), ("h", header))
     )
-    return (*monitor, *signals.files(name, base, rules, printer.names, _reserved_by(rules)))
-
-
-def _reserved_by(rules: Sequence[Formalized]) -> frozenset[str]:
-    """What no name of a signal may be."""
-    read = {n for rule in rules if rule.declarations for n in rule.declarations.signals}
-    return _RESERVED | {*filter(_TAKEN.fullmatch, read)}
+    return (*monitor, *signals.files(name, base, rules, printer.names, C))
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +139,7 @@ class Joined:
 def joined(rules: Sequence[Formalized]) -> Joined:
     """Of `emit` with `one_file`, for rules with bindings."""
     printer = printed("monitors", rules)
-    found = functions(rules, printer.names, signals.LANGUAGE, _reserved_by(rules))
+    found = functions(rules, printer.names, signals.LANGUAGE, C)
     assert found is not None, "there are bindings"
     return Joined(printer.names, tuple(each.prefix for each in printer.rail.readings), found)
 
@@ -173,14 +151,17 @@ def printed(name: str, rules: Sequence[Formalized]) -> Printer:
         name: of its header, without the ending.
         rules: none of them refused.
     """
-    propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
-    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
-    reserved = _RESERVED | {signals.guard(name), *filter(_TAKEN.fullmatch, propositions)}
-    names = legal_names(propositions, reserved, names=spoken)
     prefixes = prefixes_of([rule.id for rule in rules])
-    members = legal_names(prefixes, reserved, names=prefixes)
+    members = legal_names(prefixes, C | {signals.guard(name)}, names=prefixes)
     made = rail(program({rule.id: rule.watch for rule in rules}), members)
-    return Printer.of(made, names)
+    return Printer.of(made, _names(name, rules))
+
+
+def _names(name: str, rules: Sequence[Formalized]) -> Mapping[str, str]:
+    """Proposition → the member of the inputs."""
+    propositions = (each for rule in rules for each in rule.watched)
+    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
+    return legal_names(propositions, C | {signals.guard(name)}, names=spoken)
 
 
 def _values(printer: Printer) -> dict[str, Any]:
@@ -236,4 +217,5 @@ TARGET = Target(
     remark,
     joins=True,
     next_step="`cc -std=c99 -c {}` compiles it",
+    names=lambda rule: _names(f"{module(stem(rule))}_monitor", [rule]),
 )

@@ -5,7 +5,7 @@ Functions without memory; the header has the numbers that they compute with, in 
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from fractions import Fraction
 from math import isinf, isnan
 from pathlib import PurePosixPath
@@ -24,7 +24,7 @@ def files(
     base: str,
     rules: Sequence[Formalized],
     names: Mapping[str, str],
-    reserved: Collection[str],
+    reserved: Container[str],
 ) -> tuple[Artifact, ...]:
     """The header and the source beside the monitor `name`; none where no bindings are at hand.
 

@@ -11,7 +11,6 @@ import hashlib
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from keyword import iskeyword
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
@@ -20,13 +19,14 @@ from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized, plain
 from compiler.formalization.obligation import TRAITS, Trait, obligation
 from compiler.logic import printing
+from compiler.logic.identifiers import legal_names, underlined
+from compiler.logic.spelling.reserved_words import PYTHON
 from compiler.program.program import MARKS, SIGNALS
 from compiler.targets.python.comparisons import ANNOTATIONS, NAMES, Front, Writer, front
 from compiler.targets.python.program import (
     Program,
     locals_of,
     marks_of,
-    negation,
     program,
 )
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
@@ -290,9 +290,15 @@ def described(rule: Formalized) -> dict[str, object]:
     }
 
 
+_RUN_TIME = frozenset(re.findall(r"^class (\w+)", kernel_of_variables().text, re.MULTILINE))
+"""Its classes."""
+
+
 def _class_name(id: str) -> str:
+    """What the names of its two classes begin with; `Variable_` for `Variable`."""
     name = _identifier(id)
-    return f"{name[0].upper()}{name[1:]}"
+    wanted = underlined(f"{name[0].upper()}{name[1:]}")
+    return next(n for n in wanted if _RUN_TIME.isdisjoint({f"{n}Rail", f"{n}Monitor"}))
 
 
 def _identifier(id: str) -> str:
@@ -321,12 +327,6 @@ MOST_PARAMETERS = 60
 """Python compares each argument of a call with one parameter after the other: a step with more
 parameters takes them as a mapping."""
 _SPOKEN = {"<=": "_le_", ">=": "_ge_", "!=": "_ne_", "<": "_lt_", ">": "_gt_", "=": "_eq_"}
-_RESERVED = frozenset(
-    "self every known doubt tick rows row rail must may first kept_first boolean Signals Marks "
-    "previous weak_previous once historically since released since_from since_between "
-    "released_between SATISFIED VIOLATED PENDING".split()
-)
-"""Names in the generated functions: their locals and the functions that they call."""
 
 
 def parameters_of(
@@ -336,19 +336,32 @@ def parameters_of(
 
     Where a monitor is stepped by variables, one for each of these, too.
     """
-    reserved = {*_RESERVED, *(name for prefix in prefixes for name in marks_of(prefix))}
     variables = tuple(variables)
-    reserved |= NAMES if variables else set()
-    parameters: dict[str, str] = {}
-    for name in dict.fromkeys((*names, *variables)):
-        parameter = printing.identifier(name) if not printing.is_compound(name) else _spoken(name)
-        if not parameter[0].isalpha():
-            parameter = f"p_{parameter}"
-        while iskeyword(parameter) or not reserved.isdisjoint({parameter, negation(parameter)}):
-            parameter += "_"
-        reserved.update(locals_of([parameter]))
-        parameters[name] = parameter
-    return parameters
+    marks = {name for prefix in prefixes for name in marks_of(prefix)}
+    everything = (*names, *variables)
+    return dict(
+        legal_names(
+            everything,
+            PYTHON | {*marks, *(NAMES if variables else ())},
+            names={name: _parameter(name) for name in everything},
+            variants=underlined,
+            brings=lambda name: locals_of([name]),
+        )
+    )
+
+
+def _names(rule: Formalized) -> Mapping[str, str]:
+    """Variable or proposition → the parameter of a step."""
+    names = rule.watched
+    compared = front([plain(rule)], names)
+    variables = compared.inputs if compared else ()
+    return parameters_of(names, prefixes_of([rule.id]).values(), variables)
+
+
+def _parameter(name: str) -> str:
+    """As an identifier; a comparison is spoken."""
+    text = _spoken(name) if printing.is_compound(name) else printing.identifier(name)
+    return text if text[0].isalpha() else f"p_{text}"
 
 
 def _spoken(text: str) -> str:
@@ -367,4 +380,5 @@ TARGET = Target(
     remark,
     joins=True,
     next_step="`python {} TRACE.csv` judges a table with a column for each of its names",
+    names=_names,
 )

@@ -15,6 +15,7 @@ from compiler.files.edition import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
 from compiler.logic.identifiers import legal_names
+from compiler.logic.spelling.reserved_words import RUST
 from compiler.program.lowering import program
 from compiler.program.rails import Reading, rail
 from compiler.targets.c.monitor import too_large
@@ -26,14 +27,6 @@ from compiler.targets.target import DEFAULT, Options, Target, stem
 from compiler.targets.words import words
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import deep
-
-_KEY_WORDS = frozenset(
-    """
-    as async await break const continue crate dyn else enum extern false fn for if impl in let loop
-    match mod move mut pub ref return self Self static struct super trait true type unsafe use where
-    while abstract become box do final gen macro override priv try typeof unsized virtual yield
-    """.split()
-)
 
 
 def refuse(rule: Formalized) -> Diagnostic | None:
@@ -53,11 +46,10 @@ def _crate(name: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
     """The files of a crate with one monitor for all of the rules."""
     name = name if name[0].isalpha() else f"r{name}"
     propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
-    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
     meanings = {each: text for rule in rules for each, text in in_words(rule).items()}
-    names = legal_names(propositions, _KEY_WORDS, names=spoken)
+    names = _names(rules)
     prefixes = prefixes_of([rule.id for rule in rules])
-    members = legal_names(prefixes, _KEY_WORDS, names=prefixes)
+    members = legal_names(prefixes, RUST, names=prefixes)
     made = rail(program({rule.id: rule.watch for rule in rules}), members)
     printer = Printer.of(made, names)
     library = render(
@@ -77,8 +69,15 @@ def _crate(name: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
     manifest = render("rust/Cargo.toml.j2", crate=name, monitor=None)
     files = {f"{name}/Cargo.toml": manifest, f"{name}/src/lib.rs": library}
     files |= {f"{name}/tests/words.rs": tests} if any(found.values()) else {}
-    files |= signals.files(name, rules, names, _KEY_WORDS)
+    files |= signals.files(name, rules, names, RUST)
     return tuple(Artifact(PurePosixPath(path), text) for path, text in files.items())
+
+
+def _names(rules: Sequence[Formalized]) -> Mapping[str, str]:
+    """Proposition → the field of the inputs."""
+    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
+    propositions = (each for rule in rules for each in rule.watched)
+    return legal_names(propositions, RUST, names=spoken)
 
 
 def _reading(reading: Reading, printer: Printer) -> Mapping[str, Any]:
@@ -98,4 +97,5 @@ TARGET = Target(
     remark,
     joins=True,
     next_step="`cargo test --manifest-path {}` builds it and runs its tests",
+    names=lambda rule: _names([rule]),
 )

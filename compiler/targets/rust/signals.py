@@ -5,7 +5,7 @@ It stands beside the crate of the monitor, whose text it leaves as it is.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from fractions import Fraction
 from math import isinf, isnan
 
@@ -21,7 +21,7 @@ def files(
     monitor: str,
     rules: Sequence[Formalized],
     names: Mapping[str, str],
-    reserved: Collection[str],
+    reserved: Container[str],
 ) -> dict[str, str]:
     """The texts of the crate beside the crate `monitor`; none where no bindings are at hand.
 

@@ -25,7 +25,6 @@ from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.amounts import duration
 from fretish.bindings.declarations import Declarations, Role, path, short_type
-from fretish.checking import RESERVED
 from fretish.clock import NANOSECONDS, in_words
 
 _TICK = 100 * 10**6
@@ -296,7 +295,7 @@ def _word(text: str) -> str:
     return word if word[:1].isalpha() else f"topic_{word}"
 
 
-_RESERVED = {"and", "or", "not", "for", "true", "false", "abs", "min", "max", *RESERVED}
+_RESERVED = {"and", "or", "not", "for", "true", "false", "abs", "min", "max"}
 """Words that are no names of signals, in bindings or in sentences."""
 
 

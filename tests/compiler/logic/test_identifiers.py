@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.logic.identifiers import legal_names
+from compiler.logic.spelling.reserved_words import Words
 from tests.strategies import NAMES
 
 
@@ -28,6 +29,24 @@ def test_reserved_words_and_what_begins_with_no_letter_are_changed() -> None:
         "init": "init_3",
         "_p": "v__p",
         "(3 > x)": "v_3_gt_x",
+    }
+
+
+def test_a_name_of_a_reserved_family_begins_in_another_way() -> None:
+    family = Words(frozenset(), re.compile(r"fretc_\w+|int\d*"))
+    assert legal_names(["fretc_truth", "int", "v_fretc_truth"], family) == {
+        "fretc_truth": "v_fretc_truth_2",
+        "int": "int_2",
+        "v_fretc_truth": "v_fretc_truth",
+    }
+
+
+def test_what_is_legal_keeps_its_name_whatever_comes_before() -> None:
+    assert legal_names(["init", "init_2", "a.b", "a_DOT_b"], {"init"}) == {
+        "init": "init_3",
+        "init_2": "init_2",
+        "a.b": "a_DOT_b_2",
+        "a_DOT_b": "a_DOT_b",
     }
 
 

@@ -221,7 +221,6 @@ def test_a_deadline_is_lost_only_where_that_is_asked_for() -> None:
         ("whenever a the ag shall satisfy r | q", "the shape of the response"),
         ("whenever a the ag shall satisfy !r", "the shape of the response"),
         ("whenever a & r the ag shall satisfy r", "`r` as trigger and response"),
-        ("whenever achieve the ag shall satisfy r", "the name `achieve`"),
     ],
 )
 def test_what_no_agent_is_made_of_is_refused(sentence: str, what: str) -> None:
