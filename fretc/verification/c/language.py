@@ -39,7 +39,8 @@ def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
     inputs = _members(own_header, f"{prefix}_inputs")
     form = formed(given.text, own, prefix, cells, inputs)
     outcomes = tuple(name for name, _ in _OUTCOMES.findall(own_header))
-    return Checked(own_rules, outcomes, form, cells, inputs)
+    is_original = LEXIS.tokens(given.text) == LEXIS.tokens(own)
+    return Checked(own_rules, outcomes, form, cells, inputs, is_original)
 
 
 def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prepared:

@@ -10,13 +10,15 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import struct
+import sys
 from collections.abc import Hashable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from compiler.formalization.letters import Valuation
+from fretc.verification.compiled.delays import FreeLetter, Line
 from fretc.verification.compiled.plan import Plan
 from fretc.verification.compiled.readings import VERDICTS, Reading, judged
 from fretc.verification.compiled.tools import Binary, ToolError
@@ -90,13 +92,21 @@ class Library:
                 strict=True,
             )
         )
-        self._cells = _joined([places[name] for name in file.cells if name in plan.needed])
+        needed = [name for name in file.cells if name in plan.needed]
+        self._cells = _joined([places[name] for name in needed])
+        names = [name.removesuffix("_at") for name in needed if is_place(name)]
+        self.rings = tuple(
+            Ring(places[name], places[f"{name}_at"], _clear(name) in needed) for name in names
+        )
+        kept = [each for each in needed if not is_place(each) and each not in names]
+        self.others = _joined([places[name] for name in kept])
+        self._is_original = plan.is_original
         self._rails = (certain, possible)
         self._inputs = (ctypes.c_uint8 * inputs)()
         self._outcomes = (ctypes.c_uint8 * outcomes)()
         self._state = (ctypes.c_uint8 * size)()
         ctypes.memset(self._state, _GARBAGE, size)
-        self._order = [(i, place) for i, place in enumerate(plan.inputs) if place >= 0]
+        self.order = [(i, place) for i, place in enumerate(plan.inputs) if place >= 0]
         self._at = plan.outcome * outcome
         self._step = getattr(library, f"{file.base}_step")
         self._step.restype = None
@@ -115,19 +125,37 @@ class Library:
         self._restart()
         return CompiledRail(self, doubt=doubt)
 
+    def delayed(self, *, doubt: bool) -> CompiledDelayed | None:
+        """One of its rails without the bits of its delay lines, before the first tick.
+
+        None: there are none, or the text is not the one that fretc writes.
+        """
+        if not self.rings or not self._is_original:
+            return None
+        self._restart()
+        return CompiledDelayed(self, doubt=doubt)
+
     def _restart(self) -> None:
         for rail, start in enumerate(self._starts):
             self.load(rail, start)
 
     def save(self, rail: int) -> bytes:
         """The cells of a rail: 0 the certain one, 1 the possible one."""
-        start = ctypes.addressof(self._state) + self._rails[rail]
-        return b"".join([ctypes.string_at(start + at, size) for at, size in self._cells])
+        return self.read(rail, self._cells)
 
     def load(self, rail: int, saved: bytes) -> None:
         """Go back to cells that were saved."""
+        self.write(rail, self._cells, saved)
+
+    def read(self, rail: int, places: Sequence[tuple[int, int]]) -> bytes:
+        """The bytes at some offsets of a rail, with their sizes."""
+        start = ctypes.addressof(self._state) + self._rails[rail]
+        return b"".join([ctypes.string_at(start + at, size) for at, size in places])
+
+    def write(self, rail: int, places: Sequence[tuple[int, int]], saved: bytes) -> None:
+        """Give them other bytes."""
         start, done = ctypes.addressof(self._state) + self._rails[rail], 0
-        for at, size in self._cells:
+        for at, size in places:
             ctypes.memmove(start + at, saved[done : done + size], size)
             done += size
 
@@ -136,7 +164,7 @@ class Library:
 
         An input that no value of the letter is for is false.
         """
-        for i, place in self._order:
+        for i, place in self.order:
             self._inputs[place] = _CODES[letter[i]]
         ctypes.memset(self._outcomes, _GARBAGE, len(self._outcomes))
         self._step(*self._arguments)
@@ -147,6 +175,25 @@ class Library:
             *(_TRUTHS[each] if each < len(_TRUTHS) else f"truth value {each}" for each in truths),
         )
         return Reading(*values[:8]), Reading(*values[8:16]), told
+
+
+class Ring(NamedTuple):
+    """The memory of a delay line in a rail: offsets and sizes in bytes."""
+
+    bits: tuple[int, int]
+    place: tuple[int, int]
+    """Of the number of the oldest bit."""
+    guarded: bool
+    """Whether the window counts the ticks with its guard."""
+
+
+def is_place(name: str) -> bool:
+    """Whether a cell is the place of the oldest bit in a ring."""
+    return name.startswith("ring_") and name.endswith("_at")
+
+
+def _clear(ring: str) -> str:
+    return f"clear_{ring.removeprefix('ring_')}"
 
 
 def _joined(places: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
@@ -198,3 +245,62 @@ class CompiledRail:
         self._library.load(self._rail, state)
         *readings, told = self._library.step(letter)
         return (*readings[self._rail], told == judged(*readings))
+
+
+class CompiledDelayed:
+    """One rail of a compiled monitor whose delay lines give any bits, with their places at 0."""
+
+    def __init__(self, library: Library, *, doubt: bool) -> None:
+        """From its present state; with `doubt` the rail of what may hold."""
+        self._library, self._rail = library, int(doubt)
+        start = library.save(self._rail)
+        self._lengths = [self._length(ring) for ring in library.rings]
+        library.load(self._rail, start)
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """In the order of the cells."""
+        pairs = zip(self._lengths, self._library.rings, strict=True)
+        return tuple(Line(length, ring.guarded) for length, ring in pairs)
+
+    def save(self) -> bytes:
+        """All cells but the delay lines."""
+        return self._library.read(self._rail, self._library.others)
+
+    def step(self, state: bytes, letter: FreeLetter) -> tuple[object, ...]:
+        """The reading, whether the verdict follows, and the bits written; or what is no bit."""
+        library, rail = self._library, self._rail
+        library.write(rail, library.others, state)
+        for ring, oldest in zip(library.rings, letter.oldest, strict=True):
+            library.write(rail, [ring.bits], (b"\xff" if oldest else b"\0") * ring.bits[1])
+            library.write(rail, [ring.place], bytes(ring.place[1]))
+        *readings, told = library.step(letter.values)
+        written = [
+            self._written(ring, length, oldest)
+            for ring, length, oldest in zip(
+                library.rings, self._lengths, letter.oldest, strict=True
+            )
+        ]
+        return (*readings[rail], told == judged(*readings), *written)
+
+    def _written(self, ring: Ring, length: int, oldest: bool) -> bool | None:
+        """The bit in the place of the oldest one; None where anything else has changed."""
+        bits = int.from_bytes(self._library.read(self._rail, [ring.bits]), sys.byteorder)
+        others = (1 << 8 * ring.bits[1]) - 2 if oldest else 0
+        is_moved = self._place(ring) == (1 if length > 1 else 0)
+        return bool(bits & 1) if is_moved and bits & ~1 == others else None
+
+    def _place(self, ring: Ring) -> int:
+        return int.from_bytes(self._library.read(self._rail, [ring.place]), sys.byteorder)
+
+    def _length(self, ring: Ring) -> int:
+        """Ticks until the place is 0 again, which goes up by one at each; 0: it does not."""
+        library = self._library
+        letter, capacity = (False,) * len(library.order), 8 * ring.bits[1]
+        library.write(self._rail, [ring.place], bytes(ring.place[1]))
+        for tick in range(1, capacity + 1):
+            library.step(letter)
+            place = self._place(ring)
+            if place != tick:
+                return tick if place == 0 else 0
+        return 0

@@ -10,6 +10,7 @@ from typing import Protocol
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of
+from fretc.verification.compiled.delays import Delayed
 from fretc.verification.compiled.flow import Form
 from fretc.verification.compiled.text import StrangeTextError
 from fretc.verification.monitor.equivalence import Machine
@@ -46,6 +47,8 @@ class Plan:
     """For each value of a letter, the place of its input; -1: there is none."""
     width: int
     """How many inputs there are."""
+    is_original: bool = False
+    """Whether the text is, but for comments and layout, the one that fretc writes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +64,8 @@ class Checked:
     """All of a rail."""
     inputs: tuple[str, ...]
     """The names of the propositions in the text, in their order."""
+    is_original: bool = False
+    """Whether the text is, but for comments and layout, the one that fretc writes."""
 
     def plan(self, rule: Formalized) -> Plan:
         """Where a requirement is.
@@ -77,11 +82,17 @@ class Checked:
         if not {names[i] for i in part.inputs} <= {*own}:
             raise StrangeTextError(f"{rule.id} depends on what its sentence does not speak of")
         places = tuple(names.index(name) if name in names else -1 for name in own)
-        return Plan(part.cells, place, places, len(names))
+        return Plan(part.cells, place, places, len(names), self.is_original)
 
 
 class Machines(Protocol):
     """A text that runs, seen as one requirement."""
+
+    def delayed(self, *, doubt: bool) -> Delayed | None:
+        """One of its rails without its delay lines, before the first tick.
+
+        None: it has none, or it is not known what they do.
+        """
 
     def judging(self) -> Machine:
         """It, before the first tick, by both verdicts."""

@@ -10,9 +10,11 @@ from collections.abc import Hashable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import Valuation
 from compiler.program.lowering import program
 from compiler.program.program import MARKS
-from fretc.verification.monitor.machine import Cells
+from fretc.verification.monitor.equivalence import Judgement
+from fretc.verification.monitor.machine import Cells, Stepped
 from fretc.verification.monitor.rails import Letter
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth
@@ -79,6 +81,15 @@ class PythonRail:
             self._ages = ("open", "last")
         self._now = 0 if self._horizon is None else self._horizon + 2
 
+    def windows(self) -> list[Any]:
+        """Its windows, in the order of the text."""
+        return [getattr(self._rail, name) for name in self._cells.windows]
+
+    def replace_windows(self, windows: Sequence[object]) -> None:
+        """Let others with the same methods take their places."""
+        for name, window in zip(self._cells.windows, windows, strict=True):
+            setattr(self._rail, name, window)
+
     def save(self) -> Hashable:
         """Its cells, whether it is broken or doomed, and how old a demand is."""
         latched = tuple(self._mark(name) >= 0 for name in ("broken", "doomed"))
@@ -97,7 +108,7 @@ class PythonRail:
             age = values.get(name, -1)
             setattr(self._rail, self._names[name], self._now - age if age >= 0 else -1)
         self._rail.advance((tuple([letter[place] for place in self._order]),))
-        return (*self._reading(), True)
+        return (*reading_of(self._rail, self._horizon), True)
 
     def _mark(self, name: str) -> int:
         return int(getattr(self._rail, self._names[name]))
@@ -108,18 +119,56 @@ class PythonRail:
         assert self._horizon is not None
         return min(self._rail.tick - tick, self._horizon + 1) if tick >= 0 else -1
 
-    def _reading(self) -> Reading:
-        signals, marks = self._rail.signals()[0], self._rail.marks()[0]
-        left = -1
-        if marks.open >= 0 and self._horizon is not None:
-            left = max(-1, marks.open + self._horizon - self._rail.tick)
-        return Reading(
-            left,
-            marks.violated >= 0,
-            bool(marks.broken >= 0 or signals.fails),
-            bool(signals.trigger),
-            bool(signals.breach),
-            bool(signals.owed),
-            bool(signals.settled),
-            bool(signals.answer),
-        )
+
+def reading_of(rail: Any, horizon: int | None) -> Reading:
+    """What a rail in Python tells of its only requirement.
+
+    Args:
+        rail: after a tick.
+        horizon: the ticks from a trigger to its deadline; None: there is none.
+    """
+    signals, marks = rail.signals()[0], rail.marks()[0]
+    left = -1
+    if marks.open >= 0 and horizon is not None:
+        left = max(-1, marks.open + horizon - rail.tick)
+    return Reading(
+        left,
+        marks.violated >= 0,
+        bool(marks.broken >= 0 or signals.fails),
+        bool(signals.trigger),
+        bool(signals.breach),
+        bool(signals.owed),
+        bool(signals.settled),
+        bool(signals.answer),
+    )
+
+
+class PythonJudging:
+    """The monitor in Python by both verdicts, which must follow from what its rail reads."""
+
+    def __init__(self, monitor: Monitor, atoms: Sequence[str]) -> None:
+        """Before the first tick.
+
+        Args:
+            monitor: of one requirement, as fretc writes it.
+            atoms: the order of the values in a valuation.
+        """
+        self._machine = Stepped(monitor, 0, atoms)
+        self._rail: Any = monitor.must
+        self._horizon = monitor.REQUIREMENTS[0].horizon
+
+    def save(self) -> Hashable:
+        """All cells."""
+        return self._machine.save()
+
+    def load(self, state: Hashable) -> None:
+        """Go back to a state."""
+        self._machine.load(state)
+
+    def step(self, letter: Valuation) -> Judgement:
+        """Both verdicts after a tick; no verdict where they do not follow from the reading."""
+        judgement = self._machine.step(letter)
+        reading = reading_of(self._rail, self._horizon)
+        verdict, finite, _ = judged(reading, reading)
+        follows = judgement == (verdict, finite is True)
+        return judgement if follows else ("no verdict of its reading", judgement[1])

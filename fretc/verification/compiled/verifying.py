@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import product
 from pathlib import Path
+from random import Random
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from compiler.formalization.letters import excluded
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
 from compiler.logic.orders import only_possible
 from compiler.targets.python import monitor as python
+from fretc.verification.compiled.delays import FreeLetter, PythonDelayed
 from fretc.verification.compiled.plan import (
     Checked,
     Executable,
@@ -29,7 +31,7 @@ from fretc.verification.compiled.plan import (
     Plan,
     atoms,
 )
-from fretc.verification.compiled.readings import NAMES, PythonRail
+from fretc.verification.compiled.readings import NAMES, PythonJudging, PythonRail
 from fretc.verification.compiled.text import StrangeTextError
 from fretc.verification.compiled.tools import ToolError
 from fretc.verification.engines.sandbox import Limits, Session, Stopped
@@ -116,6 +118,9 @@ def explored(rule: Formalized, executable: Executable, plan: Plan, limit: int) -
 
 
 def _explored(rule: Formalized, machines: Machines, limit: int) -> Outcome:
+    free = _without_delays(rule, machines, limit)
+    if free is not None:
+        return free
     judged = lock_step(rule, machines.judging(), atoms(rule), limit)
     if isinstance(judged, str):
         return not_checked(judged)
@@ -131,6 +136,78 @@ def _explored(rule: Formalized, machines: Machines, limit: int) -> Outcome:
     )
 
 
+def _without_delays(rule: Formalized, machines: Machines, limit: int) -> Outcome | None:
+    """Proved, if both monitors are the same whatever bits their delay lines give.
+
+    Then each verdict of the text is that of the monitor in Python, for it follows from both rails
+    as there; so that monitor is compared with the automaton of the sentence. Not checked, where that
+    is too large. None: nothing is known, and all states are to be compared.
+    """
+    names, monitor, states = atoms(rule), load("reference", python.text(rule)), 0
+    if len(names) > rails.MOST_PROPOSITIONS:
+        return None
+    for doubt in (False, True):
+        left, right = machines.delayed(doubt=doubt), PythonRail(monitor, rule, names, doubt=doubt)
+        windows = right.windows()
+        if left is None or [line.length for line in left.lines] != [each.lo for each in windows]:
+            return None
+        letters = [
+            FreeLetter(values, oldest)
+            for values in _letters(rule, names)
+            for oldest in product((False, True), repeat=len(windows))
+        ]
+        further = tuple(f"delay line {place}" for place in range(len(windows)))
+        free = PythonDelayed(right, left.lines)
+        result = rails.in_lock_step(left, free, letters, limit, (*NAMES, *further))
+        if not isinstance(result, rails.Same):
+            return None
+        states += result.states
+        ticks = _PERIODS * max(line.length for line in left.lines)
+        if not _agree(rule, machines, _letters(rule, names), ticks, doubt=doubt):
+            return None
+    judged = lock_step(rule, PythonJudging(monitor, names), names, limit)
+    if isinstance(judged, str):
+        return not_checked(judged)
+    if isinstance(judged, Difference):
+        return None
+    return proved(
+        f"at every tick of every trace, with unknown values too, it gives what the monitor in "
+        f"Python gives ({states} states, whatever its delay lines hold), and that one is the same "
+        f"as the sentence ({judged.states} states, {judged.steps} steps)"
+    )
+
+
+_PERIODS = 4
+"""How often a delay line goes round in a drawn run: its places are explored at 0 only."""
+
+
+def _agree(
+    rule: Formalized,
+    machines: Machines,
+    letters: Sequence[rails.Letter],
+    ticks: int,
+    *,
+    doubt: bool,
+) -> bool:
+    """Whether both monitors, with all their bits, give the same on a drawn run."""
+    monitor, draw = load("reference", python.text(rule)), Random(0)
+    left = machines.rail(letters, doubt=doubt)
+    right = PythonRail(monitor, rule, atoms(rule), doubt=doubt)
+    first, second = left.save(), right.save()
+    for _ in range(ticks):
+        letter = draw.choice(letters)
+        if left.step(first, letter) != right.step(second, letter):
+            return False
+        first, second = left.save(), right.save()
+    return True
+
+
+def _letters(rule: Formalized, names: Sequence[str]) -> Sequence[rails.Letter]:
+    """The values that may come at a tick, unknown ones among them."""
+    every = tuple(product((False, True, None), repeat=len(names)))
+    return only_possible(every, names, excluded(rule))
+
+
 def _read(rule: Formalized, machines: Machines, limit: int) -> int | Outcome:
     """The states in which each rail tells what that of the monitor in Python tells."""
     names = atoms(rule)
@@ -139,8 +216,7 @@ def _read(rule: Formalized, machines: Machines, limit: int) -> int | Outcome:
         return not_checked(
             f"{len(names)} propositions, more than {most}, are too many for unknown values"
         )
-    every = tuple(product((False, True, None), repeat=len(names)))
-    letters = only_possible(every, names, excluded(rule))
+    letters = _letters(rule, names)
     monitor, states = load("reference", python.text(rule)), 0
     for doubt in (False, True):
         left = machines.rail(letters, doubt=doubt)

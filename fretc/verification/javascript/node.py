@@ -196,6 +196,9 @@ class Node:
         self._module, self._plan = module, plan
         self._process, self._errors = process, errors
 
+    def delayed(self, *, doubt: bool) -> None:
+        """None: its windows are those of the monitor in Python, and are explored with all bits."""
+
     def judging(self) -> Judging:
         """Both rails, before the first tick."""
         letters = tuple(product((False, True), repeat=len(self._plan.inputs)))

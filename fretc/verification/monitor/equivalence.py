@@ -144,53 +144,62 @@ def _compared(
 ) -> Equivalence | Difference | str:
     """Whether they are equal, by classes of states; if not, a shortest word, by all pairs."""
     start = machine.save()
-    result = _in_lock_step(machine, reference, _Classes(len(reference.moves)), limit)
+    result = _in_lock_step(machine, reference, Classes(), limit)
     if not isinstance(result, Difference):
         return result
     machine.load(start)
-    shortest = _in_lock_step(machine, reference, _Pairs(), limit)
+    shortest = _in_lock_step(machine, reference, Pairs(), limit)
     return shortest if isinstance(shortest, Difference) else replace(result, shortest=False)
 
 
-class _Visited(Protocol):
+class Visited(Protocol):
     """The pairs of states that need not be looked at again."""
 
-    def add(self, state: int, saved: Hashable) -> bool:
+    def add(self, left: Hashable, right: Hashable) -> bool:
         """Whether the pair is new; it is known from now on."""
 
 
-class _Pairs:
+class Pairs:
     """Every pair for itself."""
 
     def __init__(self) -> None:
-        self._pairs: set[tuple[int, Hashable]] = set()
+        """No pair is known."""
+        self._pairs: set[tuple[Hashable, Hashable]] = set()
 
-    def add(self, state: int, saved: Hashable) -> bool:
+    def add(self, left: Hashable, right: Hashable) -> bool:
         """Whether the pair is new; it is known from now on."""
         before = len(self._pairs)
-        self._pairs.add((state, saved))
+        self._pairs.add((left, right))
         return len(self._pairs) > before
 
 
-class _Classes:
+class Classes:
     """Sets of states that must be equal if all pairs are: a pair that follows from others is known.
 
     There are no more new pairs than states on both sides together, where the pairs that can be
-    reached may be as many as their product.
+    reached may be as many as their product. Two states of one class give the same values on every
+    trace if each pair that made the class has no difference behind it.
     """
 
-    def __init__(self, states: int) -> None:
-        self._parents = list(range(states))
-        self._numbers: dict[Hashable, int] = {}
+    def __init__(self) -> None:
+        """Each state is alone."""
+        self._parents: list[int] = []
+        self._sides: tuple[dict[Hashable, int], dict[Hashable, int]] = ({}, {})
 
-    def add(self, state: int, saved: Hashable) -> bool:
+    def add(self, left: Hashable, right: Hashable) -> bool:
         """Whether the pair is new; it is known from now on."""
-        number = self._numbers.setdefault(saved, len(self._parents))
+        roots = [
+            self._root(self._number(side, state))
+            for side, state in zip(self._sides, (left, right), strict=True)
+        ]
+        self._parents[roots[0]] = roots[1]
+        return roots[0] != roots[1]
+
+    def _number(self, side: dict[Hashable, int], state: Hashable) -> int:
+        number = side.setdefault(state, len(self._parents))
         if number == len(self._parents):
             self._parents.append(number)
-        left, right = self._root(state), self._root(number)
-        self._parents[left] = right
-        return left != right
+        return number
 
     def _root(self, number: int) -> int:
         parents = self._parents
@@ -201,7 +210,7 @@ class _Classes:
 
 
 def _in_lock_step(
-    machine: Machine, reference: _Reference, visited: _Visited, limit: int
+    machine: Machine, reference: _Reference, visited: Visited, limit: int
 ) -> Equivalence | Difference | str:
     """Breadth first through the pairs that are new, from the present state of the machine."""
     start = (0, machine.save())

@@ -30,6 +30,11 @@ class Cells:
         self._windows = [n for n in cells if hasattr(getattr(rail, n), "restore")]
         self._plain = [name for name in cells if name not in self._windows]
 
+    @property
+    def windows(self) -> tuple[str, ...]:
+        """The names of those that are windows, in the order of the text."""
+        return tuple(self._windows)
+
     def save(self) -> Hashable:
         """Their values."""
         rail = self._rail

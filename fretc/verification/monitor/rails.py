@@ -15,6 +15,7 @@ from typing import Any, Protocol
 
 from compiler.logic.orders import Exclusion, only_possible
 from compiler.program.program import MARKS, SIGNALS
+from fretc.verification.monitor.equivalence import Classes, Pairs, Visited
 from fretc.verification.monitor.machine import Cells
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth
@@ -36,7 +37,10 @@ class Same:
 
 @dataclass(frozen=True, slots=True)
 class Apart:
-    """A shortest trace of one rail at whose last tick the monitors differ."""
+    """A trace of one rail at whose last tick the monitors differ.
+
+    A shortest one, unless there are too many pairs of states.
+    """
 
     word: tuple[Letter, ...]
     signal: str
@@ -124,29 +128,50 @@ class Stepping(Protocol):
     def save(self) -> Hashable:
         """Everything that its further steps depend on, and nothing else."""
 
-    def step(self, state: Any, letter: Letter) -> tuple[object, ...]:
+    def step(self, state: Any, letter: Any) -> tuple[object, ...]:
         """What it tells one tick after a state."""
 
 
 def in_lock_step(
     left: Stepping,
     right: Stepping,
-    letters: Sequence[Letter],
+    letters: Sequence[Any],
     limit: int,
     names: Sequence[str],
 ) -> Same | Apart | None:
-    """Breadth first through all pairs of states, from the present ones.
+    """Whether both give the same values on every trace, from the present states; if not, where.
+
+    By classes of states that must be equal if all pairs are (`equivalence.Classes`); a shortest
+    trace, where they differ, by all pairs.
 
     Args:
         left: the one.
         right: the other.
         letters: all that may come at a tick.
         limit: the most pairs; with more the result is None.
-        names: of the values that a step tells.
+        names: of the values that a step gives.
     """
-    pairs = [(left.save(), right.save())]
-    origins: list[tuple[int, Letter] | None] = [None]
-    visited = {*pairs}
+    start = left.save(), right.save()
+    result = _from(start, left, right, letters, limit, names, Classes())
+    if not isinstance(result, Apart):
+        return result
+    shortest = _from(start, left, right, letters, limit, names, Pairs())
+    return shortest if isinstance(shortest, Apart) else result
+
+
+def _from(
+    start: tuple[Any, Any],
+    left: Stepping,
+    right: Stepping,
+    letters: Sequence[Any],
+    limit: int,
+    names: Sequence[str],
+    visited: Visited,
+) -> Same | Apart | None:
+    """Breadth first through the pairs that are new, from the first one."""
+    pairs = [start]
+    origins: list[tuple[int, Any] | None] = [None]
+    visited.add(*start)
     for place, (first, second) in enumerate(pairs):  # grows while it is read
         for letter in letters:
             actual, expected = left.step(first, letter), right.step(second, letter)
@@ -154,8 +179,7 @@ def in_lock_step(
                 signal = next(n for n, a, b in zip(names, actual, expected, strict=True) if a != b)
                 return Apart((*_word(origins, place), letter), signal)
             reached = left.save(), right.save()
-            if reached not in visited:
-                visited.add(reached)
+            if visited.add(*reached):
                 pairs.append(reached)
                 origins.append((place, letter))
         if len(pairs) > limit:

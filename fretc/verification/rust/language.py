@@ -12,7 +12,7 @@ from compiler.targets.target import Options
 from fretc.verification.compiled.library import saved
 from fretc.verification.compiled.plan import Checked, Given, Prepared, implemented
 from fretc.verification.rust.build import BASE, built, compiler
-from fretc.verification.rust.form import formed
+from fretc.verification.rust.form import LEXIS, formed
 
 _OUTCOMES = re.compile(r"^[ \t]+/// (.*)\n[ \t]+pub (\w+): Outcome,$", re.MULTILINE)
 """The fields of that struct, and the ids above them."""
@@ -32,7 +32,8 @@ def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
     cells, inputs = _fields(own, "struct Rail"), _fields(own, "pub struct Inputs")
     outcomes = tuple(name for _, name in _OUTCOMES.findall(own))
     form = formed(given.text, own, cells, inputs, outcomes)
-    return Checked(own_rules, outcomes, form, cells, inputs)
+    is_original = LEXIS.tokens(given.text) == LEXIS.tokens(own)
+    return Checked(own_rules, outcomes, form, cells, inputs, is_original)
 
 
 def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prepared:
