@@ -140,8 +140,8 @@ def _without_delays(rule: Formalized, machines: Machines, limit: int) -> Outcome
     """Proved, if both monitors are the same whatever bits their delay lines give.
 
     Then each verdict of the text is that of the monitor in Python, for it follows from both rails
-    as there; so that monitor is compared with the automaton of the sentence. Not checked, where that
-    is too large. None: nothing is known, and all states are to be compared.
+    as there; so that monitor is compared with the automaton of the sentence. Not checked, where
+    that is too large. None: nothing is known, and all states are to be compared.
     """
     names, monitor, states = atoms(rule), load("reference", python.text(rule)), 0
     if len(names) > rails.MOST_PROPOSITIONS:

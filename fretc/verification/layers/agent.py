@@ -18,6 +18,7 @@ from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.layers.request import Request, named_text, unexamined, unknown
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.printer import timing as printing_of
 
 CLAIM = "the agent has its properties"
 _OF_AGENT = (Layer.AGENT, Layer.AJPF)
@@ -53,7 +54,14 @@ def _bundle(rule: Formalized, limits: Limits) -> tuple[Proof, ...]:
     remark = ajpf.remark(rule)
     refuted = any(line.result is Result.COUNTEREXAMPLE for line in agent.evidence)
     if refuted and remark is not None and remark.code in _TOO_SOON:
-        return (_without_agent(rule, f"{remark.message}: {remark.help}"),)
+        timing = printing_of(rule.sentence.timing)
+        return (
+            _without_agent(
+                rule,
+                f"an agent cannot keep the timing `{timing}` of {rule.id}: it needs some nine "
+                "states from a percept to its response",
+            ),
+        )
     return agent.evidence
 
 
