@@ -187,7 +187,7 @@ def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic
             Code.UNBOUND,
             f"`{name}` of {rule.id} has no binding in {declarations.source.name}",
             place(rule, name),
-            help=_way_out(rule, name, declarations),
+            help=way_out(rule, name, declarations),
         )
 
 
@@ -217,8 +217,11 @@ def missing_signals(rule: Formalized, name: str, signals: Mapping[str, Signal]) 
     return tuple(dict.fromkeys(each.id for each in e.names(read) if each.id not in signals))
 
 
-def _way_out(rule: Formalized, name: str, declarations: Declarations) -> str:
-    """Signals for a comparison; a comparison for the word of a signal; else a binding."""
+def way_out(rule: Formalized, name: str, declarations: Declarations) -> str:
+    """What to write in the bindings so that they give `name` a meaning.
+
+    Signals for a comparison; a comparison for the word of a signal; else a proposition.
+    """
     missing = missing_signals(rule, name, declarations.signals)
     if missing:
         tables = " and ".join(f"`[signal.{as_key(each)}]`" for each in missing)

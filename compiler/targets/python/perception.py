@@ -13,6 +13,7 @@ from typing import assert_never
 
 from compiler.files.edition import __version__
 from compiler.files.templating import render
+from compiler.formalization.binding_agreement import way_out
 from compiler.formalization.formalized import Formalized
 from compiler.signals import numbers as n
 from compiler.signals.policies import Meaning, Policy, instant
@@ -43,7 +44,8 @@ def _reasons(rule: Formalized) -> Iterator[tuple[str, str]]:
         return
     unbound = [name for name in rule.watched if name not in declared.propositions]
     if unbound:
-        yield f"nothing binds `{unbound[0]}`", f"add `[proposition.{unbound[0]}]` to the bindings"
+        name = unbound[0]
+        yield f"the bindings do not say what `{name}` is", way_out(rule, name, declared)
     yield from _of_clock(declared)
     if unbound:
         return

@@ -242,7 +242,7 @@ def test_the_text_is_of_python_3_10() -> None:
         (Setting(time="publish_time").bindings, "the time of publication"),
         (Setting().bindings.replace("lateness", "#"), "how long a tick waits"),
         (Setting(slow="y - pre(9, y) < 5").bindings, "looks back by ticks"),
-        (Setting().bindings.replace("proposition.near", "proposition.far"), "nothing binds `near`"),
+        (Setting().bindings.replace("proposition.near", "proposition.far"), "what `near` is"),
     ],
 )
 def test_what_cannot_be_computed_live_is_refused(bindings: str, why: str) -> None:
@@ -250,3 +250,10 @@ def test_what_cannot_be_computed_live_is_refused(bindings: str, why: str) -> Non
     refusal = perception.refuse(subject)
     assert refusal is not None
     assert why in refusal.message + (refusal.help or "")
+
+
+def test_the_way_out_of_a_comparison_is_a_signal() -> None:
+    subject = rules(Setting().bindings, ["the r shall always satisfy (level + 1 > 2)"])[0]
+    refusal = perception.refuse(subject)
+    assert refusal is not None
+    assert refusal.help == "add `[signal.level]` there; `fretc bind --from LOG` drafts signals"
