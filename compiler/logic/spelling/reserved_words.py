@@ -198,7 +198,7 @@ functions that they call."""
 LUSTRE = _words(
     """
     and assert assume bool by check const contract current div diese else enum ensure extern false
-    fby function guarantee if imported int int8 int16 int32 int64 is let map merge mod mode mode
+    fby function guarantee if imported int int8 int16 int32 int64 is let map merge mod mode
     node nor not of operator or package param pre private provides real require returns step
     struct tel then to true type uint8 uint16 uint32 uint64 unsafe var weakly when with xor
     at the model needs body end
@@ -206,14 +206,15 @@ LUSTRE = _words(
 )
 """Lustre V6 Reference Manual, 2.1; CoCoSpec; and what our reader does not take for a name."""
 
-AJPF = _words(
-    """
-    A E U R B G F I D P T ItD achieve perform True
-    sum minus div times append toString print printstate printagentstate remove_shared
-    assert_shared query substring do_ undo_
-    """
+AJPF = _words("A E U R B G F I D P T ItD achieve perform True")
+"""MCAPL's grammars of properties and of Gwendolen."""
+
+AJPF_ACTIONS = AJPF | (
+    "sum minus div times append toString print printstate printagentstate remove_shared "
+    "assert_shared query substring".split()
 )
-"""MCAPL's grammars of properties and of Gwendolen; actions that MCAPL carries out itself."""
+"""What no action of an agent is called: MCAPL carries these out itself, with arguments that it
+expects. A belief may have such a name."""
 
 SPOT = _words("true false xor LAST", r"[FGMRUVWX].*|(?i:true|false|xor)")
 """Spot's grammar of LTL: such a name is in quotes there, for `Fault` would be `F ault`. In formulas

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 from compiler.agents.gwendolen import Action, Change, Deed, Guard
 from compiler.formalization.formalized import Formalized
+from compiler.logic.spelling.reserved_words import AJPF_ACTIONS
 from compiler.targets.ajpf import names
 from compiler.targets.comparison_names import comparison_names
 from compiler.targets.target import not_expressible
@@ -26,11 +27,6 @@ from fretish import syntax as s
 from fretish.bindings.declarations import Modality
 from fretish.diagnostics.diagnostic import Diagnostic
 
-_BUILT_IN = frozenset(
-    "sum minus div times append toString print printstate printagentstate remove_shared "
-    "assert_shared query substring achieve perform".split()
-)
-"""Actions that MCAPL carries out itself, with arguments that it expects; and its key words."""
 _TARGET = "an agent"
 
 
@@ -185,7 +181,7 @@ def _wrong_name(
             return not_expressible(_TARGET, rule, f"the response `{name}`, neither,", mend)
         done = _modality(rule, name) is Modality.DONE
         action = names.spelt(rule)[name] if done else _action(rule, name)
-        if action in _BUILT_IN:
+        if action in AJPF_ACTIONS:
             mend = "MCAPL has an action or a word of that name: use another"
             return not_expressible(_TARGET, rule, f"the action `{action}`", mend)
     return None

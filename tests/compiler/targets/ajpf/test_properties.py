@@ -427,6 +427,7 @@ def test_what_ajpf_cannot_say_is_refused(sentence: str) -> None:
         ("the sw shall always satisfy Stopped", "B(sw,v_Stopped)"),
         ("the sw shall always satisfy T", "B(sw,v_T)"),
         ("the sw shall always satisfy achieve", "B(sw,achieve_2)"),
+        ("arm.sw shall always satisfy query", "B(arm_DOT_sw,query)"),
         ("the sw shall always satisfy arm.joint", "B(sw,arm_DOT_joint)"),
         ("the sw shall always satisfy load%", "B(sw,load_PRC_)"),
         ('the sw shall always satisfy "two words"', "B(sw,two_SPC_words)"),
@@ -444,7 +445,7 @@ def test_a_name_that_ajpf_cannot_read_is_another_one_there(sentence: str, functo
     text = emitted(sentence)
     assert functor in text
     agent, name = functor.removeprefix("B(").removesuffix(")").split(",")
-    other = agent if name == "q" else name
+    other = agent if name in ("q", "query") else name
     assert f"\n# {other}: " in text
     assert not isinstance(psl.read(Source("r1.psl", text)), Diagnostic)
 
