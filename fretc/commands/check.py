@@ -15,6 +15,7 @@ from fretc.terminal.options import (
     evidence_option,
     format_option,
     hazards_option,
+    is_given,
     places,
     requirements_option,
     verification_option,
@@ -73,7 +74,7 @@ def check(
     from fretc.analysis.evidence import known as known_analysis
     from fretc.audit.evidence.briefs import Briefs
     from fretc.audit.refusals import refusals
-    from fretc.audit.store.anywhere import source as read_evidence
+    from fretc.audit.store.anywhere import required_source, source
     from fretc.report.diagnostics import idle_waivers, stale_evidence
     from fretc.report.model.assessments import assessments
     from fretc.report.traceability.acceptances import warnings
@@ -90,7 +91,7 @@ def check(
         stop(project)
     units = first_unit(project.rules)
     diagnostics = [*project.diagnostics, *([units] if units is not None else [])]
-    audited = read_evidence(evidence)
+    audited = (required_source if is_given("evidence") else source)(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:
         diagnostics.append(audited)
     proofs = proven(verification)

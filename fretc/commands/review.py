@@ -13,6 +13,7 @@ from fretc.terminal.options import (
     analysis_option,
     evidence_option,
     format_option,
+    is_given,
     path_option,
     requirements_option,
     verification_option,
@@ -77,7 +78,6 @@ def lock(
     """
     from compiler.files.dates import is_date, is_to_come, today
     from compiler.files.templating import to_json
-    from fretc.audit.store.anywhere import refuted
     from fretc.report.traceability.lock import (
         Acceptance,
         Lock,
@@ -98,7 +98,7 @@ def lock(
     if is_to_come(day):
         message = f"`{day}` is still to come, and nobody can have reviewed then"
         stop(Diagnostic(Code.BAD_USAGE, message, help="leave `--date` out: then it is today"))
-    project, chains = _chains(requirements, evidence, verification, analysis)
+    project, chains, refuted = _chains(requirements, evidence, verification, analysis, accept=True)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     where = path or _beside(requirements)
@@ -106,7 +106,7 @@ def lock(
     old_reviews = before.reviews if before is not None else {}
     orphans = old_reviews.keys() - {chain.requirement for chain in chains}
     subjects = _chosen(chains, ids, orphans)
-    violations = () if accept_violations else unnamed_violations(subjects, refuted(evidence))
+    violations = () if accept_violations else unnamed_violations(subjects, refuted)
     refusals = (*outdated_results(subjects), *violations)
     if refusals:
         stop(*refusals)
@@ -115,7 +115,7 @@ def lock(
     reviews |= {c.requirement: accepted(c, reviewer, role, day, comment) for c in subjects}
     signatures = _signatures(where, reviews, subjects, key) if key is not None else {}
     deliver({Path(where): text(Lock(reviews)), **signatures})
-    counts = Acceptance.of(subjects, refuted(evidence))
+    counts = Acceptance.of(subjects, refuted)
     if form == "json":
         click.echo(to_json({**counts.as_record, "left_out": sorted(removals, key=natural)}))
         return
@@ -161,7 +161,7 @@ def diff(
     from fretc.report.traceability.comparison import as_record, differences, text
     from fretc.report.traceability.lock import standings
 
-    project, chains = _chains(requirements, evidence, verification, analysis)
+    project, chains, _ = _chains(requirements, evidence, verification, analysis)
     if has_errors(project.diagnostics):
         raise SystemExit(BAD)
     base = _read(baseline or _beside(requirements), must=True)
@@ -176,12 +176,27 @@ def diff(
 
 
 def _chains(
-    requirements: str, evidence: str, verification: str | None, analysis: str | None
-) -> tuple[Project, Sequence[Chain]]:
+    requirements: str,
+    evidence: str,
+    verification: str | None,
+    analysis: str | None,
+    *,
+    accept: bool = False,
+) -> tuple[Project, Sequence[Chain], Collection[str]]:
+    """The project, its chains, and which requirements all runs together refute.
+
+    Args:
+        requirements: their folder or file.
+        evidence: of audits.
+        verification: of proofs.
+        analysis: of the requirements together.
+        accept: all that is read will be accepted, so a store is held against its results in full.
+    """
     from compiler.project.folder import whole
     from fretc.analysis.evidence import known as known_analysis
     from fretc.audit.evidence.briefs import Briefs
-    from fretc.audit.store.anywhere import source as read
+    from fretc.audit.measurements.confidence_intervals import REFUTED
+    from fretc.audit.store.anywhere import required_source, source
     from fretc.report.traceability.chain import chains
     from fretc.verification.reader import known
 
@@ -194,14 +209,17 @@ def _chains(
     analyzed = known_analysis(analysis)
     if isinstance(analyzed, Diagnostic):
         stop(analyzed)
-    audited = read(evidence)
+    read = required_source if is_given("evidence") else source
+    audited = read(evidence, in_full=accept)
     if isinstance(audited, Diagnostic):
         say_briefly([*project.diagnostics, audited], requirements)
         if audited.is_error:
             raise SystemExit(BAD)
-        return project, chains(project, None, proofs=proofs, analyzed=analyzed)
+        return project, chains(project, None, proofs=proofs, analyzed=analyzed), ()
     say_briefly(project.diagnostics, requirements)
-    return project, chains(project, Briefs.of(audited), proofs=proofs, analyzed=analyzed)
+    refuted = {one.requirement for one in audited.probabilities if one.answer == REFUTED}
+    of_all = chains(project, Briefs.of(audited), proofs=proofs, analyzed=analyzed)
+    return project, of_all, refuted
 
 
 def _chosen(

@@ -326,13 +326,38 @@ def brief(result: Result) -> Brief:
 
 def judgement(result: Result) -> str:
     """SHA-256 of the verdict and the ticks that it is about."""
+    return judgement_of(
+        result.verdict,
+        result.finite,
+        len(result.triggers),
+        [[each.first_tick, each.last_tick] for each in result.violations],
+        [moment.tick for moment in result.open],
+    )
+
+
+def judgement_of(
+    verdict: str,
+    finite: bool | None,
+    triggers: int,
+    violations: Sequence[Sequence[int]],
+    open_at: Sequence[int],
+) -> str:
+    """The same of the parts of a result.
+
+    Args:
+        verdict: its word.
+        finite: whether it holds of the run as it is, as a whole one.
+        triggers: how many.
+        violations: the first and the last tick of each.
+        open_at: the tick of each trigger whose demand is open at the end.
+    """
     return digest(
         {
-            "verdict": result.verdict,
-            "finite": result.finite,
-            "triggers": len(result.triggers),
-            "violations": [[v.first_tick, v.last_tick] for v in result.violations],
-            "open": [moment.tick for moment in result.open],
+            "verdict": verdict,
+            "finite": finite,
+            "triggers": triggers,
+            "violations": violations,
+            "open": open_at,
         }
     )
 

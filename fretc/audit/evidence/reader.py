@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 from compiler.files.checked_json import MisshapenError, parsed
@@ -22,7 +22,6 @@ from fretc.audit.evidence.schema import (
     Situations,
     Threshold,
 )
-from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
 from monitors import kernel
@@ -104,13 +103,6 @@ class Evidence(Headed):
         return places_of
 
 
-def refuted(path: str) -> frozenset[str]:
-    """The requirements that all runs together refute; none where there is no evidence."""
-    evidence = read(path)
-    estimates = () if isinstance(evidence, Diagnostic) else evidence.probabilities
-    return frozenset(one.requirement for one in estimates if one.answer == REFUTED)
-
-
 def read(path: str) -> Evidence | Diagnostic:
     """Read and check an evidence file; a note, not an error, where there is none yet."""
     source = read_text(path)
@@ -131,14 +123,6 @@ def _parsed(source: Source) -> Evidence | Diagnostic:
         return Evidence(source.name, sha256(source.text), decoded(file.value, Document))
     except MisshapenError as error:
         return _wrong(path, f"is not evidence of fretc: {error}")
-
-
-def required(path: str) -> Evidence | Diagnostic:
-    """The same; an error where there is none."""
-    evidence = read(path)
-    return (
-        replace(evidence, severity=Severity.ERROR) if isinstance(evidence, Diagnostic) else evidence
-    )
 
 
 def not_audited(path: str) -> Diagnostic:

@@ -8,7 +8,6 @@ from dataclasses import replace
 from fretc.audit.evidence import reader as files
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.reader import Evidence
-from fretc.audit.measurements.confidence_intervals import REFUTED
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
 
 
@@ -39,21 +38,32 @@ def read(path: str) -> Evidence | Diagnostic:
         return error.diagnostic
 
 
-def source(path: str) -> EvidenceSource | Diagnostic:
+def source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
     """Evidence to read from, of a store little at a time; a note where there is none yet.
 
     Its methods raise `StoreError` where a store turns out not to be what it must be.
+
+    Args:
+        path: a file, or the folder of a store.
+        in_full: hold each table of a store against its results; else the verdicts alone.
     """
     if not os.path.isdir(path):
         return files.read(path)
     from fretc.audit.store.reader import opened
 
-    return opened(path)
+    store = opened(path)
+    if isinstance(store, Diagnostic):
+        return store
+    try:
+        store.check_tables() if in_full else store.check_verdicts()
+    except StoreError as error:
+        return error.diagnostic
+    return store
 
 
-def required_source(path: str) -> EvidenceSource | Diagnostic:
+def required_source(path: str, *, in_full: bool = False) -> EvidenceSource | Diagnostic:
     """The same; an error where there is none."""
-    found = source(path)
+    found = source(path, in_full=in_full)
     return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
 
 
@@ -63,10 +73,3 @@ def required(path: str) -> Evidence | Diagnostic:
     if isinstance(evidence, Diagnostic):
         return replace(evidence, severity=Severity.ERROR)
     return evidence
-
-
-def refuted(path: str) -> frozenset[str]:
-    """The requirements that all runs together refute; none where there is no evidence."""
-    evidence = read(path)
-    estimates = () if isinstance(evidence, Diagnostic) else evidence.probabilities
-    return frozenset(one.requirement for one in estimates if one.answer == REFUTED)

@@ -30,7 +30,7 @@ from fretc.audit.evidence.schema import (
     Threshold,
 )
 from fretc.audit.measurements.tallies import Tally
-from fretc.audit.store import files, tables
+from fretc.audit.store import agreement, files, tables
 from fretc.audit.store.anywhere import StoreError
 from fretc.audit.store.manifest import FILE, REGISTER, UNFINISHED, Manifest, Part, Table, place
 from fretc.audit.store.register import Entry, entries, types
@@ -194,23 +194,40 @@ class Store(Headed):
         for _, part in self._parts():
             yield from self._table(part, RUNS, ("results",))["results"].to_pylist()
 
-    def check_tables(self, results: Sequence[Result]) -> None:
-        """Hold each table against the one that the results give.
+    def check_verdicts(self) -> None:
+        """Hold what `results` says of violations against the tables that have them.
 
-        Args:
-            results: all of the store, in order.
+        Raises:
+            StoreError: they contradict each other.
+        """
+        for _, part in self._parts():
+            some = {name: self._table(part, name, agreement.COLUMNS[name]) for name in TABLES}
+            try:
+                agreement.check(some)
+            except MisshapenError as error:
+                raise self._error(f"cannot be read: {error}") from None
+
+    def check_tables(self) -> None:
+        """Hold each table against the one that the results give, a part after the other.
 
         Raises:
             StoreError: what a table says of a result is not so.
         """
+        for _ in self.checked_results():
+            pass
+
+    def checked_results(self) -> Iterator[Result]:
+        """All results, in order, those of a part when its tables are what they give."""
         for start, part in self._parts():
-            expected = tables.tabled(results[start : start + part.results], self.manifest.fretc)
+            results = [each for _, each in self.details(range(start, start + part.results))]
+            expected = tables.tabled(results, self.manifest.fretc)
             for name in TABLES:
                 found = self._table(part, name)
                 for column in found.column_names:
                     if not found[column].equals(expected[name][column]):
                         what = f"`{column}` of `{name}` is not what the results give"
                         raise self._error(f"cannot be read: {what}")
+            yield from results
 
     def register(self) -> list[Entry]:
         """What each log was, in the order of the runs; empty where it is not known."""
@@ -270,9 +287,7 @@ def evidence(store: Store) -> Evidence:
         StoreError: it cannot be read.
     """
     manifest = store.manifest
-    places = range(sum(part.results for part in manifest.parts))
-    results = tuple(result for _, result in store.details(places))
-    store.check_tables(results)
+    results = tuple(store.checked_results())
     document = Document(
         schema=EVIDENCE,
         fretc=manifest.fretc,

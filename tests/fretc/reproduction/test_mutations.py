@@ -25,9 +25,10 @@ from compiler.logic.claims import (
 )
 from compiler.project.folder import Project, whole
 from fretc.audit.evidence.briefs import Briefs
-from fretc.audit.evidence.reader import read, required
+from fretc.audit.evidence.reader import read
 from fretc.audit.many_logs import IN_TURN, LogAudit, LogAudits, audit_logs
 from fretc.audit.plan import Plan, planned
+from fretc.audit.store.anywhere import required
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, accepted
 from fretc.reproduction import proofs as reproving

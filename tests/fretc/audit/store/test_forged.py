@@ -11,11 +11,12 @@ import pytest
 from compiler.files.records import decoded
 from fretc.audit.evidence.schema import Document
 from fretc.audit.evidence.writer import text
-from fretc.audit.store.anywhere import read
+from fretc.audit.store.agreement import COLUMNS
+from fretc.audit.store.anywhere import StoreError, read, source
 from fretc.audit.store.tables import TABLES, TableName, tabled
 from fretc.audit.store.writer import write_document
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from tests.effort import some
+from tests.effort import FULL, some
 from tests.fretc.audit.store.test_hostile import with_table
 from tests.fretc.audit.store.test_whole_numbers import evidence
 
@@ -91,3 +92,38 @@ def test_no_change_of_a_table_is_hidden(tmp_path: Path, monkeypatch: pytest.Monk
         elif text(found.document) == before:
             hidden.append((name, what))
     assert hidden == []
+
+
+@pytest.mark.slow
+def test_no_change_of_a_table_hides_what_is_violated(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a store that is read little at a time, verdicts are those of the other tables."""
+    monkeypatch.chdir(tmp_path)
+    assert isinstance(write_document(Path("store"), DOCUMENT, 0.95), str)
+    manifest = Path("store/manifest.json")
+    sound = manifest.read_bytes()
+    before = counted()
+    hidden = []
+    decisive = [each for each in forgeries() if each[0].split()[0] in COLUMNS[each[1]]]
+    assert {name for _, name, _ in decisive} == {*TABLES}
+    for what, name, table in forgeries() if FULL else decisive:
+        manifest.write_bytes(sound)
+        with_table(Path("store"), name, table)
+        after = counted()
+        if after != before and after is not None:
+            hidden.append((name, what))
+    assert before is not None
+    assert hidden == []
+
+
+def counted() -> list[tuple[str, str, str, int]] | None:
+    """What is said of each result; None: the store is refused."""
+    found = source("store")
+    if isinstance(found, Diagnostic):
+        return None
+    try:
+        briefs = [each for _, each in found.briefs()]
+    except StoreError:
+        return None
+    return [(each.run, each.requirement, each.verdict, each.violations) for each in briefs]

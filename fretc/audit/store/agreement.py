@@ -1,0 +1,113 @@
+"""Whether the tables of a part agree on what is violated, without making its results of them.
+
+That is what a reader needs to know before it counts verdicts of many runs. Whether each column is
+the one that the results give takes all tables (`fretc.audit.store.reader.Store.check_tables`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import accumulate, pairwise
+from typing import Any, TypeVar
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.compute as pc
+
+from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import plain as parsed
+from compiler.files.records import decoded
+from fretc.audit.evidence.briefs import brief, judgement_of
+from fretc.audit.evidence.schema import Result
+from fretc.audit.store.tables import (
+    EVENTS,
+    EXACT,
+    RESULTS,
+    RUNS,
+    SAMPLES,
+    VIOLATIONS,
+    TableName,
+    Tables,
+)
+
+T = TypeVar("T")
+_KEY = ("run", "requirement")
+_JUDGED = ("verdict", "finite", "triggers")
+COLUMNS: Mapping[TableName, Sequence[str]] = {
+    RESULTS: (*_KEY, *_JUDGED, "violations", "judgement", "run_row", EXACT),
+    EVENTS: (*_KEY, "open"),
+    VIOLATIONS: ("result_row", *_KEY, "first_tick", "last_tick"),
+    SAMPLES: ("violation_row",),
+    RUNS: ("run", "results"),
+}
+"""Those of each table that `check` reads."""
+
+
+def check(tables: Tables) -> None:
+    """Hold verdict, run, requirement and violations of each result against the other tables.
+
+    Args:
+        tables: of a part, with at least `COLUMNS`.
+
+    Raises:
+        MisshapenError: they contradict each other.
+    """
+    main, broken = tables[RESULTS], tables[VIOLATIONS]
+    _check_names(main, tables[EVENTS], "events")
+    rows = _rows(broken["result_row"], main.num_rows)
+    _check_names(main.take(rows), broken, "violations")
+    runs = tables[RUNS]
+    run_rows = _rows(main["run_row"], runs.num_rows)
+    results = np.bincount(run_rows, minlength=runs.num_rows)
+    if results.tolist() != runs["results"].to_pylist():
+        raise MisshapenError("`results` does not have the rows that `runs` says")
+    if not main["run"].combine_chunks().equals(runs["run"].take(run_rows).combine_chunks()):
+        raise MisshapenError("`results` names other runs than `runs`")
+    counts = np.bincount(rows, minlength=main.num_rows).tolist()
+    known = zip(*_lists(main, "verdict", "judgement", "violations"), counts, strict=True)
+    if [*known] != [*_expected(main, broken, tables[EVENTS]["open"], counts)]:
+        raise MisshapenError("`results` does not count what is in the other tables")
+
+
+def _check_names(main: pa.Table, other: pa.Table, name: str) -> None:
+    for column in _KEY:
+        if not main[column].combine_chunks().equals(other[column].combine_chunks()):
+            raise MisshapenError(f"`{column}` of `{name}` is not that of `results`")
+
+
+def _rows(column: pa.ChunkedArray, count: int) -> Any:
+    """Numbers of rows of a table that has so many."""
+    rows = column.to_numpy()
+    if column.null_count or (len(rows) and not 0 <= rows[0] <= rows[-1] < count):
+        raise MisshapenError("a table names a row that another one does not have")
+    if (np.diff(rows) < 0).any():
+        raise MisshapenError("the rows of a table are in another order than those of `results`")
+    return rows
+
+
+def _expected(
+    main: pa.Table, broken: pa.Table, open_at: pa.ChunkedArray, counts: Sequence[int]
+) -> Iterator[tuple[str, str, int, int]]:
+    """Verdict, judgement and number of violations of each result, and how many rows these have."""
+    spans = [[*ticks] for ticks in zip(*_lists(broken, "first_tick", "last_tick"), strict=True)]
+    opened = pc.list_flatten(open_at).combine_chunks().field("tick").to_pylist()
+    open_counts = pc.fill_null(pc.list_value_length(open_at), 0).to_pylist()
+    ticks = _cut(spans, counts), _cut(opened, open_counts)
+    rows = zip(*_lists(main, *_JUDGED, EXACT), *ticks, strict=True)
+    for verdict, finite, triggers, text, violations, open_ticks in rows:
+        if text is None:
+            judgement = judgement_of(verdict, finite, triggers, violations, open_ticks)
+            yield verdict, judgement, len(violations), len(violations)
+        else:
+            whole = brief(decoded(parsed(text), Result))
+            yield whole.verdict, whole.judgement, whole.violations, whole.violations
+
+
+def _lists(table: pa.Table, *columns: str) -> Iterator[list[Any]]:
+    return (table[name].to_pylist() for name in columns)
+
+
+def _cut(items: Sequence[T], counts: Sequence[int]) -> Iterator[Sequence[T]]:
+    """The items in pieces of these lengths."""
+    for start, end in pairwise(accumulate(counts, initial=0)):
+        yield items[start:end]
