@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 import tomli_w
-from hypothesis import HealthCheck, assume, event, given, settings
+from hypothesis import HealthCheck, Phase, assume, event, example, given, settings
 from hypothesis import strategies as st
 from mcap.writer import Writer
 
@@ -164,6 +164,15 @@ requirements = st.lists(
 )
 
 
+PLAIN: Mapping[str, Any] = {
+    "clock": {"tick": "100 ms"},
+    "signal": {name: least for name, (least, _) in SIGNALS.items()},
+    "proposition": {name: least for name, (least, _) in PROPOSITIONS.items()},
+    "variable": {name: least for name, (least, _) in VARIABLES.items()},
+}
+"""Bindings with what they must have alone; of free text beside a sentence there is one example."""
+
+
 @pytest.mark.parametrize(
     ("known", "drawn"),
     [
@@ -237,7 +246,9 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     max_examples=300 if FULL else 8,
     deadline=None,
     suppress_health_check=[*HealthCheck],
+    phases=[*Phase] if FULL else [Phase.explicit, Phase.generate],  # an example takes seconds
 )
+@example(declared=PLAIN, written=[({}, SENTENCES[0]), ({}, SENTENCES[-1])], stored=False)
 @given(declared=bindings, written=requirements, stored=st.booleans())
 def test_untouched_evidence_stands_in_every_command(
     declared: dict[str, Any],
