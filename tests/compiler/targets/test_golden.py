@@ -27,7 +27,8 @@ def test_the_papers_requirement(
         return
     if target == "ajpf-bundle":  # compared in test_bundle.py: `run.py` is no golden file
         return
-    for artifact in TARGETS[target].emit(project.rules, Options(declarations=project.declarations)):
+    options = Options(declarations=project.declarations, attribution=project.attribution)
+    for artifact in TARGETS[target].emit(project.rules, options):
         if target.startswith("ros") and artifact.path.name in SHARED:
             continue
         golden(f"{target}/{artifact.path}", artifact.text)
