@@ -8,7 +8,7 @@ from importlib.util import find_spec
 __version__ = "0.2.0"
 """Of the simulation: another one gives other messages for the same seed."""
 
-OPTIONAL_PACKAGES = ("matplotlib", "mujoco", "rosbags", "scipy")
+OPTIONAL_PACKAGES = ("matplotlib", "mujoco", "rosbags")
 
 
 def missing() -> tuple[str, ...]:

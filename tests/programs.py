@@ -67,7 +67,7 @@ MODULES = {
 PACKAGES = {
     "crosshair": "pip install -e '.[crosshair]'",
     "cyclonedds": "pip install -e '.[live]'",
-    "scipy": "pip install -e '.[sim]'",
+    "scipy": "pip install -e '.[dev]'",
     "stormpy": "pip install -e '.[peers]'",
 }
 """Of the Python of the tests, which nothing hides."""

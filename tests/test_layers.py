@@ -82,7 +82,6 @@ DOORS = {
     "dask": {"fretc/audit/fleet.py"},
     "mujoco": {"simulation/world/robot.py"},
     "matplotlib": {"simulation/picture.py"},
-    "scipy": {"fretc/audit/measurements/binomial.py", "fretc/coverage/least_runs.py"},
     "msgspec": {"compiler/files/records.py"},
     "rosbags": {
         "fretc/logs/messages/idl.py",

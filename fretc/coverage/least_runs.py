@@ -1,8 +1,8 @@
 """The fewest runs that show all that the runs together show.
 
-That is set cover: an integer program, solved exactly by HiGHS (scipy) where it ends within so many
-nodes, and else greedily, which is said. Source of the greedy bound: Chvatal, A greedy heuristic
-for the set-covering problem, Mathematics of Operations Research 4 (1979).
+That is set cover, solved exactly where the search ends within so many nodes, and else greedily,
+which is said. Source of the greedy bound: Chvatal, A greedy heuristic for the set-covering problem,
+Mathematics of Operations Research 4 (1979).
 """
 
 from __future__ import annotations
@@ -10,7 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-_NODES = 100
+import numpy as np
+from numpy.typing import NDArray
+
+_NODES = 20_000
 """Of the search tree; a number of nodes, and no time: the same runs give the same answer."""
 _CELLS = 20_000
 """Runs times aims, above which no exact answer is tried."""
@@ -52,38 +55,75 @@ def _minimal(aims: Iterable[frozenset[int]]) -> list[frozenset[int]]:
 
 
 def _candidates(aims: Sequence[frozenset[int]]) -> list[int]:
-    """One run, the first, of those that reach the same aims."""
-    reached: dict[int, list[int]] = {}
+    """The runs without those of which another one reaches all aims; the first of equal ones."""
+    reached: dict[int, int] = {}
     for number, aim in enumerate(aims):
         for run in aim:
-            reached.setdefault(run, []).append(number)
-    first: dict[tuple[int, ...], int] = {}
-    for run in sorted(reached):
-        first.setdefault(tuple(reached[run]), run)
-    return sorted(first.values())
+            reached[run] = reached.get(run, 0) | 1 << number
+    kept: list[int] = []
+    for run in sorted(reached, key=lambda each: (-reached[each].bit_count(), each)):
+        if not any(reached[run] & ~reached[other] == 0 for other in kept):
+            kept.append(run)
+    return sorted(kept)
 
 
 def _exact(aims: Sequence[frozenset[int]], candidates: Sequence[int]) -> list[int] | None:
-    """The fewest; None where the search does not end."""
+    """The fewest; None where the search does not end.
+
+    Branch and bound: one run of the aim that has fewest is to be taken, and a run whose turn is
+    over is taken by no later branch.
+    """
     if len(aims) * len(candidates) > _CELLS:
         return None
-    import numpy as np
-    from scipy.optimize import Bounds, LinearConstraint, milp
+    best = [candidates.index(run) for run in _greedy(aims, candidates)]
+    reach = np.array([[run in aim for run in candidates] for aim in aims])
+    branches = [_Branch((), np.arange(len(aims)), np.arange(len(candidates)))]
+    for _ in range(_NODES):
+        if not branches:
+            return [candidates[place] for place in best]
+        branch = branches.pop()
+        if not len(branch.aims):
+            best = [*branch.chosen] if len(branch.chosen) < len(best) else best
+        elif len(branch.chosen) + _at_least(reach[np.ix_(branch.aims, branch.free)]) < len(best):
+            branches += _branches(reach, branch)
+    return None
 
-    matrix = np.array([[run in aim for run in candidates] for aim in aims], np.float64)
-    count = len(candidates)
-    found = milp(
-        np.ones(count),
-        integrality=np.ones(count),
-        bounds=Bounds(0, 1),
-        constraints=LinearConstraint(matrix, lb=1),
-        options={"node_limit": _NODES, "mip_rel_gap": 0},
-    )
-    if found.status != 0:
-        return None
-    chosen = [run for run, taken in zip(candidates, found.x, strict=True) if taken > 0.5]
-    assert all(aim.intersection(chosen) for aim in aims), "the solver keeps its constraints"
-    return chosen
+
+@dataclass(frozen=True, slots=True)
+class _Branch:
+    chosen: tuple[int, ...]
+    """Columns: the runs that are taken."""
+    aims: NDArray[np.intp]
+    """Rows: the aims that none of them reaches."""
+    free: NDArray[np.intp]
+    """Columns: the runs that may still be taken."""
+
+
+def _at_least(reach: NDArray[np.bool_]) -> float:
+    """No fewer runs reach all aims.
+
+    Each aim counts as the part of the largest run that reaches it; the aims of no run count more
+    than 1 so. Infinite where an aim has no run.
+    """
+    largest = (reach * reach.sum(axis=0)).max(axis=1, initial=0)
+    with np.errstate(divide="ignore"):
+        return float(np.ceil((1 / largest).sum() - 1e-9))
+
+
+def _branches(reach: NDArray[np.bool_], branch: _Branch) -> list[_Branch]:
+    """One for each run of the aim that has fewest; the last one, of the largest run, is next."""
+    free, rest = branch.free, reach[np.ix_(branch.aims, branch.free)]
+    aim = int(rest.sum(axis=1).argmin())
+    takers = np.flatnonzero(rest[aim])
+    takers = takers[np.argsort(-rest[:, takers].sum(axis=0), kind="stable")]
+    return [
+        _Branch(
+            (*branch.chosen, int(free[taker])),
+            branch.aims[~rest[:, taker]],
+            np.delete(free, takers[: turn + 1]),
+        )
+        for turn, taker in enumerate(takers)
+    ][::-1]
 
 
 def _greedy(aims: Sequence[frozenset[int]], candidates: Sequence[int]) -> list[int]:

@@ -23,7 +23,7 @@ ALWAYS = {
     "mujoco",
     "numpy.ma",
 }
-ALWAYS |= {"foxglove", "pyarrow", "rosbags", "scipy", "spot", "websockets", "xml", "z3", "zipfile"}
+ALWAYS |= {"foxglove", "pyarrow", "rosbags", "spot", "websockets", "xml", "z3", "zipfile"}
 TEXTS = ALWAYS | {"mcap", "multiprocessing", "numpy", "socket", "subprocess", "zstandard"}
 HELP = TEXTS | {"jinja2", "lark", "tomllib"}
 COMMANDS: dict[tuple[str, ...], set[str]] = {

@@ -1,11 +1,8 @@
-"""Bounds of a probability from independent trials: Clopper, Pearson, Biometrika 26, 1934.
-
-The only module that imports scipy.
-"""
+"""Bounds of a probability from independent trials: Clopper, Pearson, Biometrika 26, 1934."""
 
 from __future__ import annotations
 
-from math import ceil, floor
+from math import comb, exp, log, log1p
 
 _GRAIN = 10**9
 """Bounds are rounded outwards to this part of 1: the same on every machine."""
@@ -16,12 +13,7 @@ def lowest(good: int, count: int, confidence: float) -> float:
 
     Rounded down.
     """
-    from scipy.special import betaincinv
-
-    if not good:
-        return 0.0
-    bound = float(betaincinv(good, count - good + 1, 1 - confidence))
-    return max(0.0, floor(bound * _GRAIN) / _GRAIN)
+    return _least(good, count, 1 - confidence) / _GRAIN
 
 
 def highest(good: int, count: int, confidence: float) -> float:
@@ -29,9 +21,44 @@ def highest(good: int, count: int, confidence: float) -> float:
 
     Rounded up.
     """
-    from scipy.special import betaincinv
+    return (_GRAIN - _least(count - good, count, 1 - confidence)) / _GRAIN
 
-    if good == count:
-        return 1.0
-    bound = float(betaincinv(good + 1, count - good, confidence))
-    return min(1.0, ceil(bound * _GRAIN) / _GRAIN)
+
+def _least(good: int, count: int, chance: float) -> int:
+    """The most grains of p with which `good` trials or more have at most this chance."""
+    if not good:
+        return 0
+    ways = log(comb(count, good))
+    below, above = 0, _GRAIN
+    while above - below > 1:
+        middle = (below + above) // 2
+        rare = _at_least(good, count, middle / _GRAIN, ways) <= chance
+        below, above = (middle, above) if rare else (below, middle)
+    return below
+
+
+def _at_least(good: int, count: int, p: float, ways: float) -> float:
+    """The chance of `good` trials or more, by the sum on that side of it that is the smaller one.
+
+    Args:
+        good: at least 1.
+        count: of all trials.
+        p: of each trial, between 0 and 1.
+        ways: the logarithm of the number of ways to choose the good ones.
+    """
+    odds = p / (1 - p)
+    term = exp(ways + good * log(p) + (count - good) * log1p(-p))
+    total = 0.0
+    if good >= count * p:
+        for k in range(good, count + 1):
+            if total + term == total:
+                break
+            total += term
+            term *= (count - k) / (k + 1) * odds
+        return total
+    for k in range(good, 0, -1):
+        term *= k / (count - k + 1) / odds
+        if total + term == total:
+            break
+        total += term
+    return 1 - total

@@ -186,8 +186,8 @@ def test_without_the_extra_the_scenarios_are_named_and_a_mission_tells_what_to_i
     tmp_path: Path,
 ) -> None:
     program = (
-        "import simulation; simulation.missing = lambda: ('mujoco', 'scipy'); "
-        "import sys; sys.modules['mujoco'] = sys.modules['rosbags'] = sys.modules['scipy'] = None; "
+        "import simulation; simulation.missing = lambda: ('mujoco', 'rosbags'); "
+        "import sys; sys.modules['mujoco'] = sys.modules['rosbags'] = None; "
         "from fretc.cli import main; main()"
     )
     for words, status in ((("--list",), 0), (("--out", "a.mcap"), 2), (("--campaign", "1"), 2)):
@@ -202,7 +202,7 @@ def test_without_the_extra_the_scenarios_are_named_and_a_mission_tells_what_to_i
         assert ran.returncode == status
         if status:
             assert ran.stderr == (
-                "F908 the simulated robot needs `mujoco` and `scipy`\n"
+                "F908 the simulated robot needs `mujoco` and `rosbags`\n"
                 "help: install the extra: pip install 'fretc[sim]' "
                 "(in a checkout: .venv/bin/pip install '.[sim]')\n"
             )

@@ -5,8 +5,11 @@ from itertools import pairwise
 from math import comb
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from fretc.audit.measurements.binomial import highest, lowest
+from tests.programs import needs_package
 
 
 def at_least(k: int, n: int, p: Fraction) -> Fraction:
@@ -59,6 +62,20 @@ def test_a_bound_is_wrong_no_more_often_than_stated() -> None:
             )
             assert over <= Fraction(5, 100)
             assert under <= Fraction(5, 100)
+
+
+@needs_package("scipy")
+@given(st.integers(1, 5000), st.data(), st.sampled_from([0.5, 0.9, 0.95, 0.975, 0.99, 0.999]))
+def test_the_bounds_are_those_of_the_beta_distribution(
+    count: int, data: st.DataObject, confidence: float
+) -> None:
+    from scipy.special import betaincinv
+
+    good = data.draw(st.integers(0, count))
+    low = betaincinv(good, count - good + 1, 1 - confidence) if good else 0.0
+    high = betaincinv(good + 1, count - good, confidence) if good < count else 1.0
+    assert lowest(good, count, confidence) == pytest.approx(low, abs=2e-9)
+    assert highest(good, count, confidence) == pytest.approx(high, abs=2e-9)
 
 
 def test_more_good_trials_never_lower_a_bound() -> None:
