@@ -25,6 +25,7 @@ from compiler.files.checked_json import MisshapenError, plain
 from compiler.files.settings import Settings
 from compiler.files.text_files import regular
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import within
 from fretish.reading.yaml_text import loaded
@@ -111,13 +112,8 @@ _EXPORTS = {
 
 
 def _missing_extra(settings: Settings, name: str) -> Diagnostic:
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"the parents in `{name}` need `reqif`",
-        _place(settings, name),
-        help="install the extra: pip install 'fretc[reqif]' "
-        "(in a checkout: .venv/bin/pip install '.[reqif]')",
-    )
+    need = f"the parents in `{name}` need"
+    return missing_extra(need, ["reqif"], "reqif", _place(settings, name))
 
 
 def _place(settings: Settings, name: str) -> Span:

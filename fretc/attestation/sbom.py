@@ -10,12 +10,12 @@ from __future__ import annotations
 import uuid
 from collections.abc import Iterable, Iterator, Mapping
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
-from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from compiler.files.dates import now
 from fretish.bindings.canonical import digest
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.extras import unless_installed
 
 if TYPE_CHECKING:
     from cyclonedx.model.bom import Bom
@@ -34,15 +34,8 @@ Name = tuple[str, frozenset[str]]
 
 def missing() -> Diagnostic | None:
     """F908, where what makes it is not installed."""
-    absent = [name for name in ("cyclonedx", "packaging") if find_spec(name) is None]
-    if not absent:
-        return None
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"a bill of materials needs {' and '.join(f'`{name}`' for name in absent)}",
-        help="install the extra: pip install 'fretc[sbom]' "
-        "(in a checkout: .venv/bin/pip install '.[sbom]')",
-    )
+    packages = ["cyclonedx", "packageurl", "packaging"]
+    return unless_installed("a bill of materials needs", packages, "sbom")
 
 
 def sbom(root: str = TOOL) -> str:

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +20,7 @@ from fretc.attestation import statement as attestation
 from fretc.attestation.statement import Statement, Subject
 from fretc.attestation.statement import read as read_statement
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.extras import unless_installed
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.limits import within
 
@@ -262,15 +262,7 @@ def _broken(envelope: Envelope, signer: Signer) -> Diagnostic:
 
 def missing() -> Diagnostic | None:
     """F908, where what is needed for signatures is not installed."""
-    absent = [name for name in ("securesystemslib", "cryptography") if find_spec(name) is None]
-    if not absent:
-        return None
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"signatures need {' and '.join(f'`{name}`' for name in absent)}",
-        help="install the extra: pip install 'fretc[sign]' "
-        "(in a checkout: .venv/bin/pip install '.[sign]')",
-    )
+    return unless_installed("signatures need", ["securesystemslib", "cryptography"], "sign")
 
 
 def read_signatures(files: Sequence[str], signers: str | None) -> SignatureBook | Diagnostic:

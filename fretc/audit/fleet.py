@@ -14,7 +14,6 @@ import signal
 import threading
 from collections.abc import Generator, Iterator, Sequence
 from functools import lru_cache, partial
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
@@ -23,6 +22,7 @@ from compiler.files.processes import shield
 from fretc.audit.many_logs import EVALUATIONS, Engine, LogAudit, LogAudits, audited, given_up
 from fretc.audit.plan import Plan, packed, unpacked
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.extras import unless_installed
 
 if TYPE_CHECKING:
     from distributed import Client, Future, WorkerPlugin
@@ -42,10 +42,10 @@ def engine(name: str, jobs: int) -> Engine | Diagnostic:
     place = urlsplit(name)
     if name != SCHEME and not (place.scheme == SCHEME and _is_address(place.netloc)):
         return _bad_engine(name)
-    if find_spec("distributed") is None:
-        return _missing("distributed")
-    if name == SCHEME and find_spec("cryptography") is None:
-        return _missing("cryptography")
+    encrypts = ["cryptography"] if name == SCHEME else []
+    missing = unless_installed("a fleet needs", ["distributed", *encrypts], "fleet")
+    if missing is not None:
+        return missing
     if name == SCHEME:
         return partial(_audit, lambda: _own_cluster(jobs))
     return partial(_audit, lambda: _cluster_at(f"tcp://{place.netloc}"))
@@ -275,15 +275,6 @@ def _bad_engine(name: str) -> Diagnostic:
         help=f"write `--evaluation {name}`"
         if name in EVALUATIONS
         else "it is `local`, `dask`, or `dask://HOST:PORT`",
-    )
-
-
-def _missing(what: str) -> Diagnostic:
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"a fleet needs `{what}`",
-        help="install the extra: pip install 'fretc[fleet]' "
-        "(in a checkout: .venv/bin/pip install '.[fleet]')",
     )
 
 

@@ -17,9 +17,11 @@ from fretc.commands.notify import notify, words
 from fretc.commands.summary import summarize
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import (
+    OF_LOGS,
     PATH,
     Renamed,
     bindings_option,
+    extras,
     format_option,
     jobs_option,
     label_option,
@@ -79,7 +81,10 @@ _AUDIT = {
 
 
 @click.command(
-    cls=Grouped, headings=_AUDIT, short_help="Audit recorded runs against all requirements."
+    cls=Grouped,
+    headings=_AUDIT,
+    short_help="Audit recorded runs against all requirements.",
+    epilog=extras({**OF_LOGS, "fleet": "--engine dask"}),
 )
 @click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
 @requirements_option

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.terminal.options import (
+    OF_LOGS,
     PATH,
     bindings_option,
+    extras,
     format_option,
     is_given,
     jobs_option,
@@ -25,7 +27,10 @@ if TYPE_CHECKING:
     from compiler.project.folder import Project
 
 
-@click.command(short_help="Draft bindings from a log, or check what they see in logs.")
+@click.command(
+    short_help="Draft bindings from a log, or check what they see in logs.",
+    epilog=extras(OF_LOGS),
+)
 @click.argument("paths", nargs=-1, type=PATH, metavar="[LOG...]")
 @path_option("--from", "source", metavar="LOG", help="Draft bindings of what is in this log.")
 @click.option("--check", is_flag=True, help="Tell what each proposition was in each LOG.")

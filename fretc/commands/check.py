@@ -13,6 +13,7 @@ from fretc.terminal.options import (
     analysis_option,
     bindings_option,
     evidence_option,
+    extras,
     format_option,
     hazards_option,
     is_given,
@@ -29,7 +30,10 @@ if TYPE_CHECKING:
     from fretc.analysis.evidence import AnalyzedSet
 
 
-@click.command(short_help="Say what is wrong or missing in a project, before any run.")
+@click.command(
+    short_help="Say what is wrong or missing in a project, before any run.",
+    epilog=extras({"reqif": "parents in a .reqif"}),
+)
 @click.argument("folder", required=False, type=PATH, metavar="")
 @requirements_option
 @bindings_option

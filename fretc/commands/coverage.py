@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.terminal.options import (
+    OF_LOGS,
     PATH,
     bindings_option,
     evidence_option,
+    extras,
     format_option,
     is_given,
     jobs_option,
@@ -44,7 +46,10 @@ if TYPE_CHECKING:
     from fretc.testing.suite import Suite
 
 
-@click.command(short_help="Say which situations of requirements recorded runs have shown.")
+@click.command(
+    short_help="Say which situations of requirements recorded runs have shown.",
+    epilog=extras(OF_LOGS),
+)
 @click.argument("paths", nargs=-1, type=PATH, metavar="[LOG]...")
 @requirements_option
 @bindings_option

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import click
 
-from fretc.terminal.options import PATH, format_option
+from fretc.terminal.options import OF_LOGS, PATH, extras, format_option
 from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, say, stop
 from fretish.diagnostics.diagnostic import Diagnostic
 
 
-@click.command(short_help="Say what is in recorded runs, and how healthy they are.")
+@click.command(
+    short_help="Say what is in recorded runs, and how healthy they are.",
+    epilog=extras(OF_LOGS),
+)
 @click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
 @click.option("--all", "whole", is_flag=True, help="Name every field that a signal can read.")
 @format_option()

@@ -11,13 +11,16 @@ import click
 from compiler.files.attribution import EXAMPLE
 from compiler.files.settings import NAME as SETTINGS
 from compiler.files.settings import settings
-from fretc.terminal.options import PATH, path_option
+from fretc.terminal.options import OF_LOGS, PATH, extras, path_option
 from fretc.terminal.output import REQUIREMENTS_FOLDER, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import visible
 
 
-@click.command(short_help="Begin a project: one requirement, its bindings and hazards.")
+@click.command(
+    short_help="Begin a project: one requirement, its bindings and hazards.",
+    epilog=extras(OF_LOGS),
+)
 @click.argument("folder", default=".", type=PATH, metavar="[FOLDER]")
 @path_option("--from", "log", metavar="LOG", help="Draft bindings and requirement from this log.")
 def init(folder: str, log: str | None) -> None:

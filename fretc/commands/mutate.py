@@ -8,8 +8,10 @@ from __future__ import annotations
 import click
 
 from fretc.terminal.options import (
+    OF_LOGS,
     PATH,
     bindings_option,
+    extras,
     format_option,
     jobs_option,
     places,
@@ -19,7 +21,10 @@ from fretc.terminal.options import (
 from fretc.terminal.output import BAD, INTERRUPTED, NOT_SHOWN, SHOWN, coloured, say_also, say_line
 
 
-@click.command(short_help="Say which wrong requirements recorded runs would not have noticed.")
+@click.command(
+    short_help="Say which wrong requirements recorded runs would not have noticed.",
+    epilog=extras(OF_LOGS),
+)
 @click.argument("folder", required=False, type=PATH, metavar="[FOLDER]")
 @click.option(
     "--against",

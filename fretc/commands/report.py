@@ -16,6 +16,7 @@ from fretc.terminal.options import (
     analysis_option,
     bindings_option,
     evidence_option,
+    extras,
     hazards_option,
     is_given,
     output_option,
@@ -60,7 +61,10 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
 
 
 @click.command(
-    cls=Grouped, headings=_HEADINGS, short_help="Trace hazard to verdict in one HTML file."
+    cls=Grouped,
+    headings=_HEADINGS,
+    short_help="Trace hazard to verdict in one HTML file.",
+    epilog=extras({"reqif": "--reqif", "sign": "what is signed"}),
 )
 @click.option(
     "--format",

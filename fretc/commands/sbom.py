@@ -6,11 +6,14 @@ from pathlib import Path
 
 import click
 
-from fretc.terminal.options import output_option
+from fretc.terminal.options import extras, output_option
 from fretc.terminal.output import deliver, stop
 
 
-@click.command(short_help="Say what the installed fretc consists of, as CycloneDX.")
+@click.command(
+    short_help="Say what the installed fretc consists of, as CycloneDX.",
+    epilog=extras({"sbom": "all of this"}),
+)
 @output_option(default="-", show_default=True, help="File; `-` prints it.")
 def sbom(output: str) -> None:
     """Say what the installed fretc consists of, as CycloneDX.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.terminal.options import PATH, path_option
+from fretc.terminal.options import PATH, extras, path_option
 from fretc.terminal.output import VIOLATION, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import visible
@@ -42,7 +42,10 @@ class Signable:
     lines: tuple[str, ...]
 
 
-@click.command(short_help="Sign evidence, proofs, an analysis, reviews or a report with your key.")
+@click.command(
+    short_help="Sign evidence, proofs, an analysis, reviews or a report with your key.",
+    epilog=extras({"sign": "all of this"}),
+)
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
 @path_option("--key", required=True, metavar="FILE", help="Your private key: ~/.ssh/id_ed25519.")
 @click.option(

@@ -15,6 +15,7 @@ import click
 from fretc.terminal.options import (
     PATH,
     Renamed,
+    extras,
     format_option,
     jobs_option,
     output_option,
@@ -23,13 +24,17 @@ from fretc.terminal.options import (
 from fretc.terminal.output import SHOWN, VIOLATION, deliver, not_written, say_line, stop
 from fretc.terminal.progress import progress
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.source import Source, Span
 
 if TYPE_CHECKING:
     from simulation.world.scenario import Scenario
 
 
-@click.command(short_help="Record missions of the simulated robot.")
+@click.command(
+    short_help="Record missions of the simulated robot.",
+    epilog=extras({"sim": "all but --list"}),
+)
 @click.argument("scenarios", nargs=-1, type=PATH, metavar="[SCENARIO]...")
 @output_option(
     cls=Renamed,
@@ -70,8 +75,7 @@ def simulate(
     """Let the simulated robot drive its mission and record it.
 
     SCENARIO says what goes wrong: one of `--list`, or a file (`.toml`); `nominal` if not given. The
-    safety function in it is the monitor that fretc compiles from R1. Needs the extra `sim`:
-    pip install 'fretc[sim]'.
+    safety function in it is the monitor that fretc compiles from R1.
     """
     from simulation.world.scenario import NOMINAL, load, names
 
@@ -79,7 +83,7 @@ def simulate(
         for name in names():
             click.echo(f"{name:<16} {load(name).title}")
         return
-    _installed()
+    demand_simulation()
     if campaign is not None:
         if png or gif or duration is not None or encoding != "ros2":
             raise click.UsageError("a campaign takes no --png, --gif, --duration or --encoding")
@@ -92,12 +96,13 @@ def simulate(
     _record(scenario, output, seed, duration, encoding, {"png": png, "gif": gif})
 
 
-def _installed() -> None:
+def demand_simulation() -> None:
+    """Stop where what the simulated robot needs is not installed."""
     from simulation import missing
 
     absent = missing()
     if absent:
-        stop(missing_extra(absent))
+        stop(missing_extra("the simulated robot needs", absent, "sim"))
 
 
 def _scenario(name: str) -> Scenario:
@@ -261,14 +266,3 @@ def _count(
     else:
         click.echo(table(runs), nl=False)
     raise SystemExit(VIOLATION if any(run.wrong for run in runs) else SHOWN)
-
-
-def missing_extra(packages: Sequence[str]) -> Diagnostic:
-    """F908."""
-    names = " and ".join(f"`{name}`" for name in packages)
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        f"the simulated robot needs {names}",
-        help="install the extra: pip install 'fretc[sim]' "
-        "(in a checkout: .venv/bin/pip install '.[sim]')",
-    )

@@ -13,6 +13,7 @@ import click
 from fretc.terminal.options import (
     PATH,
     SECONDS,
+    extras,
     format_option,
     jobs_option,
     output_option,
@@ -41,7 +42,10 @@ if TYPE_CHECKING:
     from fretc.testing.suite import Suite
 
 
-@click.command(short_help="Make tests from requirements.")
+@click.command(
+    short_help="Make tests from requirements.",
+    epilog=extras({"sim": "--emit mcap and --emit scenario"}),
+)
 @click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
 @click.option(
     "--component", metavar="NAME", help="Only the requirements of this component of the sentences."

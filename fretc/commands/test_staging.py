@@ -26,15 +26,12 @@ FORMS = ("mcap", "scenario")
 
 def check(emitted: str, emit_to: str) -> None:
     """Stop where it cannot be written: without its libraries, or to standard output."""
-    from fretc.commands.simulate import missing_extra
-    from simulation import missing
+    from fretc.commands.simulate import demand_simulation
 
     if emit_to == "-":
         message = f"`--emit {emitted}` writes many files, which `-` cannot hold"
         stop(Diagnostic(Code.BAD_USAGE, message, help="name a folder"))
-    absent = missing()
-    if absent:
-        stop(missing_extra(absent))
+    demand_simulation()
 
 
 def staged(project: Project, suite: Suite, emitted: str, emit_to: str, runs: int, jobs: int) -> int:

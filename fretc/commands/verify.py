@@ -15,6 +15,7 @@ from compiler.logic.claims import PROVERS, Layer
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import (
     PATH,
+    extras,
     format_option,
     limit_option,
     output_option,
@@ -76,6 +77,7 @@ input, 3 something is vacuous, not checked, or stays stopped.
     headings=_HEADINGS,
     help=_HELP,
     short_help="Prove that what is made of requirements keeps them.",
+    epilog=extras({"crosshair": "--with crosshair"}),
 )
 @click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
 @click.option(

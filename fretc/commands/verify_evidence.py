@@ -10,10 +10,12 @@ import click
 
 from fretc.commands.sign import demand, installed
 from fretc.terminal.options import (
+    OF_LOGS,
     PATH,
     analysis_option,
     bindings_option,
     evidence_place,
+    extras,
     format_option,
     jobs_option,
     label_option,
@@ -58,7 +60,11 @@ if TYPE_CHECKING:
     from fretc.verification.reader import Proofs
 
 
-@click.command("verify-evidence", short_help="Make evidence again, and say whether it stands.")
+@click.command(
+    "verify-evidence",
+    short_help="Make evidence again, and say whether it stands.",
+    epilog=extras({**OF_LOGS, "sign": "what is signed"}),
+)
 @click.argument("file", type=PATH, required=False, metavar="[FILE]")
 @requirements_option
 @bindings_option

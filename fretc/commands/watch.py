@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.terminal.group import Grouped
-from fretc.terminal.options import PATH, bindings_option, path_option, requirements_option
+from fretc.terminal.options import PATH, bindings_option, extras, path_option, requirements_option
 from fretc.terminal.output import (
     BAD,
     NOT_SHOWN,
@@ -42,7 +42,10 @@ _WATCH = {
 
 
 @click.command(
-    cls=Grouped, headings=_WATCH, short_help="Watch a running robot by all requirements."
+    cls=Grouped,
+    headings=_WATCH,
+    short_help="Watch a running robot by all requirements.",
+    epilog=extras({"live": "dds, foxglove and --publish"}),
 )
 @click.argument("words", nargs=-1, required=True, type=PATH, metavar="SOURCE...")
 @requirements_option

@@ -15,12 +15,12 @@ from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.topic_clocks import STILL_RUN
 from fretc.logs.signals.words import Foreign
-from fretc.logs.storage.storage_diagnostics import install
 from fretish.bindings.amounts import duration, seconds
 from fretish.bindings.declarations import Signal, short_type
 from fretish.bindings.words import listed
 from fretish.clock import Clock, TimeSource
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.extras import install
 from fretish.diagnostics.source import Span
 from fretish.reading.toml_text import as_key
 

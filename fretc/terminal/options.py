@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import click
@@ -14,6 +14,22 @@ from fretc.terminal.output import EVIDENCE, REQUIREMENTS_FOLDER, STORE, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 Command = Callable[..., Any]
+OF_LOGS = {
+    "bags": "bags (.bag, .db3) and messages defined in IDL",
+    "protobuf": "messages in Protobuf",
+    "remote": "URLs",
+}
+"""What a command that reads logs needs extras for."""
+
+
+def extras(needed: Mapping[str, str]) -> str:
+    """The end of a help.
+
+    Args:
+        needed: of each extra, what needs it.
+    """
+    parts = "; ".join(f"`{name}` for {what}" for name, what in needed.items())
+    return f"Extras, which `pip install 'fretc[NAME]'` adds: {parts}."
 
 
 class _Path(click.ParamType[str]):

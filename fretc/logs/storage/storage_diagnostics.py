@@ -7,15 +7,8 @@ from collections.abc import Collection
 
 from fretish.bindings.declarations import short_type
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.source import Source, Span
-
-
-def install(extra: str) -> str:
-    """How to get an optional part of fretc."""
-    return (
-        f"install the extra: pip install 'fretc[{extra}]' (in a checkout: pip install '.[{extra}]')"
-    )
-
 
 # Standard input and URLs
 
@@ -49,20 +42,19 @@ def unlisted(error: OSError, place: Span) -> Diagnostic:
 
 def no_fsspec(place: Span) -> Diagnostic:
     """URLs need an extra."""
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        "a URL cannot be read: that needs `fsspec`",
-        place,
-        install("remote"),
-    )
+    return missing_extra("a URL cannot be read: that needs", ["fsspec"], "remote", place)
 
 
 def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
     """The package for the protocol of the URL is not installed."""
     reason = why.strip().partition("\n")[0][:200]
     packages = {"s3": "s3fs", "s3a": "s3fs", "gs": "gcsfs", "gcs": "gcsfs"}
-    packages |= {"az": "adlfs", "abfs": "adlfs", "http": "aiohttp", "https": "aiohttp"}
+    packages |= {"az": "adlfs", "abfs": "adlfs"}
     package = packages.get(protocol.lower())
+    if protocol.lower() in ("http", "https"):
+        return missing_extra(
+            f"what is at `{protocol}://` cannot be read: that needs", ["aiohttp"], "remote", place
+        )
     return Diagnostic(
         Code.MISSING_EXTRA,
         f"what is at `{protocol}://` cannot be read: {reason}",
@@ -78,12 +70,7 @@ def no_protocol_package(protocol: str, why: str, place: Span) -> Diagnostic:
 
 def no_rosbags(place: Span) -> Diagnostic:
     """Bags need an extra."""
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        "a bag cannot be read: that needs `rosbags`",
-        place,
-        install("bags"),
-    )
+    return missing_extra("a bag cannot be read: that needs", ["rosbags"], "bags", place)
 
 
 def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Diagnostic
+from fretish.diagnostics.extras import unless_installed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -96,14 +96,7 @@ def _reqif(subject: Subject) -> str:
 
 def _missing_reqif() -> Diagnostic | None:
     """F908, where the library that `--reqif` needs is not installed."""
-    if find_spec("reqif") is not None:
-        return None
-    return Diagnostic(
-        Code.MISSING_EXTRA,
-        "a report as ReqIF needs `reqif`",
-        help="install the extra: pip install 'fretc[reqif]' "
-        "(in a checkout: .venv/bin/pip install '.[reqif]')",
-    )
+    return unless_installed("a report as ReqIF needs", ["reqif"], "reqif")
 
 
 def _gsn(subject: Subject) -> str:

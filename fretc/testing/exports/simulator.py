@@ -83,8 +83,10 @@ def table(rule: Formalized, test: Test) -> str:
 
 
 def _names(test: Test) -> tuple[str, ...]:
-    """What is no comparison."""
-    return tuple(name for name in test.rows[0].values if not is_compound(name))
+    """What is known of each tick and is no comparison."""
+    first, *others = (row.values for row in test.rows)
+    known = (name for name in first if all(name in values for values in others))
+    return tuple(name for name in known if not is_compound(name))
 
 
 def _numbers(rule: Formalized, test: Test) -> tuple[list[str], list[Numbers]]:

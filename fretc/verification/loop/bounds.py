@@ -13,7 +13,6 @@ Source: Manna, Pnueli, Temporal verification of reactive systems: safety, 1995, 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 from typing import Any
 
 from compiler.formalization.formalize import formalize
@@ -59,7 +58,6 @@ from monitors.interceptor import Options
 
 _MORE = "as many more, at least one, as `latency` and `braking` fill together"
 ANSWERED = f"every demand is answered within `lost` ticks and {_MORE}"
-INSTALL = "z3 is not installed: pip install z3-solver"
 _SMALL = ((1, 0, 0, 0), (1, 1, 1, 1), (2, 1, 1, 2), (1, 2, 2, 0), (3, 4, 1, 2))
 """Cells to a tick, latency, losses in a row, braking: for comparing the twin with the texts."""
 _QUERY = 20_000
@@ -188,8 +186,6 @@ def _answers(sentence: s.Sentence, stands: str) -> bool:
 
 def search(query: Question) -> Answer:
     """Prove the invariant, compare the twin with the texts, and look for the least bound."""
-    if find_spec("z3") is None:
-        return Answer(not_checked(INSTALL), not_checked(INSTALL))
     try:
         endless = _endless(query)
         parts = Parts.of(endless)

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from fretc.audit.outputs.annotations import state_topic
-from fretc.logs.storage.storage_diagnostics import install
 from fretc.watch.sources.source import Arrival, Channel
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.extras import install
 from monitors.guard import State, Status
 from monitors.kernel.verdicts import Truth
 

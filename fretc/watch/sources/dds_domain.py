@@ -23,6 +23,7 @@ from fretc.watch.sources.dds_types import (
     ros_topic,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.extras import install
 
 _HIGHEST = 232
 """Of the numbers of domains: a higher one has no ports."""
@@ -77,7 +78,7 @@ def join() -> Domain | Diagnostic:
         return Diagnostic(
             Code.MISSING_EXTRA,
             f"DDS is watched by Cyclone DDS, which is not installed: {error}",
-            help="pip install 'fretc[live]'",
+            help=install("live"),
         )
     number = domain_id()
     return number if isinstance(number, Diagnostic) else _joined(number)

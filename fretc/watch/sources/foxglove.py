@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, assert_never
 from urllib.parse import SplitResult
 
 from compiler.files.checked_json import MisshapenError
-from fretc.logs.storage.storage_diagnostics import install
 from fretc.watch.sources.foxglove_protocol import (
     SUBPROTOCOLS,
     Advertised,
@@ -36,6 +35,7 @@ from fretc.watch.sources.foxglove_protocol import (
 from fretc.watch.sources.middleware import Middleware, simulated_time
 from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.extras import install
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection

@@ -7,8 +7,8 @@ import pytest
 from cyclonedx.schema import OutputFormat, SchemaVersion
 from cyclonedx.validation import make_schemabased_validator
 
-from fretc.attestation import sbom
 from fretc.attestation.sbom import closure
+from fretish.diagnostics import extras
 from tests.command import Fretc
 
 
@@ -62,7 +62,9 @@ def test_the_same_installation_gives_the_same_bytes(
 def test_without_its_library_it_says_what_to_install(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sbom, "find_spec", lambda name: None)
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
     run = fretc("sbom")
     assert run.status == 2
-    assert run.err.startswith("F908 a bill of materials needs `cyclonedx` and `packaging`\n")
+    assert run.err.startswith(
+        "F908 a bill of materials needs `cyclonedx`, `packageurl` and `packaging`\n"
+    )

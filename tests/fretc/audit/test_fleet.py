@@ -23,6 +23,7 @@ from compiler.project.paths import beside, requirement_files
 from fretc.audit import fleet
 from fretc.audit.many_logs import Audit, Engine, LogAudit, audit_logs
 from fretc.audit.plan import Plan, packed, planned, unpacked
+from fretish.diagnostics import extras
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, untimed
 
@@ -241,10 +242,10 @@ def test_the_former_meaning_of_engine_is_told_its_new_name(fretc: Fretc) -> None
 def test_without_the_extra_the_line_that_installs_it_is_told(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(fleet, "find_spec", lambda name: None)
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
     run = fretc("audit", *LOGS, "--engine", "dask")
     assert run.status == 2
-    assert run.err.startswith("F908 a fleet needs `distributed`\nhelp: install the extra: pip ")
+    assert run.err.startswith("F908 a fleet needs `distributed` and `cryptography`\nhelp: install ")
 
 
 @pytest.mark.slow

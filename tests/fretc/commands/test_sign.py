@@ -13,6 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from fretc.attestation.statement import TYPE
+from fretish.diagnostics import extras
 from tests import keys
 from tests.command import Fretc, write
 from tests.fretc.commands.test_verify_evidence import BINDINGS, R1, log
@@ -469,10 +470,9 @@ def test_malformed_evidence_is_not_signed(project: Fretc, text: str) -> None:
 def test_without_the_libraries_signatures_are_not_overlooked(
     project: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from fretc.attestation import signatures
 
     assert project("sign", EVIDENCE, "--key", "ada").status == 0
-    monkeypatch.setattr(signatures, "find_spec", lambda name: None)
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
     for args in (("report",), ("sign", EVIDENCE, "--key", "ada"),
                  ("verify-evidence", "--signed-by", "ada.pub")):  # fmt: skip
         run = project(*args)

@@ -204,5 +204,5 @@ def test_without_the_extra_the_scenarios_are_named_and_a_mission_tells_what_to_i
             assert ran.stderr == (
                 "F908 the simulated robot needs `mujoco` and `rosbags`\n"
                 "help: install the extra: pip install 'fretc[sim]' "
-                "(in a checkout: .venv/bin/pip install '.[sim]')\n"
+                "(in a checkout: pip install '.[sim]')\n"
             )

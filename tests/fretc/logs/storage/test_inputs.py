@@ -27,8 +27,8 @@ from fretc.logs.signals.samples import Recording
 from fretc.logs.storage import inputs
 from fretc.logs.storage.inputs import opened
 from fretc.logs.storage.log_names import is_url, name_of
-from fretc.logs.storage.storage_diagnostics import install
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.extras import install
 from fretish.diagnostics.rendering import render
 from tests.fretc.logs.logs import NONE, TWELVE, S, Sent, X, damaged, number, values, write
 

@@ -18,9 +18,9 @@ from reqif.parser import ReqIFParser
 
 from compiler.files.settings import Settings
 from compiler.project.parents import Parent, parents
-from fretc.report.forms import forms
 from fretc.report.forms.reqif import reqif as form
 from fretc.report.model.views import HazardView, Report, verdict_mark
+from fretish.diagnostics import extras
 from tests.command import Fretc, write
 from tests.fretc.report.cases import (
     HAZARDS,
@@ -363,13 +363,13 @@ def test_without_the_extra_the_line_that_installs_it_is_reported(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     project(Path("requirements"))
-    monkeypatch.setattr(forms, "find_spec", lambda name: None)
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
     run = fretc("report", "--reqif", "out.reqif")
     assert (run.status, run.out) == (2, "")
     assert run.err == (
         "F908 a report as ReqIF needs `reqif`\n"
         "help: install the extra: pip install 'fretc[reqif]' "
-        "(in a checkout: .venv/bin/pip install '.[reqif]')\n"
+        "(in a checkout: pip install '.[reqif]')\n"
     )
     assert not Path("build/report.html").exists()
     assert fretc("report").status == 0

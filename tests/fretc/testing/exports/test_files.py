@@ -17,6 +17,7 @@ import pytest
 from compiler.files.records import replace
 from compiler.formalization.formalized import Formalized
 from fretc.testing.assembly import suite
+from fretc.testing.exports import simulator
 from fretc.testing.exports.files import INDEX, Form, files
 from fretc.testing.exports.pytest_file import Language
 from fretc.testing.generation import batch
@@ -239,6 +240,20 @@ def test_tables_are_read_by_the_monitor(sentence: str, tmp_path: Path) -> None:
         found = [json.loads(line) for line in ran.stdout.splitlines()]
         assert [row["verdict"] for row in found] == [row["verdict"] for row in own], ran.stderr
         assert [str(row["ticks"]) for row in found] == [row["ticks"] for row in own]
+
+
+def test_a_number_that_is_known_at_some_ticks_alone_is_no_column_of_the_simulator(
+    tmp_path: Path,
+) -> None:
+    """A proposition of the bindings has numbers only where some make it so."""
+    found, (rule,) = written(tmp_path, Form.FRET, SENTENCES[0])
+    test = next(each for each in found.tests if len(each.rows) > 1)
+    for place in range(len(test.rows)):
+        rows = [replace(row, values={**row.values, "number": 1.0}) for row in test.rows]
+        rows[place] = test.rows[place]
+        some = replace(test, rows=tuple(rows))
+        assert simulator.refusal(rule, some) is None
+        assert simulator.table(rule, some) == simulator.table(rule, test)
 
 
 def test_traces_of_the_simulator_have_its_form(tmp_path: Path) -> None:

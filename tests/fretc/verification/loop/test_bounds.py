@@ -142,9 +142,3 @@ def test_an_invariant_that_is_too_strong_is_not_proved(monkeypatch: pytest.Monke
     monkeypatch.setattr(bounds, "_invariant", too_strong)
     answer = search(question(EVENTUALLY, interceptor_options(), Channel(1)))
     assert answer.answered == not_checked("of the invariant: a step does not keep it")
-
-
-def test_without_z3_it_is_told_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bounds, "find_spec", lambda _: None)
-    reason = not_checked("z3 is not installed: pip install z3-solver")
-    assert search(question(EVENTUALLY)) == Answer(reason, reason)
