@@ -71,8 +71,8 @@ LINES: tuple[tuple[str, ...], ...] = (
     ("audit", "idl.mcap", *SMALL),
 )
 """The first of a command is run with each choice of each of its options, too."""
-LONGEST = 60
-"""Seconds for a line."""
+LONGEST = 600
+"""Seconds of a clock for a line: it hangs."""
 BINDINGS = """
 [clock]
 tick = "100 ms"
@@ -139,7 +139,8 @@ def run(words: Sequence[str]) -> dict[str, Any]:
     """One line, in this process."""
     from fretc.cli import main
 
-    out, err = (io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2))
+    outputs = [io.BytesIO(), io.BytesIO()]
+    out, err = (io.TextIOWrapper(output, encoding="utf-8") for output in outputs)
     sys.argv = ["fretc", *(words[1:] if words[0] == "compile" else words)]
     sys.stdin = io.TextIOWrapper(io.BytesIO())
     status: object = 0
@@ -152,10 +153,9 @@ def run(words: Sequence[str]) -> dict[str, Any]:
         status = end.code or 0
     finally:
         signal.alarm(0)
-    texts = []
-    for stream in (out, err):
-        stream.flush()
-        texts.append(stream.buffer.getvalue().decode())  # type: ignore[attr-defined]
+    out.flush()
+    err.flush()
+    texts = [output.getvalue().decode() for output in outputs]
     files = dict(hashes().items() - before.items())
     return {"words": words, "status": status, "out": texts[0], "err": texts[1], "files": files}
 
@@ -192,7 +192,7 @@ def prepare(checkout: Path) -> None:
         ("idl", ("ros2idl", "cdr"), idl, bytes(12)),
     ):
         with Path(f"{name}.mcap").open("wb") as stream:
-            writer = Writer(stream)
+            writer: Any = Writer(stream)
             writer.start()
             schema = writer.register_schema("T", encoding[0], text)
             channel = writer.register_channel("/t", encoding[1], schema)

@@ -14,8 +14,8 @@ from fretc.logs.messages.definitions import DefinitionError
 from fretc.logs.messages.idl import types
 from fretc.logs.messages.probes import trusted
 from fretc.logs.signals.samples import Recording
-from fretc.logs.storage.storage_diagnostics import install
 from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.extras import install
 from tests.fretc.logs.logs import (
     MS,
     SCAN,

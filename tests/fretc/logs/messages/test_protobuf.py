@@ -18,8 +18,8 @@ from google.protobuf.timestamp_pb2 import DESCRIPTOR as TIMESTAMP
 from fretc.logs.messages import protobuf
 from fretc.logs.reader import Overview, look
 from fretc.logs.signals.samples import Recording
-from fretc.logs.storage.storage_diagnostics import install
 from fretish.diagnostics.diagnostic import Code
+from fretish.diagnostics.extras import install
 from tests.fretc.logs.logs import MS, S, Sent, declare, recorded, times, values, write
 
 F = FieldDescriptorProto
