@@ -12,6 +12,7 @@ from fretc.terminal.options import (
     PATH,
     analysis_option,
     evidence_option,
+    extras,
     format_option,
     is_given,
     path_option,
@@ -37,7 +38,10 @@ if TYPE_CHECKING:
     from fretc.report.traceability.lock import Lock, Review
 
 
-@click.command(short_help="Accept the present state of requirements, as their reviewer.")
+@click.command(
+    short_help="Accept the present state of requirements, as their reviewer.",
+    epilog=extras({"sign": "--key"}),
+)
 @click.argument("ids", nargs=-1, metavar="[ID]...")
 @click.option("--reviewer", required=True, help="Who has reviewed.")
 @click.option("--role", required=True, help="As what: `safety engineer`.")

@@ -92,10 +92,11 @@ def installed() -> None:
 def private(path: str) -> PrivateKey:
     """The private key of a file; its passphrase is asked for where it has one."""
     from compiler.files.text_files import content, unreadable
+
+    installed()
     from fretc.attestation.keys import UnusableKeyError, private_key
     from fretc.attestation.signers import bad_key
 
-    installed()
     try:
         return private_key(content(path), lambda: _passphrase(path))
     except OSError as error:
@@ -435,9 +436,10 @@ def demand(evidence: EvidenceSource, by: str, others: Mapping[str, str | None]) 
     """
     from compiler.files.text_files import file_sha256
     from fretc.attestation.signatures import book
-    from fretc.attestation.signers import trusted
 
     installed()
+    from fretc.attestation.signers import trusted
+
     keys = trusted(by)
     if isinstance(keys, Diagnostic):
         stop(keys)

@@ -467,7 +467,7 @@ def test_the_options_of_an_audit_stand_under_headings(fretc: Fretc) -> None:
         "Other:",
     ]
     assert text.index("--requirements") < text.index("--format") < text.index("--jobs")
-    assert text.endswith("Other:\n  -h, --help  Show this message and exit.\n")
+    assert "Other:\n  -h, --help  Show this message and exit.\n\n  Extras" in text
 
 
 def test_requirements_come_as_people_count(fretc: Fretc) -> None:
