@@ -8,9 +8,6 @@ from shlex import quote
 
 import click
 
-from compiler.files.attribution import EXAMPLE
-from compiler.files.settings import NAME as SETTINGS
-from compiler.files.settings import settings
 from fretc.terminal.options import OF_LOGS, PATH, extras, path_option
 from fretc.terminal.output import REQUIREMENTS_FOLDER, deliver, say, say_line, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -31,6 +28,7 @@ def init(folder: str, log: str | None) -> None:
     and the requirement bounds a signal of the log, so that `fretc audit LOG` can judge it at once.
     What is yours to say is marked `To do`.
     """
+    from compiler.files.settings import NAME as SETTINGS
     from fretc.audit.bindings.beginning import from_log, without_log
 
     requirements = Path(folder) / REQUIREMENTS_FOLDER
@@ -61,12 +59,16 @@ def _say_next_commands(folder: str, requirements: Path, log: str | None) -> None
 
 def _has_settings(folder: Path) -> bool:
     """Whether settings of a folder above hold: another file would take their place."""
+    from compiler.files.settings import settings
+
     found = settings(str(folder))
     return isinstance(found, Diagnostic) or found.tables is not None
 
 
 def _settings_to_fill_in() -> str:
     """`fretc.toml` with a comment for all that only the owner of the project knows."""
+    from compiler.files.attribution import EXAMPLE
+
     table = "".join(f"# {line}\n" for line in EXAMPLE.splitlines())
     return f"# Settings. To do: say who answers for packages that are made, as for ROS.\n{table}"
 
