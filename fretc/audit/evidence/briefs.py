@@ -340,7 +340,7 @@ def judgement_of(
     finite: bool | None,
     triggers: int,
     violations: Sequence[Sequence[int]],
-    open_at: Sequence[int],
+    open_at: Sequence[int | None],
 ) -> str:
     """The same of the parts of a result.
 

@@ -8,11 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate, pairwise
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
-import pyarrow as pa
-import pyarrow.compute as pc
 
 from compiler.files.checked_json import MisshapenError
 from compiler.files.checked_json import plain as parsed
@@ -28,9 +26,10 @@ from fretc.audit.store.tables import (
     VIOLATIONS,
     TableName,
     Tables,
+    Taken,
 )
 
-T = TypeVar("T")
+Ticks = Sequence[int]
 _KEY = ("run", "requirement")
 _JUDGED = ("verdict", "finite", "triggers")
 COLUMNS: Mapping[TableName, Sequence[str]] = {
@@ -61,21 +60,26 @@ def check(tables: Tables) -> None:
     results = np.bincount(run_rows, minlength=runs.num_rows)
     if results.tolist() != runs["results"].to_pylist():
         raise MisshapenError("`results` does not have the rows that `runs` says")
-    if not main["run"].combine_chunks().equals(runs["run"].take(run_rows).combine_chunks()):
+    if not _same(main["run"], runs["run"].take(run_rows)):
         raise MisshapenError("`results` names other runs than `runs`")
     counts = np.bincount(rows, minlength=main.num_rows).tolist()
     known = zip(*_lists(main, "verdict", "judgement", "violations"), counts, strict=True)
-    if [*known] != [*_expected(main, broken, tables[EVENTS]["open"], counts)]:
+    if [*known] != [*_expected(main, broken, tables[EVENTS], counts)]:
         raise MisshapenError("`results` does not count what is in the other tables")
 
 
-def _check_names(main: pa.Table, other: pa.Table, name: str) -> None:
+def _check_names(main: Taken, other: Taken, name: str) -> None:
     for column in _KEY:
-        if not main[column].combine_chunks().equals(other[column].combine_chunks()):
+        if not _same(main[column], other[column]):
             raise MisshapenError(f"`{column}` of `{name}` is not that of `results`")
 
 
-def _rows(column: pa.ChunkedArray, count: int) -> Any:
+def _same(column: Any, other: Any) -> bool:
+    is_same: bool = column.equals(other)  # however they are cut into pieces
+    return is_same
+
+
+def _rows(column: Any, count: int) -> Any:
     """Numbers of rows of a table that has so many."""
     rows = column.to_numpy()
     if column.null_count or (len(rows) and not 0 <= rows[0] <= rows[-1] < count):
@@ -86,14 +90,12 @@ def _rows(column: pa.ChunkedArray, count: int) -> Any:
 
 
 def _expected(
-    main: pa.Table, broken: pa.Table, open_at: pa.ChunkedArray, counts: Sequence[int]
+    main: Taken, broken: Taken, events: Taken, counts: Sequence[int]
 ) -> Iterator[tuple[str, str, int, int]]:
     """Verdict, judgement and number of violations of each result, and how many rows these have."""
     spans = [[*ticks] for ticks in zip(*_lists(broken, "first_tick", "last_tick"), strict=True)]
-    opened = pc.list_flatten(open_at).combine_chunks().field("tick").to_pylist()
-    open_counts = pc.fill_null(pc.list_value_length(open_at), 0).to_pylist()
-    ticks = _cut(spans, counts), _cut(opened, open_counts)
-    rows = zip(*_lists(main, *_JUDGED, EXACT), *ticks, strict=True)
+    open_at = (_ticks(moments or ()) for moments in events["open"].to_pylist())
+    rows = zip(*_lists(main, *_JUDGED, EXACT), _cut(spans, counts), open_at, strict=True)
     for verdict, finite, triggers, text, violations, open_ticks in rows:
         if text is None:
             judgement = judgement_of(verdict, finite, triggers, violations, open_ticks)
@@ -103,11 +105,16 @@ def _expected(
             yield whole.verdict, whole.judgement, whole.violations, whole.violations
 
 
-def _lists(table: pa.Table, *columns: str) -> Iterator[list[Any]]:
+def _ticks(moments: Sequence[Mapping[str, int] | None]) -> list[int | None]:
+    """Those of moments; a moment that is missing has none, and no judgement is about that."""
+    return [None if each is None else each["tick"] for each in moments]
+
+
+def _lists(table: Taken, *columns: str) -> Iterator[list[Any]]:
     return (table[name].to_pylist() for name in columns)
 
 
-def _cut(items: Sequence[T], counts: Sequence[int]) -> Iterator[Sequence[T]]:
+def _cut(items: Sequence[Ticks], counts: Sequence[int]) -> Iterator[Sequence[Ticks]]:
     """The items in pieces of these lengths."""
     for start, end in pairwise(accumulate(counts, initial=0)):
         yield items[start:end]
