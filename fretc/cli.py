@@ -21,7 +21,15 @@ from compiler.files.processes import shield
 from fretc.api.refusal import too_deep
 from fretc.terminal.completion import answered
 from fretc.terminal.group import DEFAULT, Commands, Registry
-from fretc.terminal.output import BAD, INTERRUPTED, SHOWN, not_written, say, say_line
+from fretc.terminal.output import (
+    BAD,
+    INTERRUPTED,
+    SHOWN,
+    final_status,
+    not_written,
+    say,
+    say_line,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.limits import ExceededError, exceeded
 
@@ -152,7 +160,12 @@ def _run() -> None:
     if answered(cli):
         return
     with cli.make_context("fretc", sys.argv[1:]) as context:
-        cli.invoke(context)
+        try:
+            cli.invoke(context)
+            status = SHOWN
+        except SystemExit as exit_:
+            status = int(exit_.code or SHOWN)
+        raise SystemExit(final_status(context, status))
 
 
 def _no_output(error: OSError) -> None:

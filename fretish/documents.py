@@ -96,6 +96,12 @@ def requirements(source: Source) -> tuple[tuple[Requirement, ...], tuple[Diagnos
     return tuple(found), tuple(diagnostics)
 
 
+def unread(path: str, why: Diagnostic) -> Requirement:
+    """What a file stands for that cannot be read: a requirement, called by the file."""
+    source = Source(path, "")
+    return _unread(source, source.span(), why)
+
+
 def _pairs(source: Source) -> list[tuple[Span | None, Span]] | Diagnostic:
     """Header (None: there is none) and sentence, in the order of the file."""
     fences = list(_FENCE.finditer(source.text))

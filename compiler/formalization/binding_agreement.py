@@ -191,6 +191,12 @@ def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic
         )
 
 
+def broken_tables(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
+    """The mistakes in the tables of propositions and signals that a requirement reads."""
+    for name in rule.watched:
+        yield from _mistakes(name, rule.stated.get(name), declarations)
+
+
 def _mistakes(
     name: str, stated: e.Expression | None, declarations: Declarations
 ) -> list[Diagnostic]:

@@ -109,14 +109,24 @@ def _judged(
 def unreadable_sentence(requirement: Requirement) -> tuple[Diagnostic, ...]:
     """The mistakes of the sentence of a requirement whose header has some, too.
 
-    None where the header does not end: nothing says where the sentence begins.
+    None where the header does not end, or the file cannot be read: nothing says what the sentence
+    is.
     """
     wording = requirement.wording
     codes = {mistake.code for mistake in requirement.mistakes}
-    if not codes or Code.UNCLOSED_HEADER in codes or requirement.is_free_text:
+    if not codes or codes & _WITHOUT_SENTENCE or requirement.is_free_text:
         return ()
     found = within(wording.end - wording.start, wording, partial(mistakes, wording))
     return (found,) if isinstance(found, Diagnostic) else found
+
+
+_WITHOUT_SENTENCE = {
+    Code.UNCLOSED_HEADER,
+    Code.NO_SUCH_FILE,
+    Code.IS_A_DIRECTORY,
+    Code.UNREADABLE,
+    Code.NOT_TEXT,
+}
 
 
 def clashes(rules: Sequence[Formalized]) -> Iterator[Diagnostic]:

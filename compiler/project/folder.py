@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,11 +19,12 @@ from compiler.project.ancestry import circles, unknown_parents
 from compiler.project.hazards import Hazard
 from compiler.project.hazards import hazards as read_hazards
 from compiler.project.paths import BINDINGS, HAZARDS, beside, beside_first, requirement_files
+from compiler.project.refusals import Refused, refused
 from compiler.project.stated_numbers import disagreements
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
-from fretish.documents import Requirement, requirements
+from fretish.documents import Requirement, requirements, unread
 
 if TYPE_CHECKING:
     from compiler.project.parents import Parent
@@ -53,7 +54,8 @@ class Project:
     diagnostics: tuple[Diagnostic, ...]
     general: tuple[Diagnostic, ...] = ()
     """Those of the diagnostics that are about no single requirement, and no single table of the
-    bindings: a mistake there is one of the requirements that read it."""
+    bindings: a mistake there is one of the requirements that read it. Hazards and parents are
+    among them, which no formula reads."""
     mistaken: Mapping[int, Diagnostic] = field(default_factory=dict)
     """The mistake of each requirement that has a rule all the same, by its `id()`: it shares its
     id with another one, or its `params` name what is not there."""
@@ -63,6 +65,18 @@ class Project:
     """The warnings that are accepted, and why; those among `diagnostics` are marked."""
     attribution: Attribution = NOBODY
     """Who answers for what is made of it, by its settings."""
+    refused: tuple[Refused, ...] = ()
+    """The requirements that a mistake reaches: nothing is made of them."""
+
+    @property
+    def sound(self) -> Project:
+        """The same with the rules alone that no mistake reaches: what can be made is made of these.
+
+        A `retired` requirement is among them, too.
+        """
+        refused = {id(each.requirement) for each in self.refused}
+        rules = tuple(rule for rule in self.rules if id(rule.requirement) not in refused)
+        return replace(self, rules=rules)
 
     @property
     def without_rule(self) -> tuple[Requirement, ...]:
@@ -91,7 +105,7 @@ def load(
     """
     declarations, of_bindings = _declarations(bindings or beside_first(paths, BINDINGS))
     known, of_hazards = read_hazards(hazards) if hazards else ({}, ())
-    written, unread = _written(paths)
+    written = _written(paths)
     chosen = _settings(paths)
     above, elsewhere = _above(chosen) if parents else ({}, ())
     broken = declarations is None and has_errors(of_bindings)
@@ -103,11 +117,12 @@ def load(
     declarations = _with_atoms(declarations, rules)
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
-    general = (*(each for each in of_bindings if each not in single), *unread, *upward)
+    of_all = [each for each in of_bindings if each not in single]
+    own = mistaken | {id(each.requirement): each.diagnostic for each in failed}
     accepted, unanswered = acceptances(written, chosen if isinstance(chosen, Settings) else None)
     if isinstance(chosen, Diagnostic) and not parents:
         unanswered = (*unanswered, chosen)
-    everything = (*of_bindings, *unread, *remarks, *upward, *unanswered)
+    everything = (*of_bindings, *remarks, *upward, *unanswered)
     return Project(
         tuple(written),
         rules,
@@ -115,11 +130,12 @@ def load(
         declarations,
         known,
         answered(everything, accepted),
-        general,
+        (*of_all, *upward),
         mistaken,
         above,
         accepted,
         chosen.project if isinstance(chosen, Settings) else NOBODY,
+        refused(written, rules, own, declarations, of_all),
     )
 
 
@@ -134,17 +150,16 @@ def _with_atoms(
     return declarations
 
 
-def _written(paths: Sequence[str]) -> tuple[list[Requirement], list[Diagnostic]]:
-    """Every requirement, and what is wrong with the files, but for the headers of these."""
+def _written(paths: Sequence[str]) -> list[Requirement]:
+    """Every requirement; one that stands for the whole of each file that cannot be read."""
     found: list[Requirement] = []
-    wrong: list[Diagnostic] = []
     for path in paths:
         source = read(path)
-        kept, mistakes = ((), (source,)) if isinstance(source, Diagnostic) else requirements(source)
-        own = {mistake for requirement in kept for mistake in requirement.mistakes}
-        found.extend(kept)
-        wrong.extend(mistake for mistake in mistakes if mistake not in own)
-    return found, wrong
+        if isinstance(source, Diagnostic):
+            found.append(unread(path, source))
+        else:
+            found.extend(requirements(source)[0])
+    return found
 
 
 _MOST_BROKEN_HEADERS = 100

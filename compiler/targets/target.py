@@ -69,6 +69,8 @@ class Target:
     """False where all rules go into one file, for exchange with another tool."""
     joins: bool = False
     """Whether `Options.one_file` puts all rules into one file."""
+    of_bindings: bool = False
+    """Whether it is made of the bindings alone, and reads no requirement."""
     together: bool = False
     """Whether all rules always become one monitor; `per_rule` is False then."""
     next_step: str = ""

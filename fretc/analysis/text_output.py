@@ -20,19 +20,25 @@ SIGNS: Mapping[Verdict, Sign] = {
     Verdict.REALIZABLE: signs.GOOD,
 }
 """The worst first, as for verdicts."""
+_UNKNOWN = signs.UNKNOWN.colour
 _WIDEST = 14
 """Columns of a play that are drawn side by side; the next ones stand below them."""
 
 
-def lines(analysis: Analysis, sentences: Mapping[str, str]) -> Iterator[Line]:
+def lines(
+    analysis: Analysis, sentences: Mapping[str, str], left_out: Sequence[str] = ()
+) -> Iterator[Line]:
     """All of it.
 
     Args:
         analysis: what is known.
         sentences: each requirement in FRETish, by its id.
+        left_out: ids of requirements that nothing is known of, because of mistakes.
     """
     sign = SIGNS[analysis.verdict]
     yield f"{sign.glyph} {_headline(analysis)}", sign.colour
+    if left_out:
+        yield f"{signs.UNKNOWN.glyph} without {listed(left_out)}: see the mistakes", _UNKNOWN
     for component in analysis.components:
         yield from _component(component)
     for number, conflict in enumerate(analysis.conflicts, 1):

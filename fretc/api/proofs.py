@@ -11,7 +11,7 @@ from fretc.api.refusal import Refusal, accepted, bounded
 from fretc.verification.ajpf_results import ajpf_proofs
 from fretc.verification.engines.sandbox import Limits
 from fretc.verification.layers.request import Request
-from fretc.verification.verify import prove, refusals
+from fretc.verification.verify import missing_prover, prove, refusals
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 Path = str | os.PathLike[str]
@@ -64,7 +64,8 @@ def verify(
         provers=chosen_provers,
         ajpf=results,
     )
-    errors = refusals(project, request)
+    absent = missing_prover(request)
+    errors = [*refusals(project, request).values(), *([absent] if absent else [])]
     if errors:
         raise Refusal(errors)
     return accepted(prove(project, request))

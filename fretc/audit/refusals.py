@@ -28,26 +28,24 @@ class RefusedRequirement:
 def refusals(project: Project) -> tuple[tuple[Requirement, tuple[Diagnostic, ...]], ...]:
     """Every requirement in force that an audit cannot judge, and why: errors, in their order.
 
-    A mistake in the table of a signal or a proposition is one of those that read it. Any other
-    mistake in the bindings is no fault of a requirement.
+    Those of the project, and what a log needs beside: a binding of each proposition, a clock, and
+    a monitor.
     """
     rules = in_force(project)
     own = {id(rule.requirement): rule for rule in rules}
-    failed = {id(each.requirement): each.diagnostic for each in project.failed}
+    refused = {id(each.requirement): each.why for each in project.refused}
     unusable = _unusable(project, rules[0]) if rules and not has_errors(project.general) else None
-    refused = []
+    found = []
     for requirement in project.requirements:
         rule = own.get(id(requirement))
-        why = [failed.get(id(requirement)) or project.mistaken.get(id(requirement))]
+        why = [*refused.get(id(requirement), ())]
         if rule is not None and unusable is not None:
             why.append(unusable)
         elif rule is not None and project.declarations is not None:
             why.extend(_not_auditable(rule, project.declarations))
-        errors = (reason for reason in why if reason is not None and reason.is_error)
-        reasons = tuple(dict.fromkeys(errors))
-        if reasons and requirement.status != "retired":
-            refused.append((requirement, reasons))
-    return tuple(refused)
+        if why and requirement.status != "retired":
+            found.append((requirement, tuple(dict.fromkeys(why))))
+    return tuple(found)
 
 
 def in_force(project: Project) -> list[Formalized]:

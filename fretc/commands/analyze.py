@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.commands.opening import project_of
 from fretc.terminal.options import (
     PATH,
     SECONDS,
     format_option,
     output_option,
     path_option,
-    places,
     requirements_option,
 )
 from fretc.terminal.output import (
@@ -120,7 +120,8 @@ def analyze(
         click.echo(to_json(plain(analysis)))
     else:
         sentences = {rule.id: printed(rule.written) for rule in rules}
-        click.echo(coloured([*lines(analysis, sentences)]), nl=False)
+        left_out = [each.requirement.id for each in project.refused if each.is_in_force]
+        click.echo(coloured([*lines(analysis, sentences, left_out)]), nl=False)
     if output != "-":
         sources = [requirement.wording.source.name for requirement in project.requirements]
         deliver(
@@ -201,24 +202,6 @@ def _smaller(form: str) -> str:
     if form == "python":
         return "ask for one component with `--component`, or for more time with `--time`"
     return "`--emit python` has no states, and writes far larger strategies"
-
-
-def project_of(
-    files: Sequence[str], requirements: str, bindings: str | None
-) -> tuple[Project, str]:
-    """The project, and where it is; a mistake in it stops the command."""
-    from compiler.project.folder import load
-    from compiler.project.paths import listed, requirement_files
-
-    (first, *_) = places(files, requirements)
-    paths = listed(files) if files else requirement_files(requirements)
-    if isinstance(paths, Diagnostic):
-        stop(paths)
-    project = load(paths, bindings)
-    say_briefly(project.diagnostics, first)
-    if has_errors(project.diagnostics):
-        raise SystemExit(BAD)
-    return project, first
 
 
 def in_force(project: Project, component: str | None) -> tuple[Formalized, ...]:

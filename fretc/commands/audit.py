@@ -238,8 +238,6 @@ def audit(
     protect([target.path, *([Path(parquet)] if parquet else [])], inputs)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
     say_briefly(project.diagnostics, requirements)
-    if has_errors(project.general):
-        raise SystemExit(BAD)
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
         stop(*(reason for reason in plan if reason not in project.diagnostics))

@@ -20,7 +20,17 @@ from fretc.terminal.options import (
     path_option,
     requirements_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, coloured, deliver, say, say_briefly, stop
+from fretc.terminal.output import (
+    BAD,
+    NOT_SHOWN,
+    SHOWN,
+    coloured,
+    deliver,
+    fail_at_the_end,
+    say,
+    say_briefly,
+    stop,
+)
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 
 if TYPE_CHECKING:
@@ -66,6 +76,7 @@ def bind(
         if paths:
             stop(_second_log(paths[0]))
         project = _project(requirements, bindings, replaced=output)
+        say([each for each in project.diagnostics if each.is_error and not _is_in(each, output)])
         _draft(source, project, output, force=force)
     elif not paths:
         stop(Diagnostic(Code.NOTHING_TO_DO, "no log was given to check", help="name the logs"))
@@ -75,9 +86,10 @@ def bind(
 
 
 def _project(requirements: str, bindings: str | None, replaced: str | None = None) -> Project:
-    """The requirements and their bindings, without errors; else the command stops.
+    """The requirements and their bindings. Mistakes fail the command in the end.
 
-    There may be no requirements at all, unless the user names where they are.
+    It stops where no part of the bindings can be used. There may be no requirements at all, unless
+    the user names where they are.
 
     Args:
         requirements: a folder or a file.
@@ -95,6 +107,8 @@ def _project(requirements: str, bindings: str | None, replaced: str | None = Non
     project = load(files, bindings or beside(requirements, "bindings.toml"))
     relevant = [d for d in project.diagnostics if replaced is None or not _is_in(d, replaced)]
     if has_errors(relevant):
+        fail_at_the_end()
+    if has_errors(each for each in project.general if each in relevant):
         stop(*relevant)
     return project
 
@@ -175,7 +189,7 @@ def _check(
     plan = planned(project)  # not a plan where no requirement can be audited: bindings still can
     result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(result, Diagnostic):
-        stop(result)
+        stop(*([each for each in project.diagnostics if each.is_error] or [result]))
     diagnostics = [*_unbound(project), *project.diagnostics, *project.answered(result.diagnostics)]
     say_briefly(diagnostics, requirements)
     click.echo(result.as_json if form == "json" else coloured(result.text), nl=False)

@@ -126,12 +126,10 @@ def check(
         diagnostics.extend(withdrawal_warnings(withdrawn, path))
     diagnostics.extend(stale_evidence(assessed, briefs, evidence))
     diagnostics.extend(idle_waivers(assessed))
-    flawed = has_errors(diagnostics)
     diagnostics.extend(reason for _, why in refusals(project) for reason in why)
-    if analyze and not flawed:
-        diagnostics.extend(_together(project, analyzed))
-    if not flawed:
-        diagnostics.extend(warnings(project, standings, lock, results))
+    if analyze:
+        diagnostics.extend(_together(project.sound, analyzed))
+    diagnostics.extend(warnings(project, standings, lock, results))
     _finish(tuple(dict.fromkeys(diagnostics)), len(project.requirements), form)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.commands.opening import plan_of
 from fretc.terminal.options import (
     OF_LOGS,
     PATH,
@@ -28,7 +29,6 @@ from fretc.terminal.output import (
     SHOWN,
     coloured,
     say_also,
-    say_briefly,
     say_line,
     stop,
 )
@@ -163,25 +163,17 @@ def _audited(
     say_also(diagnostics, project.diagnostics)
     if not audit.read:
         raise SystemExit(BAD)
-    is_bad = bool(plan.refused) or has_errors((*project.diagnostics, *diagnostics))
-    return audit.source, {each.id: each.name for each in project.requirements}, is_bad
+    titles = {each.id: each.name for each in project.requirements}
+    return audit.source, titles, has_errors(diagnostics)
 
 
 def planned_project(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
-    """The project, and the plan to audit what of it can be judged; a mistake stops the command."""
+    """The project, and the plan to audit what of it can be judged."""
     from compiler.project.folder import load
     from compiler.project.paths import beside, requirement_files
-    from fretc.audit.plan import Plan, planned
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
-    say_briefly(project.diagnostics, requirements)
-    if has_errors(project.general):
-        raise SystemExit(BAD)
-    plan = planned(project)
-    if not isinstance(plan, Plan):
-        stop(*(reason for reason in plan if reason not in project.diagnostics))
-    say_also(plan.refusals, project.diagnostics)
-    return project, plan
+    return project, plan_of(project, requirements)

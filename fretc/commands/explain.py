@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.commands.opening import list_refused
 from fretc.terminal.group import is_sentence
 from fretc.terminal.options import (
     PATH,
@@ -18,7 +19,7 @@ from fretc.terminal.options import (
     path_option,
     requirements_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, deliver, say, stop
+from fretc.terminal.output import BAD, NOT_SHOWN, deliver, fail_at_the_end, say, stop
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggestion
 
 if TYPE_CHECKING:
@@ -115,6 +116,7 @@ def _explain_rules(rules: Sequence[Formalized], form: str, picture: str | None) 
 
 def _typed(sentence: str, folder: str, bindings: str | None) -> list[Formalized]:
     """The rule of a sentence; the project's clock, if there is one, says what a second is."""
+    from compiler.formalization.binding_agreement import broken_tables
     from compiler.formalization.formalize import formalize
     from compiler.project.folder import load
     from compiler.project.paths import BINDINGS, beside
@@ -124,9 +126,12 @@ def _typed(sentence: str, folder: str, bindings: str | None) -> list[Formalized]
     project = load([], bindings or beside(folder, BINDINGS))
     requirement = Requirement("sentence", Source("<sentence>", sentence.strip()).span())
     rule, remarks = formalize(requirement, project.declarations)
-    diagnostics = [*project.diagnostics, *remarks]
-    say(diagnostics)
-    if rule is None or has_errors(diagnostics):
+    say([*project.diagnostics, *remarks])
+    if has_errors(project.diagnostics):
+        fail_at_the_end()
+    if rule is None or has_errors((*project.general, *remarks)):
+        raise SystemExit(BAD)
+    if rule.declarations is not None and [*broken_tables(rule, rule.declarations)]:
         raise SystemExit(BAD)
     return [rule]
 
@@ -147,14 +152,16 @@ def _rules(what: str, folder: str, bindings: str | None, *, is_file: bool) -> li
         stop(_unknown(what, ids, folder, is_file=is_file))
     subjects = [r for r in project.requirements if r.id in matches]
     _say_of(project, subjects)
-    rules = [rule for rule in project.rules if rule.id in matches]
+    rules = [rule for rule in project.sound.rules if rule.id in matches]
     if not rules:
-        raise SystemExit(NOT_SHOWN)  # free text
+        raise SystemExit(NOT_SHOWN)  # free text, or a mistake, which wins
+    refused = {r.requirement.id: r.why for r in project.refused if r.requirement.id in matches}
+    list_refused(refused, len(subjects))
     return rules
 
 
 def _say_of(project: Project, subjects: Sequence[Requirement]) -> None:
-    """What there is to say of the chosen requirements and of the bindings; exits at an error."""
+    """Print what there is to say of the chosen requirements and of the bindings."""
     others = {
         diagnostic
         for requirement in project.requirements
@@ -167,7 +174,7 @@ def _say_of(project: Project, subjects: Sequence[Requirement]) -> None:
     own = [diagnostic for diagnostic in project.diagnostics if diagnostic not in others]
     say(own)
     if has_errors(own):
-        raise SystemExit(BAD)
+        fail_at_the_end()
 
 
 def _nearest(project: Project, diagnostic: Diagnostic) -> Requirement | None:

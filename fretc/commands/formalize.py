@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from compiler.emit import TARGETS
+from fretc.commands.opening import sound_part
 from fretc.terminal.group import DEFAULT, Compile
 from fretc.terminal.options import PATH, format_option, output_option, path_option
 from fretc.terminal.output import (
@@ -19,6 +20,7 @@ from fretc.terminal.output import (
     SHOWN,
     VIOLATION,
     deliver,
+    fail_at_the_end,
     say,
     say_line,
     stop,
@@ -29,6 +31,7 @@ from fretish.diagnostics.rendering import visible
 if TYPE_CHECKING:
     from compiler.formalization.formalized import Formalized
     from compiler.project.folder import Project
+    from compiler.project.refusals import Refused
     from compiler.targets.target import Options, Target
 
 _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
@@ -86,17 +89,17 @@ def compile_(
     if isinstance(paths, Diagnostic):
         stop(paths)
     project = load(paths, bindings)
-    undecided = _undecided(project.rules)
+    undecided = _undecided(project.sound.rules)
     say([*project.diagnostics, *project.answered(undecided)])
-    as_json = form == "json" and set(kinds) <= {"ltl"}
-    if as_json and _only_failed(project):
+    if form == "json" and set(kinds) <= {"ltl"} and not has_errors(project.general):
+        if has_errors(project.diagnostics):
+            fail_at_the_end()
         _deliver_formulas(project, output if kinds else "-")
-        raise SystemExit(BAD if has_errors(project.diagnostics) else SHOWN)
-    if has_errors(project.diagnostics):
-        raise SystemExit(BAD)
+        return
+    project = sound_part(project, others=any(TARGETS[kind].of_bindings for kind in kinds))
     from compiler.targets.target import Options
 
-    free_texts = tuple(f.requirement for f in project.failed)
+    free_texts = tuple(f.requirement for f in project.failed if not f.diagnostic.is_error)
     options = Options(
         notation,
         simplify,
@@ -131,12 +134,6 @@ def _check_weaken(kinds: Sequence[str]) -> None:
         )
 
 
-def _only_failed(project: Project) -> bool:
-    """Whether every error is that of a sentence: the list of formulas then carries it."""
-    reasons = {diagnostic for failed in project.failed for diagnostic in failed.diagnostics}
-    return all(d in reasons for d in project.diagnostics if d.is_error)
-
-
 def _deliver_formulas(project: Project, output: str) -> None:
     """The array of `--emit ltl --format json`, in the order of the files."""
     from compiler.emit import renamed
@@ -148,6 +145,7 @@ def _deliver_formulas(project: Project, output: str) -> None:
         names = renamed(rule)
         records[id(rule.requirement)] = formulas(rule) | ({"names": names} if names else {})
     records |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
+    records |= {id(r.requirement): failed(r.requirement, r.why[0]) for r in project.refused}
     text = to_json([records[id(r)] for r in project.requirements])
     deliver({Path(output) / "ltl.json" if output != "-" else Path("-"): f"{text}\n"})
 
@@ -168,7 +166,7 @@ def _emit(
     """Write whatever can be; what a target refuses is told and keeps nothing else from it."""
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
-    outputs = [(target, *_emitted(target, project.rules, options)) for target in targets]
+    outputs = [(target, *_emitted(target, project, options)) for target in targets]
     refusals = list(dict.fromkeys(chain.from_iterable(wrong for _, _, wrong in outputs)))
     jobs = [(target, rules) for target, rules, _ in outputs if rules is not None]
     say(refusals)
@@ -210,7 +208,7 @@ def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str
 
 
 def _emitted(
-    target: Target, rules: Sequence[Formalized], options: Options
+    target: Target, project: Project, options: Options
 ) -> tuple[list[Formalized] | None, list[Diagnostic]]:
     """The rules that the target can make files of, None: no file at all; and what it refuses.
 
@@ -218,16 +216,29 @@ def _emitted(
     """
     from compiler.formalization.formalize import clashes
 
+    rules = project.rules
     answers = [(rule, target.refuse(rule)) for rule in rules]
     wrong = [diagnostic for _, diagnostic in answers if diagnostic is not None]
     whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
     one_file = target.together or (options.one_file and target.joins)
     if one_file:
         whole += clashes(rules)
+    if project.refused and not target.of_bindings and (one_file or not target.per_rule):
+        whole.append(_not_of_all(target, project.refused))
     if whole or (wrong and (one_file or not target.per_rule)):
         return None, [*wrong, *whole]
     expressible = [rule for rule, diagnostic in answers if diagnostic is None]
     return (expressible or None) if wrong else expressible, wrong
+
+
+def _not_of_all(target: Target, refused: Sequence[Refused]) -> Diagnostic:
+    """F618: what is made of all requirements would lack some without a word of it."""
+    ids = ", ".join(each.requirement.id for each in refused)
+    return Diagnostic(
+        Code.NOT_OF_ALL,
+        f"`--emit {target.name}` puts all requirements together, and some have mistakes: {ids}",
+        help="correct them, or name the files of the others",
+    )
 
 
 @click.command(short_help="Put sentences into their canonical wording.")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import click
 
+from fretc.commands.opening import project_of
 from fretc.terminal.options import (
     PATH,
     analysis_option,
@@ -75,7 +76,6 @@ def play(
     """
     from compiler.formalization.formalize import clashes
     from compiler.project.paths import companions
-    from fretc.commands.analyze import project_of
     from fretc.play.page import html
     from fretc.play.starts import of_examples
     from fretc.play.versions import Versions, side_by_side, versions
@@ -111,7 +111,7 @@ def play(
 
 
 def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
-    """One version of a project, and why some of its requirements are on no page."""
+    """One version of a project, and why no monitor can be made of some sound requirements."""
     from compiler.targets.javascript.monitor import refuse
     from fretc.commands.analyze import in_force
     from fretc.play.versions import Side
@@ -119,7 +119,8 @@ def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
     rules = in_force(project, None)
     refused = {rule.id: why for rule in rules if (why := refuse(rule)) is not None}
     known = [rule for rule in rules if rule.id not in refused]
-    reasons = {id: why.message for id, why in refused.items()}
+    mistaken = {each.requirement.id: each.why[0] for each in project.refused if each.is_in_force}
+    reasons = {id: why.message for id, why in (mistaken | refused).items()}
     return Side(known, reasons, project.declarations), [*refused.values()]
 
 

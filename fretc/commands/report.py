@@ -184,7 +184,9 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
     from fretc.play.recorded import Recorded, of_evidence
     from fretc.play.starts import of_examples
 
-    refused = {rule.id: said.message for rule in project.rules if (said := refuse(rule))}
+    refused = {each.requirement.id: each.why[0].message for each in project.refused}
+    project = project.sound
+    refused |= {rule.id: said.message for rule in project.rules if (said := refuse(rule))}
     known = [rule for rule in project.rules if rule.id not in refused]
     if not known or [*clashes(known)]:
         return None

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.commands.opening import list_refused
 from fretc.terminal.options import (
     PATH,
     analysis_option,
@@ -19,7 +20,16 @@ from fretc.terminal.options import (
     requirements_option,
     verification_option,
 )
-from fretc.terminal.output import BAD, NOT_SHOWN, SHOWN, deliver, say_briefly, say_line, stop
+from fretc.terminal.output import (
+    BAD,
+    NOT_SHOWN,
+    SHOWN,
+    deliver,
+    fail_at_the_end,
+    say_briefly,
+    say_line,
+    stop,
+)
 from fretish.diagnostics.diagnostic import (
     Code,
     Diagnostic,
@@ -103,13 +113,15 @@ def lock(
         message = f"`{day}` is still to come, and nobody can have reviewed then"
         stop(Diagnostic(Code.BAD_USAGE, message, help="leave `--date` out: then it is today"))
     project, chains, refuted = _chains(requirements, evidence, verification, analysis, accept=True)
-    if has_errors(project.diagnostics):
-        raise SystemExit(BAD)
+    refused = _refused(project)
     where = path or _beside(requirements)
     before = _read(where, must=False)
     old_reviews = before.reviews if before is not None else {}
     orphans = old_reviews.keys() - {chain.requirement for chain in chains}
-    subjects = _chosen(chains, ids, orphans)
+    chosen = _chosen(chains, ids, orphans)
+    subjects = [chain for chain in chosen if chain.requirement not in refused]
+    if refused and not subjects:
+        raise SystemExit(BAD)
     violations = () if accept_violations else unnamed_violations(subjects, refuted)
     refusals = (*outdated_results(subjects), *violations)
     if refusals:
@@ -163,20 +175,37 @@ def diff(
     """
     from compiler.files.templating import to_json
     from fretc.report.traceability.comparison import as_record, differences, text
-    from fretc.report.traceability.lock import standings
+    from fretc.report.traceability.lock import Lock, standings
 
     project, chains, _ = _chains(requirements, evidence, verification, analysis)
-    if has_errors(project.diagnostics):
-        raise SystemExit(BAD)
+    refused = _refused(project)
     base = _read(baseline or _beside(requirements), must=True)
     assert base is not None
-    changes = differences(standings(chains, base), base, project)
+    sound = tuple(chain for chain in chains if chain.requirement not in refused)
+    base = Lock({id: review for id, review in base.reviews.items() if id not in refused})
+    if refused and not sound:
+        raise SystemExit(BAD)
+    changes = differences(standings(sound, base), base, project)
     if form == "json":
         click.echo(to_json([as_record(difference) for difference in changes]))
     else:
         for line in text(changes):
             click.echo(visible(line))
     raise SystemExit(SHOWN if all(d.state == "same" for d in changes) else NOT_SHOWN)
+
+
+def _refused(project: Project) -> Mapping[str, Sequence[Diagnostic]]:
+    """The ids of the requirements that a mistake reaches, which are listed, and the mistakes."""
+    from compiler.project.refusals import unreviewable
+
+    if not has_errors(project.diagnostics):
+        return {}
+    fail_at_the_end()
+    reached = unreviewable(project)
+    refused = {r.id: reached[id(r)] for r in project.requirements if id(r) in reached}
+    if len(refused) < len({requirement.id for requirement in project.requirements}):
+        list_refused(refused, len(project.requirements))
+    return refused
 
 
 def _chains(

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.commands.opening import project_of
 from fretc.terminal.options import (
     PATH,
     SECONDS,
@@ -141,7 +142,7 @@ def test(
     from compiler.project.paths import companions
     from fretc.analysis.assumptions import assumptions
     from fretc.commands import test_against, test_staging
-    from fretc.commands.analyze import in_force, project_of
+    from fretc.commands.analyze import in_force
 
     project, first = project_of(files, requirements, bindings)
     rules = in_force(project, component)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from compiler.logic.claims import PROVERS, Layer
+from fretc.commands.opening import list_refused, project_of
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import (
     PATH,
@@ -20,7 +21,6 @@ from fretc.terminal.options import (
     limit_option,
     output_option,
     path_option,
-    places,
     requirements_option,
 )
 from fretc.terminal.output import (
@@ -30,8 +30,8 @@ from fretc.terminal.output import (
     VIOLATION,
     coloured,
     deliver,
+    fail_at_the_end,
     say,
-    say_briefly,
     stop,
 )
 from fretc.verification.layers.languages import language_of
@@ -148,7 +148,7 @@ def verify(
     from fretc.verification.engines.sandbox import Limits
     from fretc.verification.layers.request import Request
     from fretc.verification.text_output import lines
-    from fretc.verification.verify import refusals
+    from fretc.verification.verify import missing_prover, refusals
 
     if (agent is None) != (properties is None):
         stop(_half_an_agent(agent))
@@ -172,10 +172,17 @@ def verify(
         ajpf=_ajpf_proofs(project, results),
         progress=at_work,
     )
-    mistakes = refusals(project, request)
-    if mistakes:
-        stop(*mistakes)
+    absent = missing_prover(request)
+    if absent is not None:
+        stop(absent)
+    refused = refusals(project, request)
+    if refused:
+        say([*refused.values()])
+        fail_at_the_end()
     proofs = _proofs(project, request)
+    if refused and not proofs:
+        raise SystemExit(BAD)
+    list_refused({id: (why,) for id, why in refused.items()}, len(project.rules))
     own = header.name if header else None
     options = (monitor_file, own, interceptor, agent, properties, bindings, *results)
     sources = [requirement.wording.source.name for requirement in project.requirements]
@@ -224,18 +231,8 @@ def _half_an_agent(agent: str | None) -> Diagnostic:
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> Project:
-    """The project, which has no error and a rule at least; else the command stops."""
-    from compiler.project.folder import load
-    from compiler.project.paths import listed, requirement_files
-
-    (first, *_) = places(files, requirements)
-    paths = listed(files) if files else requirement_files(requirements)
-    if isinstance(paths, Diagnostic):
-        stop(paths)
-    project = load(paths, bindings)
-    say_briefly(project.diagnostics, first)
-    if has_errors(project.diagnostics):
-        raise SystemExit(BAD)
+    """The sound part of the project, which has a rule at least; else the command stops."""
+    project, _ = project_of(files, requirements, bindings)
     if not project.rules:
         stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
     return project

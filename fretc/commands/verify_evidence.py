@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.commands.opening import plan_of
 from fretc.commands.sign import demand, installed
 from fretc.terminal.options import (
     OF_LOGS,
@@ -25,14 +26,12 @@ from fretc.terminal.options import (
     verification_option,
 )
 from fretc.terminal.output import (
-    BAD,
     INTERRUPTED,
     NOT_SHOWN,
     SHOWN,
     VIOLATION,
     coloured,
     say,
-    say_briefly,
     stop,
 )
 from fretish.diagnostics.diagnostic import (
@@ -159,9 +158,9 @@ def verify_evidence(
     log_hashes = _manifest(manifest)
     places = _places(_runs(whole), places_named, offline=offline)
     results = [*_rechecked(whole, plan, places, scope, log_hashes, jobs)]
-    results += _reproved(project, proofs, scope, limit, skip=no_proofs)
+    results += _reproved(project.sound, proofs, scope, limit, skip=no_proofs)
     if known is not None:
-        results += _asked_again(project, known, scope, skip=no_analysis)
+        results += _asked_again(project.sound, known, scope, skip=no_analysis)
     if strict:
         there = {"report": report, "proofs": verification, "analysis": analysis}
         results += _unmet(evidence, scope, requirements, signed_by, there, log_hashes)
@@ -190,7 +189,6 @@ def _runs(whole: Document) -> list[str]:
 
 def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tuple[Project, Plan]:
     from compiler.project.folder import whole
-    from fretc.audit.plan import Plan, planned
     from fretc.logs.labels import given
 
     given_labels = given(labels)
@@ -199,15 +197,7 @@ def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tup
     project = whole(requirements, bindings)
     if isinstance(project, Diagnostic):
         stop(project)
-    say_briefly(project.diagnostics, requirements)
-    if has_errors(project.diagnostics):
-        raise SystemExit(BAD)
-    plan = planned(project)
-    if not isinstance(plan, Plan):
-        stop(*plan)
-    if plan.refused:
-        stop(*plan.refusals)
-    return project, replace(plan, labels=given_labels)
+    return project, replace(plan_of(project, requirements), labels=given_labels)
 
 
 def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict[str, str]:
@@ -249,7 +239,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
 def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
     from fretc.reproduction.completeness import Scope
 
-    claims = tuple(claim.id for claim in plan.claims)
+    claims = tuple(each.id for each in plan.named)
     if only is None:
         return Scope(claims, _lock(requirements))
     ids = tuple(dict.fromkeys(name.strip() for name in only.split(",")))

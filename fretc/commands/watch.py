@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.commands.opening import plan_of
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import PATH, bindings_option, extras, path_option, requirements_option
 from fretc.terminal.output import (
@@ -18,11 +19,10 @@ from fretc.terminal.output import (
     not_written,
     protect,
     say_also,
-    say_briefly,
     say_line,
     stop,
 )
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -134,7 +134,7 @@ def watch(
     status = BAD if run.failed else _status(run.runs)
     if evidence is not None:
         status = max(status, _audited(plan, run.recordings, evidence, inputs, project))
-    raise SystemExit(BAD if plan.refused or has_errors(project.diagnostics) else status)
+    raise SystemExit(status)
 
 
 def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
@@ -155,21 +155,14 @@ def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Se
     """The plan, which is that of an audit, and the files that it is made of."""
     from compiler.project.folder import load
     from compiler.project.paths import beside, companions, requirement_files
-    from fretc.audit.plan import Plan, planned
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
     project = load(files, bindings or beside(requirements, "bindings.toml"))
-    say_briefly(project.diagnostics, requirements)
-    if has_errors(project.general):
-        raise SystemExit(BAD)
-    plan = planned(project)
-    if not isinstance(plan, Plan):
-        stop(*(reason for reason in plan if reason not in project.diagnostics))
+    plan = plan_of(project, requirements)
     if plan.declarations.clock.patience is None:
         stop(_needs_lateness(plan))
-    say_also([each for each in plan.refusals if each not in project.diagnostics], ())
     return project, plan, (*files, *companions(files), *([bindings] if bindings else []))
 
 

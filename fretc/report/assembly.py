@@ -54,7 +54,7 @@ from fretc.report.traceability.lock import Lock, withdrawn_requirements
 from fretc.report.traceability.waivers import Waiver
 from fretc.verification.ajpf_results import merged
 from fretc.verification.reader import Proofs
-from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
+from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors import kernel
 
 
@@ -196,8 +196,6 @@ def _checks(
     evidence: EvidenceSource | None,
 ) -> Sequence[Diagnostic]:
     """What `fretc check` finds beside mistakes; reviews have a part of their own."""
-    if has_errors(project.diagnostics):
-        return ()
     found = warnings(project, [each.standing for each in assessed], lock, evidence)
     return [each for each in found if each.accepted or each.code not in _OF_REVIEWS]
 

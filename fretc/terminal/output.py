@@ -33,6 +33,20 @@ def stop(*diagnostics: Diagnostic) -> NoReturn:
     raise SystemExit(BAD)
 
 
+_FAILED = "fretc.failed"
+
+
+def fail_at_the_end() -> None:
+    """Let the present command exit with 2 in the end, whatever it says of the rest of its input."""
+    click.get_current_context().meta[_FAILED] = True
+
+
+def final_status(context: click.Context, status: int) -> int:
+    """The exit status of a command that ends with this one: bad input wins over all but Ctrl-C."""
+    failed = _FAILED in context.meta and status != INTERRUPTED
+    return BAD if failed else status
+
+
 def say(diagnostics: Sequence[Diagnostic]) -> None:
     """Print them on standard error; of the warnings that are accepted, how many there are.
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from compiler.files import records
+from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Proof, Result
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
@@ -26,7 +28,8 @@ def prove(project: Project, request: Request) -> tuple[Proof, ...] | Diagnostic:
     single, common = list[Proof](), list[Proof]()
     for method in TABLE:
         if request.names(method.name):
-            results = method.prove(project.rules, project, request)
+            part = _part(project) if method.needs_monitor else project
+            results = method.prove(part.rules, part, request)
             if isinstance(results, Diagnostic):
                 return results
             (single if method.of_requirement else common).extend(results)
@@ -47,25 +50,31 @@ def _open_where_demanded(proof: Proof, project: Project, request: Request) -> Pr
     return records.replace(proof, result=Result.NOT_CHECKED)
 
 
-def refusals(project: Project, request: Request) -> tuple[Diagnostic, ...]:
-    """Why a monitor cannot be made of some requirements, where a layer steps one.
+def missing_prover(request: Request) -> Diagnostic | None:
+    """Why a prover that is asked cannot answer."""
+    if not request.names("frama-c"):
+        return None
+    from fretc.verification.layers.frama_c import refusal
 
-    And why a prover that is asked cannot answer.
+    return refusal(request)
+
+
+def refusals(project: Project, request: Request) -> Mapping[str, Diagnostic]:
+    """The requirements that no monitor can be made of, where a layer steps one, and why.
+
+    No proof of these layers is about them.
     """
-    return (*_of_monitors(project, request), *_of_frama_c(request))
-
-
-def _of_frama_c(request: Request) -> Iterator[Diagnostic]:
-    if request.names("frama-c"):
-        from fretc.verification.layers.frama_c import refusal
-
-        refused = refusal(request)
-        if refused is not None:
-            yield refused
-
-
-def _of_monitors(project: Project, request: Request) -> tuple[Diagnostic, ...]:
     if not any(method.needs_monitor and request.names(method.name) for method in TABLE):
-        return ()
-    diagnostics = (monitor.refuse(rule) for rule in project.rules)
-    return tuple(diagnostic for diagnostic in diagnostics if diagnostic is not None)
+        return {}
+    return _without_monitor(project.rules)
+
+
+def _without_monitor(rules: Sequence[Formalized]) -> Mapping[str, Diagnostic]:
+    refused = ((rule.id, monitor.refuse(rule)) for rule in rules)
+    return {id: why for id, why in refused if why is not None}
+
+
+def _part(project: Project) -> Project:
+    """The requirements that a monitor can be made of."""
+    refused = _without_monitor(project.rules)
+    return replace(project, rules=tuple(r for r in project.rules if r.id not in refused))

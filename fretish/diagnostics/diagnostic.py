@@ -203,6 +203,7 @@ class Code(Enum):
     OVER_RESPONDS = ("F615", "the agent that is generated responds more often than is demanded")
     BAD_AJPF_RESULT = ("F616", "a result of AJPF cannot be read")
     FOREIGN_AJPF_RESULT = ("F617", "a result of AJPF is about no requirement that is there")
+    NOT_OF_ALL = ("F618", "what is made of all requirements is not made of some")
     TOO_LARGE = ("F670", "what would be made is too large")
 
     SHORT_HOLD = ("F630", "the interceptor holds zero no longer than messages may be lost")

@@ -219,4 +219,5 @@ TARGET = Target(
     refuse_project=refuse,
     remarks=remarks,
     per_rule=False,
+    of_bindings=True,
 )

@@ -167,9 +167,10 @@ class Coverage:
 
 
 def _expression(declarations: Declarations, name: str) -> str:
-    """As it is written."""
+    """As it is written in the bindings; or in a sentence that compares signals itself."""
     data: Mapping[str, Any] = tomllib.loads(declarations.source.text)
-    return str(data["proposition"][name]["expr"])
+    table = data.get("proposition", {}).get(name)
+    return str(table["expr"]) if table else declarations.propositions[name].text
 
 
 def _bound(signal: Signal) -> str:

@@ -7,11 +7,12 @@ from collections.abc import Iterator, Sequence
 from compiler.files.records import UNSET
 from compiler.project.acceptances import idle
 from compiler.project.folder import Project
+from compiler.project.refusals import unreviewable
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.schema import Finding
 from fretc.report.traceability.checks import checks, unreviewed
 from fretc.report.traceability.lock import Lock, Standing
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors
 from fretish.diagnostics.source import Source
 
 _CODES = {code.number: code for code in Code}
@@ -28,14 +29,19 @@ def warnings(
     Of the audited logs it is only what is accepted: their findings are those of their audit.
 
     Args:
-        project: read without errors.
-        standings: each requirement beside its review.
+        project: with or without errors; nothing is said of what a mistake reaches.
+        standings: each requirement beside its review, in the order of the project.
         lock: None where nothing was reviewed.
         evidence: None where no run was audited.
     """
-    new = unreviewed(project, standings) if lock is not None and lock.reviews else ()
-    found = project.answered((*checks(project, standings), *new))
+    refused = unreviewable(project)
+    pairs = zip(project.requirements, standings, strict=True)
+    sound = [each for requirement, each in pairs if id(requirement) not in refused]
+    new = unreviewed(project, sound) if lock is not None and lock.reviews else ()
+    found = project.answered((*checks(project, sound), *new))
     if not project.acceptances:  # then nothing of the logs is accepted: they need not be read
+        return found
+    if has_errors(project.diagnostics):  # an acceptance may be there for what a mistake hides
         return found
     logged = project.answered(_of_logs(evidence)) if evidence is not None else ()
     every = (*project.diagnostics, *found, *logged)

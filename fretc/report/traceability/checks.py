@@ -19,7 +19,7 @@ from compiler.targets.target import Options
 from fretc.report.traceability.changes import in_words
 from fretc.report.traceability.lock import Standing
 from fretish.bindings.declarations import Role
-from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
+from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
 from fretish.diagnostics.source import Source, Span
 from fretish.expressions import names
 from fretish.printer import expression as printed
@@ -33,10 +33,10 @@ def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic,
     """All warnings, in the order of the project.
 
     Args:
-        project: read without errors.
-        standings: each requirement beside its review.
+        project: with or without errors; no rule that a mistake reaches is looked at.
+        standings: requirements beside their reviews.
     """
-    rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
+    rules = [rule for rule in project.sound.rules if rule.requirement.status != "retired"]
     diagnostics = [
         d
         for rule in rules
@@ -44,7 +44,9 @@ def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic,
     ]
     options = Options(declarations=project.declarations)
     interceptor = TARGETS["interceptor"].remarks(options)
-    return (*diagnostics, *interceptor, *_links(project), *_changes(project, standings))
+    is_whole = not has_errors(project.general) and not any(r.mistakes for r in project.requirements)
+    links = _links(project) if is_whole else ()  # they are asked of all headers and hazards
+    return (*diagnostics, *interceptor, *links, *_changes(project, standings))
 
 
 # Vacuity ---------------------------------------------------------------------------------------
@@ -199,7 +201,9 @@ def _changes(project: Project, standings: Sequence[Standing]) -> Iterator[Diagno
 
 def unreviewed(project: Project, standings: Sequence[Standing]) -> Iterator[Diagnostic]:
     """F544 for each requirement in force without a review; for a project that has a lock."""
-    for requirement, standing in zip(project.requirements, standings, strict=True):
+    by_id = {requirement.id: requirement for requirement in project.requirements}
+    for standing in standings:
+        requirement = by_id[standing.chain.requirement]
         if standing.review is None and requirement.status != "retired":
             yield Diagnostic(
                 Code.NOT_REVIEWED,

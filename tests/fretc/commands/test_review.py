@@ -1,6 +1,7 @@
 """`fretc lock` and `fretc diff`: what they print, write, and exit with."""
 
 import json
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -141,8 +142,25 @@ def test_a_lock_that_cannot_be_read_is_not_written_over(fretc: Fretc, folder: Pa
 
 def test_requirements_with_mistakes_are_not_accepted(fretc: Fretc, folder: Path) -> None:
     write("requirements/b.fret", "the robot shal always satisfy stopped")
-    assert fretc("lock", *BY, *ON).status == 2
+    assert fretc("lock", "b", *BY, *ON).status == 2
     assert not (folder / "fretc.lock").exists()
+    run = fretc("lock", *BY, *ON)
+    assert run.status == 2
+    assert "accepted 1 requirement: " in run.err
+    assert "left out because of mistakes: 1 of 2 requirements\n  F107 " in run.err
+    lock = tomllib.loads((folder / "fretc.lock").read_text())
+    assert [*lock["review"]] == ["R1"]
+
+
+def test_the_review_of_a_requirement_with_a_mistake_stays(fretc: Fretc, folder: Path) -> None:
+    write("requirements/b.fret", "the robot shall always satisfy stopped")
+    assert fretc("lock", *BY, *ON).status == 0
+    before = tomllib.loads((folder / "fretc.lock").read_text())["review"]
+    write("requirements/b.fret", "the robot shal always satisfy stopped")
+    assert fretc("lock", *BY[:-1], "second review", *ON).status == 2
+    after = tomllib.loads((folder / "fretc.lock").read_text())["review"]
+    assert after["b"] == before["b"]
+    assert after["R1"]["comment"] == "second review"
 
 
 # Proofs -----------------------------------------------------------------------------------------
