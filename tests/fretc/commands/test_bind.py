@@ -240,3 +240,19 @@ def test_what_never_changed_is_told_once_over_all_logs_of_an_audit(fretc: Fretc)
     run = fretc("audit", "run.mcap", "still.mcap", "--jobs", "2")
     assert run.err.count("F314") == 1
     assert "`high` never changed in any of 2 logs: it was false at 16 ticks" in run.err
+
+
+def test_what_a_sentence_compares_itself_is_checked_like_a_proposition(fretc: Fretc) -> None:
+    """In its own words, and in no other numbers than the proposition that says the same."""
+    put("requirements/r1.fret", '+++\nid = "R1"\n+++\nthe rover shall always satisfy x < 5 cm\n')
+    signals = X_TEXT[: X_TEXT.index("[proposition")]
+    put("requirements/bindings.toml", signals)
+    alone = fretc("bind", "--check", "run.mcap", "--format", "json")
+    (compared,) = json.loads(alone.out)["propositions"]
+    put("requirements/bindings.toml", f'{signals}[proposition.p]\nexpr = "x < 5 cm"\n')
+    put("requirements/r1.fret", "the rover shall always satisfy p")
+    named = fretc("bind", "--check", "run.mcap", "--format", "json")
+    (bound,) = json.loads(named.out)["propositions"]
+    assert (alone.status, compared["took_both_values"]) == (named.status, True) == (0, True)
+    assert (compared["all"], compared["signals"]) == (bound["all"], bound["signals"])
+    assert "x < " in compared["expression"]

@@ -1,0 +1,114 @@
+"""No command ends in a fault of fretc itself (F999), whatever the project and the option."""
+
+import shutil
+from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+
+from tests.command import Fretc
+from tests.command_lines import command_lines
+from tests.drawn_projects import drawn
+from tests.effort import FULL
+from tests.fuzzing import sentences
+from tests.keys import written
+
+ROOT = Path(__file__).parents[2]
+TRACE = ROOT / "traces/mission-seed15.mcap"
+EXPORT = """{"requirements": [{"reqid": "R1", "project": "P", "fulltext": "the sw shall satisfy p"},
+ {"reqid": "R 2", "project": "Q", "fulltext": "when p the sw shall always satisfy x > 3"}],
+ "variables": [{"project": "P", "component_name": "sw", "variable_name": "p", "dataType": "boolean",
+  "idType": "Input"}]}"""
+
+
+def shipped(folder: str) -> Callable[[Fretc], None]:
+    def write(fretc: Fretc) -> None:
+        shutil.copytree(
+            ROOT / folder, "requirements", ignore=lambda _, names: {*names} & {"agv", "mission"}
+        )
+        shutil.copy(TRACE, "l.mcap")
+
+    return write
+
+
+def begun(fretc: Fretc) -> None:
+    """What `fretc init` makes of a log: its sentence compares signals directly."""
+    shutil.copy(TRACE, "l.mcap")
+    fretc("init", "new", "--from", "l.mcap")
+    shutil.move("new/requirements", "requirements")
+    shutil.rmtree("new")
+
+
+def imported(fretc: Fretc) -> None:
+    Path("export.json").write_text(EXPORT)
+    fretc("import", "export.json", "-o", "requirements")
+    shutil.copy(TRACE, "l.mcap")
+
+
+def grown(fretc: Fretc) -> None:
+    """Sentences of FRET's own tables, and what grows of them; some are none."""
+    Path("requirements").mkdir()
+    for number, sentence in enumerate(sentences(8, 1), 1):
+        Path(f"requirements/r{number}.fret").write_text(sentence)
+    shutil.copy(ROOT / "requirements/bindings.toml", "requirements/bindings.toml")
+    shutil.copy(TRACE, "l.mcap")
+
+
+def at_random(seed: int) -> Callable[[Fretc], None]:
+    return lambda _: drawn(seed, Path())
+
+
+PROJECTS: dict[str, Callable[[Fretc], None]] = {
+    "shipped": shipped("requirements"),
+    "agv": shipped("requirements/agv"),
+    "mission": shipped("requirements/mission"),
+    "init": begun,
+    "import": imported,
+    "FRET": grown,
+    **{f"drawn {seed}": at_random(seed) for seed in range(200 if FULL else 8)},
+}
+LINES = command_lines()
+SMALL = [place for place, name in enumerate(PROJECTS) if name not in ("agv", "mission", "FRET")]
+COSTLY = ("analyze", "test", "verify", "verify-evidence", "mutate", "check")
+"""Searches and proofs: without the full profile they are asked of small projects alone."""
+
+
+def places(number: int, line: tuple[str, ...]) -> list[int]:
+    """The projects that a line is tried with: all with the full profile, else one at most."""
+    if FULL:
+        return [*range(len(PROJECTS))]
+    if line[0] in COSTLY:
+        return [SMALL[number // 3 % len(SMALL)]] if number % 3 == 0 else []
+    return [number % len(PROJECTS)]
+
+
+def prepared(fretc: Fretc, write: Callable[[Fretc], None]) -> dict[str, str]:
+    """The project in the present folder, what other commands read of it, and its own names."""
+    write(fretc)
+    written("key")
+    if not Path("export.json").exists():
+        Path("export.json").write_text(EXPORT)
+    Path("logs.sha256").write_text(f"{sha256(Path('l.mcap').read_bytes()).hexdigest()}  l.mcap\n")
+    fretc("audit", "l.mcap", "--jobs", "1", "-o", "build/evidence.json")
+    fretc("requirements", "--emit", "monitor")
+    ids = [line[6:-1] for path in sorted(Path("requirements").glob("*.fret"))
+           for line in path.read_text().splitlines() if line.startswith('id = "')]  # fmt: skip
+    id = ids[0] if ids else sorted(Path("requirements").glob("*.fret"))[0].stem
+    return {"id": id, "stem": id.lower(), "component": "sw"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("place", range(len(PROJECTS)), ids=[*PROJECTS])
+def test_no_command_is_at_fault(fretc: Fretc, place: int) -> None:
+    """Each line with a project, and with all of them with the full profile."""
+    names = prepared(fretc, [*PROJECTS.values()][place])
+    for number, line in enumerate(LINES):
+        if place in places(number, line):
+            words = [word.format(**names) for word in line]
+            try:
+                run = fretc(*words)
+            except BaseException as error:
+                error.add_note(f"fretc {' '.join(words)}")
+                raise
+            assert run.status in (0, 1, 2, 3), words
