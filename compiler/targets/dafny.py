@@ -35,9 +35,9 @@ from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.logic.identifiers import legal_names, underlined
 from compiler.logic.spelling.reserved_words import DAFNY
-from compiler.project.interceptor_options import options as core
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.dafny_claims import CHANNELS, Delay, delay, loopless
+from compiler.targets.interceptor_options import options as core
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from fretish import expressions as e
 from fretish import syntax as s

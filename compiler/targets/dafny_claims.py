@@ -10,8 +10,8 @@ from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.logic.claims import Layer
 from compiler.logic.printing import identifier
-from compiler.project.interceptor_options import options as core
-from compiler.project.interceptor_options import repetition, ticks
+from compiler.targets.interceptor_options import options as core
+from compiler.targets.interceptor_options import repetition, ticks
 from fretish import syntax as s
 from fretish.bindings.declarations import Declarations, Form, Requests
 from fretish.printer import timing as printed

@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from compiler.files.edition import __version__
-from compiler.project.interceptor_options import ticks
+from compiler.targets.interceptor_options import ticks
 from fretc.audit.many_logs import audited
 from fretc.audit.measurements.binomial import highest, lowest
 from fretc.audit.plan import monitored_requirements

@@ -223,6 +223,10 @@ def _emitted(
     one_file = target.together or (options.one_file and target.joins)
     if one_file:
         whole += clashes(rules)
+    if target.together and any(
+        each.is_error and each.code is Code.BAD_SETTINGS for each in project.diagnostics
+    ):  # a package says who answers for it: the settings do
+        return None, wrong
     if project.refused and not target.of_bindings and (one_file or not target.per_rule):
         whole.append(_not_of_all(target, project.refused))
     if whole or (wrong and (one_file or not target.per_rule)):

@@ -26,6 +26,7 @@ from fretc.terminal.options import (
     verification_option,
 )
 from fretc.terminal.output import (
+    BAD,
     INTERRUPTED,
     NOT_SHOWN,
     SHOWN,

@@ -14,8 +14,8 @@ from compiler.files.artifact import Artifact
 from compiler.files.edition import __version__
 from compiler.files.templating import render
 from compiler.formalization.formalized import Formalized
-from compiler.project.interceptor_options import options as counted
-from compiler.project.interceptor_options import repetition, ticks
+from compiler.targets.interceptor_options import options as counted
+from compiler.targets.interceptor_options import repetition, ticks
 from compiler.targets.target import DEFAULT, Options, Target
 from fretish.bindings.declarations import Declarations, Form, Interception
 from fretish.bindings.tables.interceptor import TABLE

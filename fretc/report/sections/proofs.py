@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import ALL, PROVERS, Proof, Result
-from compiler.project.interceptor_options import ASSUMED
+from compiler.targets.interceptor_options import ASSUMED
 from fretc.report.model import phrases
 from fretc.report.model.views import Mark, ProofView, RequirementView, sign_mark
 from fretc.report.traceability.artefacts import Product, compiled_monitor

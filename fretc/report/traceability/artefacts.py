@@ -9,7 +9,7 @@ from pathlib import PurePath
 from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
-from compiler.project.interceptor_options import ASSUMED, assumed
+from compiler.targets.interceptor_options import ASSUMED, assumed
 from compiler.targets.python import interceptor
 from compiler.targets.target import Options, Target
 from fretish.bindings.declarations import Declarations

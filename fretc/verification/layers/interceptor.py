@@ -9,7 +9,7 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Layer, Proof, not_applicable
 from compiler.project.folder import Project
-from compiler.project.interceptor_options import options
+from compiler.targets.interceptor_options import options
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.contracts import contracts

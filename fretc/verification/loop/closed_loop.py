@@ -17,8 +17,8 @@ from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import excluded, exclusion_in_words
 from compiler.logic import spot as automata
 from compiler.logic.claims import Layer, Outcome, Proof, not_applicable, not_checked, proof
-from compiler.project.interceptor_options import ASSUMED, options, ticks
-from compiler.project.interceptor_options import assumed as hash_of_assumed
+from compiler.targets.interceptor_options import ASSUMED, options, ticks
+from compiler.targets.interceptor_options import assumed as hash_of_assumed
 from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped

@@ -17,7 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.emit import TARGETS
-from compiler.project.interceptor_options import options as counted
+from compiler.targets.interceptor_options import options as counted
 from compiler.targets.python.interceptor import MARKER, text
 from compiler.targets.target import Options
 from fretish.bindings.canonical import bound

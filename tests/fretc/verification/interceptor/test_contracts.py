@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from compiler.logic.claims import Layer, Proof, Result, proved
-from compiler.project.interceptor_options import options as counted
+from compiler.targets.interceptor_options import options as counted
 from compiler.targets.python.interceptor import text
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Core, Head, core, head
