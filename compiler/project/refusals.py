@@ -65,47 +65,57 @@ def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
     """The requirements whose chain up to the hazards a mistake reaches, by their `id()`.
 
     Beside those that nothing can be made of: whoever is to trace, review or compare a requirement
-    reads what is above it, and the warnings that are accepted.
+    reads the headers and hazards above it, and the warnings that are accepted.
     """
     found = {id(each.requirement): [*each.why] for each in project.refused}
-    known = {why for each in project.refused for why in each.why}
+    of_headers = {mistake for each in project.requirements for mistake in each.mistakes}
     tables = project.declarations.mistakes.values() if project.declarations else ()
-    known.update(why for mistakes in tables for why in mistakes)
-    ways = _Ways(project.requirements)
-    for mistake in project.diagnostics:
-        if mistake.is_error and mistake not in known:
-            for requirement in project.requirements:
-                if ways.read(requirement, mistake):
-                    found.setdefault(id(requirement), []).append(mistake)
-    return {key: tuple(dict.fromkeys(why)) for key, why in found.items()}
+    of_formulas = {why for each in project.refused for why in each.why} - of_headers
+    of_formulas.update(why for mistakes in tables for why in mistakes)
+    others = [d for d in project.diagnostics if d.is_error and d not in of_formulas]
+    for requirement in project.requirements if others else ():
+        way = _Way.of(requirement, project)
+        found.setdefault(id(requirement), []).extend(each for each in others if way.reads(each))
+    return {key: tuple(dict.fromkeys(why)) for key, why in found.items() if why}
 
 
 _OF_SETTINGS = (Code.BAD_SETTINGS, Code.BAD_ACCEPTANCE)
 
 
-class _Ways:
-    """The ways from requirements up to what they are there for."""
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """The way from a requirement up to what it is there for."""
 
-    def __init__(self, requirements: Sequence[Requirement]) -> None:
-        self._by_id = {each.id: each for each in requirements}
-        self._known: dict[str, tuple[list[Requirement], bool]] = {}
+    project: Project
+    above: Sequence[Requirement]
+    """It, and the requirements above it."""
+    ends: frozenset[str]
+    """Ids of parents that are no requirements."""
 
-    def read(self, requirement: Requirement, mistake: Diagnostic) -> bool:
-        """Whether the mistake is in the requirement, above it, or in the settings of all."""
-        above, leaves = self._above(requirement)
-        if any(each.contains(mistake.span) for each in self._by_id.values()):
-            return any(each.contains(mistake.span) for each in above)
-        return leaves or mistake.code in _OF_SETTINGS
+    @classmethod
+    def of(cls, requirement: Requirement, project: Project) -> _Way:
+        by_id = {each.id: each for each in project.requirements}
+        above, ends = [requirement], set[str]()
+        for each in above:  # it grows while it is walked
+            for parent in each.parents:
+                if parent not in by_id:
+                    ends.add(parent)
+                elif by_id[parent] not in above:
+                    above.append(by_id[parent])
+        return cls(project, above, frozenset(ends))
 
-    def _above(self, requirement: Requirement) -> tuple[list[Requirement], bool]:
-        """It and the requirements above it; and whether the way leads to anything else."""
-        if requirement.id not in self._known:
-            waiting, leaves = [requirement], False
-            for each in waiting:  # it grows while it is walked
-                for parent in each.parents:
-                    above = self._by_id.get(parent)
-                    leaves = leaves or above is None
-                    if above is not None and above not in waiting:
-                        waiting.append(above)
-            self._known[requirement.id] = waiting, leaves
-        return self._known[requirement.id]
+    def reads(self, mistake: Diagnostic) -> bool:
+        """Whether the mistake is on the way, or in the settings of all.
+
+        A parent that nothing declares may be a requirement whose header cannot be read.
+        """
+        owners = [each for each in self.project.requirements if _is_in(mistake, each)]
+        if not owners:
+            return bool(self.ends) or mistake.code in _OF_SETTINGS
+        undeclared = self.ends - {*self.project.hazards} - {*self.project.parents}
+        lost = undeclared and any(mistake in each.mistakes for each in owners)
+        return bool(lost) or any(each in self.above for each in owners)
+
+
+def _is_in(mistake: Diagnostic, requirement: Requirement) -> bool:
+    return mistake in requirement.mistakes or requirement.contains(mistake.span)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from fretc.commands.opening import list_mistaken
 from fretc.terminal.options import (
     OF_LOGS,
     PATH,
@@ -190,8 +191,10 @@ def _check(
     result = coverage(project.declarations, logs, jobs, plan if isinstance(plan, Plan) else None)
     if isinstance(result, Diagnostic):
         stop(*([each for each in project.diagnostics if each.is_error] or [result]))
-    diagnostics = [*_unbound(project), *project.diagnostics, *project.answered(result.diagnostics)]
+    unbound = [each for each in _unbound(project) if each not in project.diagnostics]
+    diagnostics = [*unbound, *project.diagnostics, *project.answered(result.diagnostics)]
     say_briefly(diagnostics, requirements)
+    list_mistaken(project)
     click.echo(result.as_json if form == "json" else coloured(result.text), nl=False)
     raise SystemExit(BAD if has_errors(diagnostics) else SHOWN if result.shown else NOT_SHOWN)
 

@@ -56,8 +56,7 @@ def sound_part(project: Project, *, others: bool = False) -> Project:
     sound = project.sound
     if project.refused and not sound.rules and not (others and project.declarations):
         raise SystemExit(BAD)
-    refused = {each.requirement.id: each.why for each in project.refused if each.is_in_force}
-    list_refused(refused, len(project.requirements))
+    list_mistaken(project)
     return sound
 
 
@@ -83,6 +82,12 @@ def plan_of(project: Project, requirements: str) -> Plan:
     )
     list_refused({each.id: each.why for each in plan.refused}, len(plan.named))
     return plan
+
+
+def list_mistaken(project: Project) -> None:
+    """Print which requirements in force a mistake reaches."""
+    refused = {each.requirement.id: each.why for each in project.refused if each.is_in_force}
+    list_refused(refused, len(project.requirements))
 
 
 def list_refused(refused: Mapping[str, Sequence[Diagnostic]], count: int) -> None:
