@@ -71,7 +71,6 @@ DOORS = {
     "cyclonedx": {"fretc/attestation/sbom.py"},
     "pyarrow": {
         "fretc/audit/outputs/table.py",
-        "fretc/audit/store/agreement.py",
         "fretc/audit/store/columns.py",
         "fretc/audit/store/files.py",
         "fretc/audit/store/reader.py",
