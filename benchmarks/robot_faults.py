@@ -1,4 +1,4 @@
-"""Which planted faults of the interceptor and of the safety function tests from requirements find.
+"""Which faults of the interceptor and of the safety function tests from requirements find.
 
 The requirements say what each of them owes, tick by tick. Of a run of a suite only the inputs are
 used: the program answers, and monitors of all its requirements judge what came of it. The suite of
@@ -57,7 +57,7 @@ class Subject:
     requirements: Sequence[str]
     faults: Sequence[Fault]
     texts: Callable[[], tuple[str, ...]]
-    """In which faults are planted."""
+    """In which the faults are put."""
     start: Callable[[tuple[str, ...]], Program]
     usual: Row
     """Inputs that a sentence does not name: those of an ordinary tick. A few such come first."""
@@ -345,7 +345,7 @@ def _seen(inputs: Row, outputs: Row) -> Row:
     return {**inputs, **near, **outputs}
 
 
-def planted(texts: tuple[str, ...], fault: Fault) -> tuple[str, ...]:
+def changed(texts: tuple[str, ...], fault: Fault) -> tuple[str, ...]:
     """The texts with a fault in them; a doubled line has it twice."""
     assert any(fault.before in text for text in texts), fault.words
     return tuple(text.replace(fault.before, fault.after) for text in texts)
@@ -366,7 +366,7 @@ def main() -> None:
         print(f"  by flips: {len(flips)} of {sum(map(len, flips))}; random: {SEEDS} suites")
         sums = [0, 0, 0.0]
         for fault in subject.faults:
-            wrong = planted(texts, fault)
+            wrong = changed(texts, fault)
             found = (
                 is_found(subject, wrong, own),
                 is_found(subject, wrong, flips),

@@ -1,10 +1,10 @@
-"""Tests from requirements find planted faults, and accuse no program that keeps them."""
+"""Tests from requirements find faults of robot programs, and accuse no program that keeps them."""
 
 from __future__ import annotations
 
 import pytest
 
-from benchmarks.planted_faults import SAFETY, is_found, ours, planted
+from benchmarks.robot_faults import SAFETY, changed, is_found, ours
 
 
 @pytest.mark.slow
@@ -12,4 +12,4 @@ def test_each_fault_of_the_safety_function_is_found_and_the_right_one_not_accuse
     runs = ours(SAFETY)
     assert not is_found(SAFETY, SAFETY.texts(), runs)
     for fault in SAFETY.faults:
-        assert is_found(SAFETY, planted(SAFETY.texts(), fault), runs), fault.words
+        assert is_found(SAFETY, changed(SAFETY.texts(), fault), runs), fault.words
