@@ -3,116 +3,108 @@
 from __future__ import annotations
 
 import json
-import tempfile
-import threading
+import signal
+import sys
 import time
-import tomllib
 from collections import Counter
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
+from contextlib import closing
 from pathlib import Path
-from queue import SimpleQueue
 
 import click
 
 from tests.fault_injection.drawing import ROOT, Fault, drawn, room_of
-from tests.fault_injection.selection import Neighbourhood
-from tests.fault_injection.trial import Finding, Trial, copied, tried
-
-HERE = Path(__file__).parent
-
-
-def known(root: Path) -> list[Fault]:
-    """Read `known.toml`: wrong answers that were once there, as changes of today's text."""
-    faults = []
-    for entry in tomllib.loads((HERE / "known.toml").read_text("utf-8"))["fault"]:
-        text = root.joinpath(entry["path"]).read_bytes()
-        old = entry["old"].encode()
-        assert text.count(old) == 1, f"{entry['path']}: {entry['old']!r} is there {text.count(old)} times"
-        faults.append(Fault(entry["path"], text.index(old), entry["old"], entry["new"], "known"))
-    return faults
-
-
-def equivalent() -> dict[str, str]:
-    """Read `equivalent.toml`: ids of faults that change nothing a user could see, and why."""
-    return dict(tomllib.loads((HERE / "equivalent.toml").read_text("utf-8")))
-
-
-def results(faults: list[Fault], root: Path, jobs: int, limit: int) -> Iterator[Trial]:
-    """Try each fault, so many at a time, each job in its own copy of the tree."""
-    near = Neighbourhood(root)
-    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(jobs) as pool:
-        trees: SimpleQueue[Path] = SimpleQueue()
-        for job in range(jobs):
-            trees.put(copied(root, Path(folder, str(job))))
-
-        def one(fault: Fault) -> Trial:
-            tree = trees.get()
-            try:
-                return tried(fault, tree, near.files(fault.path), limit)
-            finally:
-                trees.put(tree)
-
-        yield from pool.map(one, faults)
-
-
-def table(trials: list[Trial]) -> str:
-    """A row for each room: how many faults were found, survived, ran out of time, change nothing."""
-    heads = [finding.value for finding in Finding]
-    rooms = sorted({room_of(trial.fault.path) for trial in trials})
-    counts = {
-        room: Counter(t.finding.value for t in trials if room_of(t.fault.path) == room)
-        for room in rooms
-    }
-    rows = [[room, *(str(counts[room][head]) for head in heads)] for room in rooms]
-    total = Counter(trial.finding.value for trial in trials)
-    rows.append(["all", *(str(total[head]) for head in heads)])
-    return "\n".join(
-        f"{row[0]:<24}" + "".join(f"{cell:>13}" for cell in row[1:]) for row in [["room", *heads], *rows]
-    )
+from tests.fault_injection.known import Misfit, equivalent, known
+from tests.fault_injection.trial import Bench, Finding, Trial
 
 
 @click.command(context_settings={"show_default": True})
 @click.option("--seed", default=1, help="Seed of the random choice of faults.")
 @click.option("--count", default=150, help="Number of drawn faults; the known ones come on top.")
 @click.option("--jobs", default=2, help="Faults that are tried at a time.")
-@click.option("--limit", default=120, metavar="SECONDS", help="CPU time for each fault's tests.")
+@click.option("--limit", default=90, metavar="SECONDS", help="CPU time for each fault's tests.")
 @click.option("--only", multiple=True, metavar="ID", help="Try this fault alone; repeatable.")
-@click.option("--tree", type=Path, default=ROOT, help="The checkout whose product and tests are tried.")
-@click.option("--output", type=Path, help="Write the result of each fault as JSON.")
+@click.option(
+    "--tree",
+    type=click.Path(exists=True, file_okay=False, path_type=Path),
+    default=ROOT,
+    show_default="this checkout",
+    help="A checkout, whose product and tests are tried.",
+)
+@click.option(
+    "--output",
+    type=click.Path(dir_okay=False, path_type=Path),
+    help="Write as JSON what became of each fault; after each, what is known so far.",
+)
 def main(
-    seed: int, count: int, jobs: int, limit: int, only: tuple[str, ...], tree: Path, output: Path | None
+    seed: int,
+    count: int,
+    jobs: int,
+    limit: int,
+    only: Sequence[str],
+    tree: Path,
+    output: Path | None,
 ) -> None:
     """Change one place of the product at a time, and say whether a test near it fails.
 
-    Prints a line for each fault that no test found, then a table by room.
+    Prints a line for each fault that no test found, then a table by room. The checkout is not
+    changed: faults are put into copies of it.
     """
-    faults = [*known(tree), *drawn(tree, seed, count)]
-    faults = [fault for fault in faults if not only or fault.id in only]
-    same = {} if only else equivalent()
-    tries = [fault for fault in faults if fault.id not in same]
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # copies are removed
+    tree = tree.resolve()
+    faults = [fault for fault in _faults(tree, seed, count) if not only or fault.id in only]
+    without_effect = {} if only else equivalent()
     trials = [
-        Trial(fault, fault.line((tree / fault.path).read_bytes()), Finding.EQUIVALENT, "", 0.0)
+        Trial(fault, fault.line((tree / fault.path).read_bytes()), Finding.EQUIVALENT, reason)
         for fault in faults
-        if fault.id in same
+        if (reason := without_effect.get(fault.id))
     ]
-    begun, lock = time.monotonic(), threading.Lock()
-    for trial in results(tries, tree, jobs, limit):
-        trials.append(trial)
-        with lock:
-            if trial.finding is not Finding.FOUND or only:
-                click.echo(_line(trial))
-        if output:
-            output.write_text(json.dumps([_row(t) for t in trials], indent=1) + "\n", "utf-8")
-    click.echo(table(trials))
-    spent = sum(trial.seconds for trial in trials)
-    click.echo(f"{len(trials)} faults, {time.monotonic() - begun:.0f} s, {spent:.0f} CPU s")
+    for trial in trials:
+        click.echo(_in_words(trial))
+    begun, bench = time.monotonic(), Bench(tree, jobs, limit)
+    tried = [fault for fault in faults if fault.id not in without_effect]
+    with closing(bench.trials(tried)) as coming:
+        for trial in coming:
+            trials.append(trial)
+            if only or trial.finding is not Finding.FOUND:
+                click.echo(_in_words(trial))
+            if output:
+                output.write_text(json.dumps(list(map(_row, trials)), indent=1) + "\n", "utf-8")
+    for test in sorted(bench.fails_anyway):
+        click.echo(f"fails without a fault, left out: {test}")
+    click.echo(f"\n{table(trials)}\n{len(trials)} faults in {time.monotonic() - begun:.0f} s")
 
 
-def _line(trial: Trial) -> str:
+def _faults(tree: Path, seed: int, count: int) -> list[Fault]:
+    """Return the known faults that fit the tree, and the drawn ones; name those that do not fit."""
+    faults = []
+    for fault in known(tree):
+        if isinstance(fault, Misfit):
+            click.echo(f"left out: {fault.path} has {fault.times} times {fault.old!r}", err=True)
+        else:
+            faults.append(fault)
+    return faults + drawn(tree, seed, count)
+
+
+def table(trials: Sequence[Trial]) -> str:
+    """Return a row for each room, with how many of its faults came to what."""
+    rooms = sorted({room_of(trial.fault.path) for trial in trials})
+    counts = {room: Counter[Finding]() for room in [*rooms, "all"]}
+    for trial in trials:
+        for room in (room_of(trial.fault.path), "all"):
+            counts[room][trial.finding] += 1
+    rows = [
+        ["", *(finding.value for finding in Finding)],
+        *([room, *(str(of[finding]) for finding in Finding)] for room, of in counts.items()),
+    ]
+    return "\n".join(f"{row[0]:<24}" + "".join(f"{cell:>13}" for cell in row[1:]) for row in rows)
+
+
+def _in_words(trial: Trial) -> str:
     fault = trial.fault
-    place = f"{fault.path}:{trial.line}"
-    return f"{fault.id} {trial.finding.value}: {place} {fault.kind}: {fault.old!r} → {fault.new!r} {trial.test}"
+    change = f"{fault.old!r} -> {fault.new!r}"
+    text = f"{fault.id} {trial.finding.value}: {fault.path}:{trial.line}: {fault.kind}: {change}"
+    return f"{text} ({trial.why})" if trial.why else text
 
 
 def _row(trial: Trial) -> dict[str, object]:
@@ -125,8 +117,7 @@ def _row(trial: Trial) -> dict[str, object]:
         "old": fault.old,
         "new": fault.new,
         "finding": trial.finding.value,
-        "test": trial.test,
-        "cpu_s": trial.seconds,
+        "why": trial.why,
     }
 
 

@@ -1,36 +1,59 @@
-"""Faults: one small change of one place in a file of the product, drawn from a seed."""
+"""Faults: one small change of one place in a file of the product, drawn from a seed.
+
+Not drawn is what no test could see, or each would: what stands in decorators, annotations and
+assertions; arguments such as `strict` and `timeout`; conditions on the platform or for a type
+checker; `/` and `+` beside a text or a list; names of types; and in modules that draw pictures
+numbers, and arithmetic with a number: these are sizes on a page.
+"""
 
 from __future__ import annotations
 
 import ast
 import hashlib
-import itertools
-import random
 import re
+from bisect import bisect_right
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
-ROOT = Path(__file__).parent.parent.parent
+ROOT = Path(__file__).parents[2]
 ROOMS = ("fretish", "monitors", "compiler", "fretc", "simulation")
 TEMPLATES = "templates"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place that stays the same when other lines of the file change."""
+
+    path: str
+    line: str = ""
+    """The line's text."""
+    number: int = 0
+    """How many lines of the same text stand before it."""
+    column: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class Fault:
     """Replace `old`, which stands at byte `start` of the file, by `new`."""
 
-    path: str
+    place: Place
     start: int
     old: str
     new: str
     kind: str
 
     @property
+    def path(self) -> str:
+        """The file, from the root of the tree."""
+        return self.place.path
+
+    @property
     def id(self) -> str:
-        """Eight hexadecimal digits that stay the same while the file does."""
-        text = f"{self.path}\0{self.start}\0{self.old}\0{self.new}"
-        return hashlib.sha256(text.encode()).hexdigest()[:8]
+        """Eight hexadecimal digits that stay the same while the line does."""
+        return _digest(self.place, self.old, self.new)[:8]
 
     def applied(self, text: bytes) -> bytes:
         """Return the file's bytes with the fault in them."""
@@ -41,6 +64,33 @@ class Fault:
     def line(self, text: bytes) -> int:
         """Return the line of the file on which the fault begins, from 1."""
         return text.count(b"\n", 0, self.start) + 1
+
+
+def _digest(*values: object) -> str:
+    return hashlib.sha256("\0".join(map(repr, values)).encode()).hexdigest()
+
+
+class _Text:
+    """A file's text, and where its lines are."""
+
+    def __init__(self, path: str, text: bytes) -> None:
+        self.path, self.text = path, text
+        self.starts = [0, *(match.end() for match in re.finditer(rb"\n", text))]
+        seen: Counter[str] = Counter()
+        self.lines: list[tuple[str, int]] = []
+        for line in text.decode().split("\n"):
+            self.lines.append((line, seen[line]))
+            seen[line] += 1
+
+    def offset(self, line: int, column: int) -> int:
+        """Return the byte of a line, from 1, and its column in bytes, as `ast` counts them."""
+        return self.starts[line - 1] + column
+
+    def fault(self, kind: str, start: int, end: int, new: str) -> Fault:
+        """Return the fault that has `new` for the bytes from `start` to `end`."""
+        row = bisect_right(self.starts, start) - 1
+        place = Place(self.path, *self.lines[row], start - self.starts[row])
+        return Fault(place, start, self.text[start:end].decode(), new, kind)
 
 
 COMPARISONS: dict[type[ast.cmpop], tuple[str, str]] = {
@@ -67,56 +117,54 @@ OPERATORS: dict[type[ast.operator], tuple[str, str]] = {
     ast.BitAnd: ("&", "|"),
     ast.BitOr: ("|", "&"),
 }
-NAMES = {
-    "min": "max",
-    "max": "min",
-    "any": "all",
-    "all": "any",
-    "sorted": "list",
-    "and_": "or_",
-    "or_": "and_",
-    "TRUE": "FALSE",
-    "FALSE": "TRUE",
-}
+PAIRS = (
+    ("min", "max"),
+    ("any", "all"),
+    ("and_", "or_"),
+    ("TRUE", "FALSE"),
+    ("lo", "hi"),
+    ("start", "end"),
+    ("first", "last"),
+    ("certain", "possible"),
+)
+NAMES = dict(PAIRS) | {right: left for left, right in PAIRS} | {"sorted": "list"}
+UNWRAPPED = re.compile(r"(^|_)(abs|not_|quote|quoted|escape|escaped)$")
+"""Functions whose call is left out, so that their argument stays as it is."""
+UNTESTED_ARGUMENTS = {"encoding", "maxsize", "repr", "strict", "timeout"}
+UNTESTED_CONDITIONS = re.compile(r"TYPE_CHECKING|__name__|sys\.(version_info|platform)|os\.name")
+PICTURES = re.compile(r"(^|[/_])(charts?|diagram|drawing|histograms?|pictures?|plots?|scales?)[/.]")
+TYPE_NAME = re.compile(r"_?[A-Z]\w*[a-z]")
+TEXTS = (ast.Constant, ast.JoinedStr, ast.List, ast.Tuple, ast.ListComp)
 
 
-class _Places(ast.NodeVisitor):
+class _Module(ast.NodeVisitor):
     """Every place of one module at which a fault could be, by kind."""
 
     def __init__(self, path: str, text: bytes) -> None:
-        self.path, self.text = path, text
-        starts = [0, *(match.end() for match in re.finditer(rb"\n", text))]
-        self.starts = starts
+        self.text = _Text(path, text)
+        self.draws = bool(PICTURES.search(path))
         self.faults: list[Fault] = []
 
-    def _offset(self, line: int, column: int) -> int:
-        return self.starts[line - 1] + column
-
     def _span(self, node: ast.expr | ast.stmt) -> tuple[int, int]:
-        assert node.end_lineno is not None and node.end_col_offset is not None
-        start = self._offset(node.lineno, node.col_offset)
-        return start, self._offset(node.end_lineno, node.end_col_offset)
-
-    def _add(self, kind: str, start: int, end: int, new: str) -> None:
-        old = self.text[start:end].decode()
-        if old != new:
-            self.faults.append(Fault(self.path, start, old, new, kind))
-
-    def _replace(self, kind: str, node: ast.expr | ast.stmt, new: str) -> None:
-        self._add(kind, *self._span(node), new)
+        assert node.end_lineno is not None
+        assert node.end_col_offset is not None
+        start = self.text.offset(node.lineno, node.col_offset)
+        return start, self.text.offset(node.end_lineno, node.end_col_offset)
 
     def _source(self, node: ast.expr) -> str:
         start, end = self._span(node)
-        return self.text[start:end].decode()
+        return self.text.text[start:end].decode()
+
+    def _replace(self, kind: str, node: ast.expr | ast.stmt, new: str) -> None:
+        self.faults.append(self.text.fault(kind, *self._span(node), new))
 
     def _sign(self, kind: str, left: ast.expr, right: ast.expr, signs: tuple[str, str]) -> None:
         """Exchange the operator that stands between two operands."""
         begin, end = self._span(left)[1], self._span(right)[0]
-        between = self.text[begin:end].decode()
-        place = between.find(signs[0])
-        if place >= 0 and "#" not in between:
-            start = begin + len(between[:place].encode())
-            self._add(kind, start, start + len(signs[0]), signs[1])
+        place = self.text.text[begin:end].find(signs[0].encode())
+        if place >= 0 and b"#" not in self.text.text[begin:end]:
+            start = begin + place
+            self.faults.append(self.text.fault(kind, start, start + len(signs[0]), signs[1]))
 
     def visit_Compare(self, node: ast.Compare) -> None:
         operands = [node.left, *node.comparators]
@@ -125,8 +173,13 @@ class _Places(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_BinOp(self, node: ast.BinOp) -> None:
-        text = isinstance(node.left, ast.Constant) and isinstance(node.left.value, str)
-        if type(node.op) in OPERATORS and not text:
+        sides = (node.left, node.right)
+        plain = not any(isinstance(side, TEXTS) and not _is_number(side) for side in sides)
+        if (
+            plain
+            and type(node.op) in OPERATORS
+            and not (self.draws and any(map(_is_number, sides)))
+        ):
             self._sign("operator", node.left, node.right, OPERATORS[type(node.op)])
         self.generic_visit(node)
 
@@ -142,7 +195,14 @@ class _Places(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_If(self, node: ast.If) -> None:
+        if UNTESTED_CONDITIONS.search(self._source(node.test)):
+            return
         self._replace("check left out", node.test, "False")
+        self.generic_visit(node)
+
+    def visit_match_case(self, node: ast.match_case) -> None:
+        if node.guard is not None:
+            self._replace("check left out", node.guard, "False")
         self.generic_visit(node)
 
     def visit_IfExp(self, node: ast.IfExp) -> None:
@@ -159,19 +219,40 @@ class _Places(ast.NodeVisitor):
     def visit_Constant(self, node: ast.Constant) -> None:
         if isinstance(node.value, bool):
             self._replace("truth value", node, str(not node.value))
+        elif self.draws:
+            return
         elif isinstance(node.value, int):
-            self._replace("number", node, str(node.value + 1))
+            # One more of a thousand would not be seen; of a factor between units it is ten times.
+            new = node.value + 1 if node.value < 1000 else node.value * 10
+            self._replace("number", node, str(new))
         elif isinstance(node.value, float):
-            self._replace("number", node, repr(node.value * 1000))
+            self._replace("number", node, repr(node.value * 1000 or 1.0))
 
     def visit_Name(self, node: ast.Name) -> None:
         if node.id in NAMES and isinstance(node.ctx, ast.Load):
             self._replace("name", node, NAMES[node.id])
 
+    def visit_Attribute(self, node: ast.Attribute) -> None:
+        if node.attr in NAMES and isinstance(node.ctx, ast.Load):
+            end = self._span(node)[1]
+            start = end - len(node.attr)
+            self.faults.append(self.text.fault("name", start, end, NAMES[node.attr]))
+        self.generic_visit(node)
+
+    def visit_Call(self, node: ast.Call) -> None:
+        name = self._source(node.func).rpartition(".")[2]
+        if UNWRAPPED.search(name) and len(node.args) == 1 and not node.keywords:
+            self._replace("call unwrapped", node, f"({self._source(node.args[0])})")
+        self.generic_visit(node)
+
+    def visit_keyword(self, node: ast.keyword) -> None:
+        if node.arg not in UNTESTED_ARGUMENTS:
+            self.generic_visit(node)
+
     def visit_Expr(self, node: ast.Expr) -> None:
         if isinstance(node.value, ast.Constant):
             return  # a docstring
-        if isinstance(node.value, ast.Call):
+        if isinstance(node.value, ast.Call) and self._source(node.value.func) != "assert_never":
             self._replace("call left out", node, "pass")
         self.generic_visit(node)
 
@@ -180,8 +261,8 @@ class _Places(ast.NodeVisitor):
             self._replace("entry lost", node.value.elts[-1], self._source(node.value.elts[0]))
         self.generic_visit(node)
 
-    def visit_Subscript(self, node: ast.Subscript) -> None:
-        if isinstance(node.ctx, ast.Load):  # not `list[int]` of an annotation, which is left out
+    def visit_Assign(self, node: ast.Assign) -> None:
+        if not TYPE_NAME.match(self._source(node.targets[0])):
             self.generic_visit(node)
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
@@ -193,43 +274,69 @@ class _Places(ast.NodeVisitor):
             if default is not None:
                 self.visit(default)
 
-    def _function(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> None:
-        self.visit(node.args)
-        for statement in node.body:
-            self.visit(statement)
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
+        self._body(node.args, *node.body)
 
-    visit_FunctionDef = _function
-    visit_AsyncFunctionDef = _function
+    def visit_AsyncFunctionDef(self, node: ast.AsyncFunctionDef) -> None:
+        self._body(node.args, *node.body)
+
+    def visit_ClassDef(self, node: ast.ClassDef) -> None:
+        self._body(*node.body)
+
+    def _body(self, *nodes: ast.AST) -> None:
+        for node in nodes:
+            self.visit(node)
+
+    def visit_Assert(self, node: ast.Assert) -> None:
+        """Leave out what is a mistake of ours wherever it is not so."""
 
     def visit_JoinedStr(self, node: ast.JoinedStr) -> None:
         """Leave out what stands in a string: its places are not exact before Python 3.12."""
 
 
-FILTER = re.compile(r"(\{\{[^{}\n]*?)(\s*\|\s*[a-z_]+)(\s*\}\})")
-CONDITION = re.compile(r"(\{%-?\s*(?:el)?if )(not )?")
-
-
-def of_template(path: str, text: bytes) -> list[Fault]:
-    """Return each filter left out (a quote is no longer escaped), and each condition negated."""
-    decoded = text.decode()
-
-    def fault(start: int, old: str, new: str, kind: str) -> Fault:
-        return Fault(path, len(decoded[:start].encode()), old, new, kind)
-
-    return [
-        *(fault(m.start(2), m[2], "", "filter left out") for m in FILTER.finditer(decoded)),
-        *(
-            fault(m.end(1), m[2] or "", "" if m[2] else "not ", "condition")
-            for m in CONDITION.finditer(decoded)
-        ),
-    ]
+def _is_number(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and isinstance(node.value, int | float)
 
 
 def of_module(path: str, text: bytes) -> list[Fault]:
-    """Return each change that can be made to a Python module; few of them are no Python."""
-    places = _Places(path, text)
-    places.visit(ast.parse(text))
-    return places.faults
+    """Return each change that can be made to a Python module; a few of them are no Python."""
+    module = _Module(path, text)
+    module.visit(ast.parse(text))
+    return module.faults
+
+
+FILTER = re.compile(rb"\{\{[^{}\n]*?(\s*\|\s*[a-z_]+)\s*\}\}")
+CONDITION = re.compile(rb"\{%-?\s*(?:el)?if ((?:not )?)")
+CODE = re.compile(r"\.(c|h|cpp|hpp|rs|js|mjs|py|java|dfy)\.j2$")
+SIGN = re.compile(rb" (<=|>=|<|>|===?|!==?|&&|\|\|) ")
+SIGNS = {
+    b"<=": "<",
+    b">=": ">",
+    b"<": "<=",
+    b">": ">=",
+    b"==": "!=",
+    b"!=": "==",
+    b"===": "!==",
+    b"!==": "===",
+    b"&&": "||",
+    b"||": "&&",
+}
+
+
+def of_template(path: str, data: bytes) -> list[Fault]:
+    """Return filters left out (a quote is no longer escaped), conditions and signs turned."""
+    text = _Text(path, data)
+    return [
+        *(text.fault("filter left out", *m.span(1), "") for m in FILTER.finditer(data)),
+        *(
+            text.fault("condition", *m.span(1), "" if m[1] else "not ")
+            for m in CONDITION.finditer(data)
+        ),
+        *(
+            text.fault("comparison", *m.span(1), SIGNS[m[1]])
+            for m in SIGN.finditer(data if CODE.search(path) else b"")
+        ),
+    ]
 
 
 def is_whole(fault: Fault, text: bytes) -> bool:
@@ -252,37 +359,47 @@ def files(root: Path) -> Iterator[tuple[str, Callable[[str, bytes], list[Fault]]
 
 
 def room_of(path: str) -> str:
-    """Return the part of the house whose share of lines decides how many faults it gets."""
+    """Return the part of the product whose share of lines decides how many faults it gets."""
     parts = path.split("/")
     return "/".join(parts[:2]) if parts[0] in {"compiler", "fretc"} and len(parts) > 2 else parts[0]
 
 
 def drawn(root: Path, seed: int, count: int) -> list[Fault]:
-    """Draw faults, to each room by its share of lines, no two on one line.
+    """Draw faults, to each room by its share of lines of code, no two on one line.
 
-    Lines of a room are those on which a fault is possible, so that what has no decision in it has
-    no share.
+    Each fault's rank is a hash of the seed and of its place: after a change elsewhere in a file
+    nearly the same faults are drawn.
     """
-    rooms: dict[str, dict[tuple[str, int], list[Fault]]] = {}
+    faults: dict[str, list[Fault]] = {}
+    lines: Counter[str] = Counter()
     texts = {path: root.joinpath(path).read_bytes() for path, _ in files(root)}
     for path, places in files(root):
-        text = texts[path]
-        lines = rooms.setdefault(room_of(path), {})
-        for fault in places(path, text):
-            lines.setdefault((path, fault.line(text)), []).append(fault)
-    every = sum(map(len, rooms.values()))
-    faults: list[Fault] = []
-    for room, lines in sorted(rooms.items()):
-        chance = random.Random(f"{seed}{room}")
-        share = max(1, round(count * len(lines) / every))
-        places = iter(chance.sample(sorted(lines), len(lines)))
-        choices = (_choice(chance, lines[place]) for place in places)
-        whole = (fault for fault in choices if is_whole(fault, texts[fault.path]))
-        faults += itertools.islice(whole, share)
-    return faults
+        room = room_of(path)
+        lines[room] += sum(1 for line in texts[path].split(b"\n") if line.strip()[:1] not in b"#")
+        faults.setdefault(room, []).extend(places(path, texts[path]))
+    chosen: list[Fault] = []
+    for room, of_room in sorted(faults.items()):
+        share = max(1, round(count * lines[room] / lines.total()))
+        whole = (fault for fault in _ranked(of_room, seed) if is_whole(fault, texts[fault.path]))
+        chosen += islice(_one_of_each_line(whole), share)
+    return chosen
 
 
-def _choice(chance: random.Random, faults: list[Fault]) -> Fault:
-    """Draw a kind, then one of its faults: numbers are many, checks that are left out few."""
-    kind = chance.choice(sorted({fault.kind for fault in faults}))
-    return chance.choice([fault for fault in faults if fault.kind == kind])
+def _ranked(faults: list[Fault], seed: int) -> list[Fault]:
+    """Sort by chance: by line, then kind, since numbers are many and checks left out are few."""
+
+    def rank(fault: Fault) -> tuple[str, str, str]:
+        place = fault.place
+        line = (seed, place.path, place.line, place.number)
+        return _digest(*line), _digest(*line, fault.kind), _digest(seed, fault.id)
+
+    return sorted(faults, key=rank)
+
+
+def _one_of_each_line(faults: Iterator[Fault]) -> Iterator[Fault]:
+    taken: set[tuple[str, str, int]] = set()
+    for fault in faults:
+        line = (fault.path, fault.place.line, fault.place.number)
+        if line not in taken:
+            taken.add(line)
+            yield fault

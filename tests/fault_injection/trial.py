@@ -1,17 +1,31 @@
-"""One fault in a copy of the tree, and the tests near it until the first that fails."""
+"""Faults in copies of a tree, each with the tests near it until the first that fails."""
 
 from __future__ import annotations
 
 import os
-import resource
 import shutil
+import signal
 import subprocess
 import sys
-from dataclasses import dataclass
+import tempfile
+from collections.abc import Iterator, Sequence
+from concurrent.futures import CancelledError, ThreadPoolExecutor
+from contextlib import suppress
+from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
+from queue import SimpleQueue
 
 from tests.fault_injection.drawing import Fault
+from tests.fault_injection.first_failure import CUT_SHORT
+from tests.fault_injection.selection import Neighbourhood
+
+RUNNER = Path(__file__).with_name("first_failure.py")
+OPTIONS = ("-x", "-q", "-n0", "--tb=no", "-p", "no:cacheprovider")
+PASSED = (0, 5)
+"""Exit status of pytest; 5: there were no tests."""
+STOPPED = (-signal.SIGXCPU, -signal.SIGKILL)
+"""By a limit; a crash is a failure like others."""
 
 
 class Finding(Enum):
@@ -19,19 +33,151 @@ class Finding(Enum):
 
     FOUND = "found"
     SURVIVED = "survived"
+    CUT_SHORT = "cut short"
+    """The time was over before all tests had run, and none had failed."""
     OUT_OF_TIME = "out of time"
+    """One test had no end."""
     EQUIVALENT = "equivalent"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Trial:
-    """How the tests did with a fault; `test` is the first that failed, `seconds` are of CPU."""
+    """How the tests did with a fault.
+
+    Args:
+        fault: the change.
+        line: of its file, from 1.
+        finding: what became of it.
+        why: the first test that failed or had no end; of an equivalent change the reason.
+    """
 
     fault: Fault
     line: int
     finding: Finding
-    test: str
-    seconds: float
+    why: str = ""
+
+
+@dataclass
+class Bench:
+    """Copies of a tree, in which faults are tried; the tree itself is left as it is.
+
+    Args:
+        root: the tree; a checkout of git.
+        jobs: faults that are tried at a time, each in a copy of its own.
+        seconds: of a processor for the tests of a fault: half for its own, half for the others.
+    """
+
+    root: Path
+    jobs: int
+    seconds: int
+    fails_anyway: set[str] = field(default_factory=set)
+    """Tests that fail without any fault: they find none."""
+    _passes: set[str] = field(default_factory=set)
+    _running: set[subprocess.Popen[bytes]] = field(default_factory=set)
+    _stops: bool = False
+
+    def trials(self, faults: Sequence[Fault]) -> Iterator[Trial]:
+        """Try each fault, and yield how it went, in their order."""
+        near = Neighbourhood(self.root)
+        with tempfile.TemporaryDirectory(prefix="faults-") as place:
+            copies: SimpleQueue[Path] = SimpleQueue()
+            for job in range(self.jobs):
+                copies.put(copied(self.root, Path(place, str(job))))
+
+            def one(fault: Fault) -> Trial:
+                copy = copies.get()
+                try:
+                    return self._tried(fault, copy, near.files(fault.path))
+                finally:
+                    copies.put(copy)
+
+            pool = ThreadPoolExecutor(self.jobs)
+            try:
+                yield from pool.map(one, faults)
+            finally:  # also where the command is stopped
+                self._stops = True
+                pool.shutdown(wait=False, cancel_futures=True)
+                for process in [*self._running]:
+                    _end(process)
+                pool.shutdown()
+
+    def _tried(self, fault: Fault, copy: Path, tests: tuple[list[str], list[str]]) -> Trial:
+        line = fault.line(copy.joinpath(fault.path).read_bytes())
+        for stage in filter(None, tests):
+            finding, test = self._outcome(fault, copy, stage)
+            if finding is not Finding.SURVIVED:
+                return Trial(fault, line, finding, test)
+        return Trial(fault, line, Finding.SURVIVED)
+
+    def _outcome(self, fault: Fault, copy: Path, tests: list[str]) -> tuple[Finding, str]:
+        """Run tests on the fault, once more where one failed that fails anyway."""
+        path = copy / fault.path
+        whole = path.read_bytes()
+        while True:
+            _write(path, fault.applied(whole))
+            try:
+                finding, test = self._pytest(copy, tests)
+            finally:
+                _write(path, whole)
+            if finding is not Finding.FOUND or self._passes_without(test or tests[0], copy):
+                return finding, test
+            if not test:
+                raise RuntimeError(f"no test can begin in {self.root}")
+
+    def _passes_without(self, test: str, copy: Path) -> bool:
+        if test not in self._passes:
+            finding, _ = self._pytest(copy, [test])
+            (self.fails_anyway if finding is Finding.FOUND else self._passes).add(test)
+        return test in self._passes
+
+    def _pytest(self, copy: Path, tests: list[str]) -> tuple[Finding, str]:
+        """Return how the tests ended, and the last that ran."""
+        if self._stops:
+            raise CancelledError
+        place = copy.with_suffix(".tmp")
+        shutil.rmtree(place, ignore_errors=True)
+        place.mkdir()
+        note = place / "note"
+        note.touch()
+        left_out = [f"--deselect={test}" for test in sorted(self.fails_anyway)]
+        command = [sys.executable, "-P", RUNNER, str(self.seconds // 2), note, *OPTIONS]
+        process = subprocess.Popen(
+            [*command, *left_out, *tests],
+            cwd=copy,
+            env=os.environ | {"PYTHONPATH": str(copy), "TMPDIR": str(place)},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        self._running.add(process)
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(3 * self.seconds)
+        _end(process)
+        self._running.discard(process)
+        return _finding(process.returncode), note.read_text("utf-8")
+
+
+def _finding(status: int) -> Finding:
+    if status in PASSED:
+        return Finding.SURVIVED
+    if status == CUT_SHORT:
+        return Finding.CUT_SHORT
+    return Finding.OUT_OF_TIME if status in STOPPED else Finding.FOUND
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """End the process, and what it has started."""
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def _write(path: Path, text: bytes) -> None:
+    """Write a module, and forget how its former text was compiled: both may be of one second."""
+    path.write_bytes(text)
+    for compiled in path.parent.glob(f"__pycache__/{path.stem}.*"):
+        compiled.unlink()
 
 
 def copied(root: Path, folder: Path) -> Path:
@@ -43,61 +189,3 @@ def copied(root: Path, folder: Path) -> Path:
             folder.joinpath(name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(root / name, folder / name)
     return folder
-
-
-def tried(fault: Fault, tree: Path, tests: list[str], limit: int) -> Trial:
-    """Run the tests in `tree` with the fault in it, and leave the tree as it was.
-
-    Args:
-        fault: the change; `tree` has the file that it was drawn from.
-        tree: a copy of the project that nobody else uses meanwhile.
-        tests: test files, the likeliest to fail first.
-        limit: CPU seconds, of all tests together; on the wall three times as many.
-    """
-    path = tree / fault.path
-    whole = path.read_bytes()
-    path.write_bytes(fault.applied(whole))
-    before = _cpu()
-    try:
-        status, text = _pytest(tree, tests, limit)
-    finally:
-        path.write_bytes(whole)
-    findings = {0: Finding.SURVIVED, 1: Finding.FOUND, 2: Finding.FOUND, None: Finding.OUT_OF_TIME}
-    failed = [line for line in text.splitlines() if line.startswith(("FAILED ", "ERROR "))]
-    test = failed[0].split(" - ")[0] if failed else ""
-    finding = findings.get(status, Finding.FOUND)  # 3, 4: pytest itself could not go on
-    return Trial(fault, fault.line(whole), finding, test, round(_cpu() - before, 1))
-
-
-def _cpu() -> float:
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def _pytest(tree: Path, tests: list[str], limit: int) -> tuple[int | None, str]:
-    """Return pytest's exit status, None where the time ran out, and what it printed."""
-    options = ["-x", "-q", "-n0", "--no-header", "--tb=no", "-rfE", "-p", "no:cacheprovider"]
-    command = [sys.executable, "-m", "pytest", *options, "--hypothesis-seed=0", *tests]
-    environment = os.environ | {"PYTHONPATH": str(tree)}
-
-    def bounded() -> None:
-        resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
-
-    process = subprocess.Popen(
-        command,
-        cwd=tree,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        start_new_session=True,
-        preexec_fn=bounded,
-    )
-    try:
-        text, _ = process.communicate(timeout=3 * limit)
-    except subprocess.TimeoutExpired:
-        os.killpg(process.pid, 9)
-        process.communicate()
-        return None, ""
-    return (None if process.returncode < 0 else process.returncode), text
