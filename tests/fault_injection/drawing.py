@@ -186,7 +186,7 @@ class _Module(ast.NodeVisitor):
     def visit_BoolOp(self, node: ast.BoolOp) -> None:
         signs = ("and", "or") if isinstance(node.op, ast.And) else ("or", "and")
         if len(node.values) == 2:  # of more, `a or b and c` would group anew
-            self._sign("connective", *node.values, signs)
+            self._sign("connective", node.values[0], node.values[1], signs)
         self.generic_visit(node)
 
     def visit_UnaryOp(self, node: ast.UnaryOp) -> None:
@@ -379,27 +379,17 @@ def drawn(root: Path, seed: int, count: int) -> list[Fault]:
         faults.setdefault(room, []).extend(places(path, texts[path]))
     chosen: list[Fault] = []
     for room, of_room in sorted(faults.items()):
-        share = max(1, round(count * lines[room] / lines.total()))
-        whole = (fault for fault in _ranked(of_room, seed) if is_whole(fault, texts[fault.path]))
-        chosen += islice(_one_of_each_line(whole), share)
+        share = min(count, max(1, round(count * lines[room] / lines.total())))
+        each = _by_chance(of_room, seed)
+        chosen += islice((fault for fault in each if is_whole(fault, texts[fault.path])), share)
     return chosen
 
 
-def _ranked(faults: list[Fault], seed: int) -> list[Fault]:
-    """Sort by chance: by line, then kind, since numbers are many and checks left out are few."""
-
-    def rank(fault: Fault) -> tuple[str, str, str]:
-        place = fault.place
-        line = (seed, place.path, place.line, place.number)
-        return _digest(*line), _digest(*line, fault.kind), _digest(seed, fault.id)
-
-    return sorted(faults, key=rank)
-
-
-def _one_of_each_line(faults: Iterator[Fault]) -> Iterator[Fault]:
-    taken: set[tuple[str, str, int]] = set()
+def _by_chance(faults: list[Fault], seed: int) -> Iterator[Fault]:
+    """Yield one fault of each line: first a kind, since numbers are many and checks are few."""
+    lines: dict[tuple[str, str, int], list[Fault]] = {}
     for fault in faults:
         line = (fault.path, fault.place.line, fault.place.number)
-        if line not in taken:
-            taken.add(line)
-            yield fault
+        lines.setdefault(line, []).append(fault)
+    for line in sorted(lines, key=lambda line: _digest(seed, *line)):
+        yield min(lines[line], key=lambda f: (_digest(seed, *line, f.kind), _digest(seed, f.id)))

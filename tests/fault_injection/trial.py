@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -76,7 +76,7 @@ class Bench:
     _running: set[subprocess.Popen[bytes]] = field(default_factory=set)
     _stops: bool = False
 
-    def trials(self, faults: Sequence[Fault]) -> Iterator[Trial]:
+    def trials(self, faults: Sequence[Fault]) -> Generator[Trial]:
         """Try each fault, and yield how it went, in their order."""
         near = Neighbourhood(self.root)
         with tempfile.TemporaryDirectory(prefix="faults-") as place:
@@ -113,6 +113,7 @@ class Bench:
         """Run tests on the fault, once more where one failed that fails anyway."""
         path = copy / fault.path
         whole = path.read_bytes()
+        left_out: set[str] = set()
         while True:
             _write(path, fault.applied(whole))
             try:
@@ -121,11 +122,12 @@ class Bench:
                 _write(path, whole)
             if finding is not Finding.FOUND or self._passes_without(test or tests[0], copy):
                 return finding, test
-            if not test:
+            if test in left_out or not test:
                 raise RuntimeError(f"no test can begin in {self.root}")
+            left_out.add(test)
 
     def _passes_without(self, test: str, copy: Path) -> bool:
-        if test not in self._passes:
+        if test not in self._passes | self.fails_anyway:
             finding, _ = self._pytest(copy, [test])
             (self.fails_anyway if finding is Finding.FOUND else self._passes).add(test)
         return test in self._passes
@@ -134,13 +136,16 @@ class Bench:
         """Return how the tests ended, and the last that ran."""
         if self._stops:
             raise CancelledError
+        tests = [test for test in tests if test not in self.fails_anyway]
+        if not tests:  # without a name pytest would run all there are
+            return Finding.SURVIVED, ""
         place = copy.with_suffix(".tmp")
         shutil.rmtree(place, ignore_errors=True)
         place.mkdir()
         note = place / "note"
         note.touch()
         left_out = [f"--deselect={test}" for test in sorted(self.fails_anyway)]
-        command = [sys.executable, "-P", RUNNER, str(self.seconds // 2), note, *OPTIONS]
+        command = [sys.executable, "-P", str(RUNNER), str(self.seconds // 2), str(note), *OPTIONS]
         process = subprocess.Popen(
             [*command, *left_out, *tests],
             cwd=copy,
