@@ -1,4 +1,4 @@
-"""Which test files stand near a module: its own, those that import it, its folder's, its users'."""
+"""Which test files stand near a module: its own, those that import it, its users', its folder's."""
 
 from __future__ import annotations
 
@@ -69,20 +69,22 @@ class Neighbourhood:
     def files(self, path: str) -> tuple[list[str], list[str]]:
         """Return the module's own test files, and then the others near it, the nearest first.
 
-        The others import it, straight or by a helper of the tests; are in its folder's place; are
-        the own ones of modules that use it, or import these; and so on outwards until they are
+        The others import it, straight or by a helper of the tests; are the own ones of modules that
+        use it; stand beside its own; import those modules; and so on outwards until they are
         enough.
         """
         changed = self._changed(path)
         helpers = {name for name in self._importing(changed, self.tests) if not _is_test(name)}
+        users = set(self._importing(changed, self.product)) - changed
         folders = {f"tests/{module.rpartition('/')[0]}" for module in changed}
         own = self._tests(map(_own, sorted(changed)))
         near = [
             *self._importing(changed, self.tests),
-            *(name for name in self.tests if name.rpartition("/")[0] in folders),
             *self._importing(helpers, self.tests),
+            *map(_own, sorted(users)),
+            *(name for name in self.tests if name.rpartition("/")[0] in folders),
         ]
-        reached, users = changed, set(self._importing(changed, self.product)) - changed
+        reached = {*changed}
         while users:
             near += [*map(_own, sorted(users)), *self._importing(users, self.tests)]
             if len(self._tests(near)) >= ENOUGH:

@@ -64,7 +64,7 @@ class Bench:
     Args:
         root: the tree; a checkout of git.
         jobs: faults that are tried at a time, each in a copy of its own.
-        seconds: of a processor for the tests of a fault: half for its own, half for the others.
+        seconds: of a processor for a fault: half for its module's own tests, half for the others.
     """
 
     root: Path
@@ -103,13 +103,16 @@ class Bench:
 
     def _tried(self, fault: Fault, copy: Path, tests: tuple[list[str], list[str]]) -> Trial:
         line = fault.line(copy.joinpath(fault.path).read_bytes())
-        for stage in filter(None, tests):
-            finding, test = self._outcome(fault, copy, stage)
+        stages = [*filter(None, tests)]
+        for stage in stages:
+            finding, test = self._outcome(fault, copy, stage, self.seconds // len(stages))
             if finding is not Finding.SURVIVED:
                 return Trial(fault, line, finding, test)
         return Trial(fault, line, Finding.SURVIVED)
 
-    def _outcome(self, fault: Fault, copy: Path, tests: list[str]) -> tuple[Finding, str]:
+    def _outcome(
+        self, fault: Fault, copy: Path, tests: list[str], seconds: int
+    ) -> tuple[Finding, str]:
         """Run tests on the fault, once more where one failed that fails anyway."""
         path = copy / fault.path
         whole = path.read_bytes()
@@ -117,7 +120,7 @@ class Bench:
         while True:
             _write(path, fault.applied(whole))
             try:
-                finding, test = self._pytest(copy, tests)
+                finding, test = self._pytest(copy, tests, seconds)
             finally:
                 _write(path, whole)
             if finding is not Finding.FOUND or self._passes_without(test or tests[0], copy):
@@ -128,11 +131,11 @@ class Bench:
 
     def _passes_without(self, test: str, copy: Path) -> bool:
         if test not in self._passes | self.fails_anyway:
-            finding, _ = self._pytest(copy, [test])
+            finding, _ = self._pytest(copy, [test], self.seconds)
             (self.fails_anyway if finding is Finding.FOUND else self._passes).add(test)
         return test in self._passes
 
-    def _pytest(self, copy: Path, tests: list[str]) -> tuple[Finding, str]:
+    def _pytest(self, copy: Path, tests: list[str], seconds: int) -> tuple[Finding, str]:
         """Return how the tests ended, and the last that ran."""
         if self._stops:
             raise CancelledError
@@ -145,7 +148,7 @@ class Bench:
         note = place / "note"
         note.touch()
         left_out = [f"--deselect={test}" for test in sorted(self.fails_anyway)]
-        command = [sys.executable, "-P", str(RUNNER), str(self.seconds // 2), str(note), *OPTIONS]
+        command = [sys.executable, "-P", str(RUNNER), str(seconds), str(note), *OPTIONS]
         process = subprocess.Popen(
             [*command, *left_out, *tests],
             cwd=copy,
@@ -157,7 +160,7 @@ class Bench:
         )
         self._running.add(process)
         with suppress(subprocess.TimeoutExpired):
-            process.wait(3 * self.seconds)
+            process.wait(6 * seconds)
         _end(process)
         self._running.discard(process)
         return _finding(process.returncode), note.read_text("utf-8")
