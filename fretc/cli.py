@@ -28,6 +28,7 @@ from fretc.terminal.output import (
     final_status,
     not_written,
     say,
+    say_accepted,
     say_line,
 )
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -165,6 +166,7 @@ def _run() -> None:
             status = SHOWN
         except SystemExit as exit_:
             status = int(exit_.code or SHOWN)
+        say_accepted(context)
         raise SystemExit(final_status(context, status))
 
 

@@ -91,8 +91,7 @@ def report(
     withdrawn = withdrawn_requirements(project.requirements, chains, lock)
     anchors = {assessment.id: assessment.anchor for assessment in reversed(assessed)}
     shared = shared_products(project.declarations) if all_proofs else ()
-    proved_files = {name for proof in all_proofs for name in proof.artefacts}
-    joint = joint_monitors(project.rules, proved_files)
+    joint = joint_monitors(project.rules, all_proofs)
     exercised = situations(assessed, evidence)
     sections = tuple(
         section(

@@ -47,18 +47,26 @@ def final_status(context: click.Context, status: int) -> int:
     return BAD if failed else status
 
 
+_ACCEPTED = "fretc.accepted"
+
+
 def say(diagnostics: Sequence[Diagnostic]) -> None:
-    """Print them on standard error; of the warnings that are accepted, how many there are.
+    """Print them on standard error; those that are accepted are counted at the end of the command.
 
     They are ordered by their places, and in colours where it is a terminal.
     """
-    accepted = sum(bool(diagnostic.accepted) for diagnostic in diagnostics)
-    open_ones = [diagnostic for diagnostic in diagnostics if not diagnostic.accepted]
-    say_all(open_ones)
+    say_all([diagnostic for diagnostic in diagnostics if not diagnostic.accepted])
+    accepted = {diagnostic for diagnostic in diagnostics if diagnostic.accepted}
     if accepted:
-        count = "1 warning is" if accepted == 1 else f"{accepted} warnings are"
-        gap = "\n" if open_ones else ""
-        say_line(f"{gap}{count} accepted: `fretc check` lists the reasons")
+        click.get_current_context().meta.setdefault(_ACCEPTED, set()).update(accepted)
+
+
+def say_accepted(context: click.Context) -> None:
+    """Print how many warnings of a command are accepted, if any are."""
+    count = len(context.meta.get(_ACCEPTED, ()))
+    if count:
+        what = "1 warning is" if count == 1 else f"{count} warnings are"
+        say_line(f"{what} accepted: `fretc check` lists the reasons")
 
 
 def say_all(*groups: Sequence[Diagnostic]) -> None:

@@ -112,3 +112,4 @@ def test_no_command_is_at_fault(fretc: Fretc, place: int) -> None:
                 error.add_note(f"fretc {' '.join(words)}")
                 raise
             assert run.status in (0, 1, 2, 3), words
+            assert run.err.count(" accepted: `fretc check`") <= 1, words

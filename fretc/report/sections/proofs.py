@@ -34,7 +34,7 @@ def proof_views(
         proofs: about one requirement, or about shared parts.
         products: what the targets make now; a proof about another text is suspect.
         rule: the requirement; None where it cannot be read, and of shared parts.
-        joint: SHA-256 of the monitors of all requirements that are made now.
+        joint: SHA-256 of the monitors of several requirements that are made now.
     """
     now = {product.file: product.sha256 for product in products if product.sha256}
     return tuple(_view(proof, now, rule, joint) for proof in proofs)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
 
 from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
+from compiler.logic.claims import Proof
 from compiler.targets.interceptor_options import ASSUMED, assumed
 from compiler.targets.python import interceptor
 from compiler.targets.target import Options, Target
@@ -63,20 +64,37 @@ _JOINT = {"monitors.py": "monitor", "monitors.c": "c", "lib.rs": "rust", "monito
 """The names of files with the monitor of many requirements, and their target."""
 
 
-def joint_monitors(rules: Sequence[Formalized], files: Collection[str]) -> frozenset[str]:
-    """SHA-256 of each file that has one monitor for all of the rules.
+def joint_monitors(rules: Sequence[Formalized], proofs: Iterable[Proof]) -> frozenset[str]:
+    """SHA-256 of each file with one monitor for several of the rules, as it is made now.
+
+    It is made of all of them, and of those that the proofs about one text are of: whoever names
+    some requirements gets a file of these.
 
     Args:
         rules: all of a project, in its order; those that a target refuses are in no file.
-        files: their names, among others.
+        proofs: about such files, among others.
     """
+    groups: dict[tuple[str, str], list[str]] = {}
+    for proof in proofs:
+        for file, examined in proof.artefacts.items():
+            if file in _JOINT:
+                groups.setdefault((file, examined), []).append(proof.requirement)
+    by_id = {rule.id: rule for rule in reversed(rules)}
     found = set[str]()
-    for file, target in _JOINT.items():
-        accepted = [each for each in rules if TARGETS[target].refuse(each) is None]
-        if file in files and accepted:
-            made = TARGETS[target].emit(accepted, Options(one_file=True))
-            found.add(next(sha256(each.text) for each in made if each.path.name == file))
-    return frozenset(found)
+    for (file, _), ids in groups.items():
+        named = [by_id[id] for id in dict.fromkeys(ids) if id in by_id]
+        in_order = [rule for rule in rules if rule in named]
+        orders = {tuple(rule.id for rule in some): some for some in (rules, in_order, named)}
+        found.update(_of_joint(file, some) for some in orders.values())
+    return frozenset(found - {""})
+
+
+def _of_joint(file: str, rules: Sequence[Formalized]) -> str:
+    """SHA-256 of a file with one monitor for the rules; empty where the target refuses all."""
+    target = TARGETS[_JOINT[file]]
+    accepted = [each for each in rules if target.refuse(each) is None]
+    made = target.emit(accepted, Options(one_file=True)) if accepted else ()
+    return next((sha256(each.text) for each in made if each.path.name == file), "")
 
 
 def _of_target(target: Target, rule: Formalized) -> tuple[Product, ...]:

@@ -1,6 +1,7 @@
 """Warnings that a project accepts: counted and listed, and told again once they are idle."""
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -279,8 +280,27 @@ def test_a_file_whose_header_accepts_its_warning_is_shown_without_it(
     project(CAUSES["F203"], {"F203": "meant"})
     run = fretc("requirements/r1.fret", *emit)
     assert run.status == 0
-    assert run.err.startswith("1 warning is accepted: `fretc check` lists the reasons\n")
+    assert run.err.endswith("1 warning is accepted: `fretc check` lists the reasons\n")
     assert "F203" not in run.err
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("requirements", "--emit", "interceptor"),
+        ("requirements", "--emit", "interceptor", "--emit", "monitor"),
+        ("requirements", "--emit", "interceptor", "--emit", "interceptor"),
+    ],
+    ids=" ".join,
+)
+def test_what_is_accepted_is_counted_once_wherever_it_comes_from(
+    fretc: Fretc, words: tuple[str, ...]
+) -> None:
+    """One warning is about the sentence, and one about the interceptor."""
+    project({**CAUSES["F203"], 'scan_timeout = "300 ms"\n': ""}, {"F203": "meant"})
+    write("requirements/fretc.toml", '[accept]\nF631 = "meant"\n')
+    run = fretc(*words)
+    assert re.findall(r"\S+ warnings? \w+ accepted", run.err) == ["2 warnings are accepted"]
 
 
 # Reviews and the report ------------------------------------------------------------------------

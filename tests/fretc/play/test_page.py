@@ -7,7 +7,7 @@ import random
 import re
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib import resources
 from itertools import product
 from pathlib import Path
@@ -425,3 +425,33 @@ def test_it_asks_nothing_of_anybody_and_texts_stay_texts(opened: Open) -> None:
     assert "default-src 'none'" in text
     assert not re.search(r"(?:src|href)=\"(?!#)", text)
     assert "\\u202e" in page.locator("header").inner_text()
+
+
+def test_a_trace_is_judged_once_whatever_is_done(opened: Open) -> None:
+    """Each gesture, and the start itself, asks the monitors once for each tick at most."""
+    rows: tuple[Ticks, ...] = ((2, {"p": True, "q": False}), (5, {"p": False, "q": True}))
+    starts = [Start("a group", name, "shown", ("R1",), rows) for name in ("first", "second")]
+    page = opened("whenever p the sw shall within 1 tick satisfy q", starts=starts)
+    page.evaluate(
+        "() => { const judge = monitor.judge; window.asked = 0;"
+        " monitor.judge = (...given) => { window.asked += 1; return judge(...given); }; }"
+    )
+
+    def asked(gesture: Callable[[], object]) -> int:
+        page.evaluate("window.asked = 0")
+        gesture()
+        found: int = page.evaluate("window.asked")
+        return found
+
+    cell = lane(page, "p").first
+    for ticks, gesture in (
+        (7, lambda: page.locator("#start").select_option("1")),
+        (7, lambda: cell.click()),
+        (8, lambda: cell.press("i")),
+        (7, lambda: page.keyboard.press("Control+z")),
+        (8, lambda: page.keyboard.press("Control+y")),
+        (0, lambda: page.keyboard.press("ArrowRight")),
+        (0, lambda: page.locator("#which").select_option("0")),
+        (8, lambda: page.locator("#clear").click()),
+    ):
+        assert asked(gesture) == ticks

@@ -182,6 +182,28 @@ def test_a_proof_of_the_monitor_of_all_requirements_stands(
         assert len(view["suspicions"]) == doubts, view["suspicions"]
 
 
+@each("kind", ["monitor", "c", "rust", "js"])
+@each("part", [("R1", "R2"), ("R1", "R3"), ("R2", "R1"), ("R1",)])
+def test_a_proof_of_the_monitor_of_some_requirements_stands(
+    tmp_path_factory: pytest.TempPathFactory, kind: str, part: tuple[str, ...]
+) -> None:
+    """Whoever names some files gets a monitor of these; until one of its requirements changes."""
+    folder = tmp_path_factory.mktemp(kind)
+    own = requirement("R1", SENTENCE, verify=["verify"])
+    beside = [requirement(id, SENTENCE.replace("30", n)) for id, n in (("R2", "5"), ("R3", "7"))]
+    rules = {rule.id: rule for rule in project(folder, own, *beside).rules}
+    made = TARGETS[kind].emit([rules[id] for id in part], Options(one_file=True))
+    files = {file.path.name: sha256(file.text) for file in reversed(made)}
+    lines = [{"requirement": id, "artefacts": files} for id in part]
+    for place in (None, 0, 1):
+        others = [each.replace("satisfy", "satisfy !") if number == place else each
+                  for number, each in enumerate(beside)]  # fmt: skip
+        report = reported(folder, *lines, verify=["verify"], beside=others)
+        (view,) = as_json(report)["requirements"][0]["proofs"]
+        changed = place is not None and f"R{place + 2}" in part
+        assert len(view["suspicions"]) == changed, (place, view["suspicions"])
+
+
 def test_a_prover_is_found_by_its_engine(tmp_path: Path) -> None:
     line = {"engine": "Dafny 4.9", "layer": "interceptor", "requirement": "interceptor"}
     report = reported(tmp_path, line, verify=["dafny"])
