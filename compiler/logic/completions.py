@@ -54,10 +54,10 @@ def shown(
     for tick, row in enumerate(_rows(known, counted, ticks)):
         step = possible, row
         if step not in moves:
-            letters = [*product(*(_VALUES[code] for code in row[1:]))]
-            steps += len(letters) * len(possible)
+            steps += len(possible) << row.count("2")
             if steps > MOST_STEPS:
                 return None
+            letters = [*product(*(_VALUES[code] for code in row[1:]))]
             moves[step] = automaton.moved(possible, letters, counts=row[0] == "1")
         steps += 1
         if steps > MOST_STEPS:

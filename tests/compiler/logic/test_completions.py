@@ -58,3 +58,9 @@ def test_a_search_that_takes_too_long_is_given_up() -> None:
     assert shown(f.Atom("a"), columns, 100, every) == Shown(0, 0)
     many = completions.MOST_STEPS + 1
     assert shown(f.Atom("a"), {"a": Column(0, 0)}, many, -1) is None
+
+
+def test_more_unknown_values_at_a_tick_than_can_be_tried_take_no_memory() -> None:
+    atoms = [f.Atom(f"a{number}") for number in range(60)]
+    columns = {atom.name: Column(0, 1) for atom in atoms}
+    assert shown(f.and_(*atoms), columns, 1, 1) is None
