@@ -7,7 +7,7 @@ never answered, broken late. Two traces are different where their runs are, repe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from compiler.explanation.shortest_words import Move, Run, Waypoint, Words
@@ -18,6 +18,7 @@ from compiler.formalization.letters import (
     MOST_ATOMS,
     Valuation,
     atoms_of,
+    comparisons,
     excluded,
     meanings,
     temporal_predicate,
@@ -29,7 +30,7 @@ from compiler.formalization.reference import (
     TooManyStatesError,
     explore,
 )
-from compiler.logic.orders import only_possible
+from compiler.logic.orders import Exclusion, only_possible
 
 MOST_STATES = 120_000
 """Seconds of search; a longer bound gets no examples."""
@@ -61,6 +62,10 @@ class Examples:
     violated: tuple[Example, ...]
     note: str = ""
     """Why there are none, where there are none."""
+    rounded: Exclusion = ()
+    """Of what was left out because no real numbers make it; floats that round may."""
+    is_undecided: bool = False
+    """Whether numbers make the traces was not decided."""
 
 
 def examples(rule: Formalized, wanted: int = WANTED) -> Examples:
@@ -73,26 +78,68 @@ def examples(rule: Formalized, wanted: int = WANTED) -> Examples:
         return Examples(atoms, (), (), f"{len(atoms)} propositions are more than {MOST_ATOMS}")
     every = meanings(rule.sentence, atoms)
     possible = only_possible(tuple(every), atoms, excluded(rule))
-    letters = _quiet_first({valuation: every[valuation] for valuation in possible})
+    chosen = _chosen(rule, atoms, {valuation: every[valuation] for valuation in possible})
+    letters = chosen.letters
     counted = counters.template(rule.sentence, rule.ticks or 0)
     try:
         automaton = explore(counted, letters, MOST_STATES)
     except TooManyStatesError:
         return Examples(atoms, (), (), f"its automaton has more than {MOST_STATES} states")
     search = _Search(automaton, letters)
-    return Examples(
-        atoms,
-        tuple(_different(search, search.satisfying(), wanted)),
-        tuple(_different(search, search.violating(), wanted)),
-    )
+    satisfied = tuple(_different(search, search.satisfying(), wanted))
+    violated = tuple(_different(search, search.violating(), wanted))
+    shown = {each for found in (*satisfied, *violated) for each in (*found.prefix, *found.loop)}
+    is_undecided = not chosen.undecided.isdisjoint(shown)
+    return Examples(atoms, satisfied, violated, "", chosen.rounded, is_undecided)
+
+
+# Letters ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Chosen:
+    """For each letter a valuation that shows it."""
+
+    letters: Mapping[Letter, Valuation]
+    undecided: frozenset[Valuation] = frozenset()
+    rounded: Exclusion = ()
+    """Of a letter that no real numbers make."""
+
+
+def _chosen(rule: Formalized, atoms: Sequence[str], every: Mapping[Valuation, Letter]) -> _Chosen:
+    """For each letter the one with the fewest true atoms that real numbers make."""
+    if not comparisons(rule):
+        return _Chosen(_quiet_first(every))
+    from compiler.formalization.numbers.reals import Impossible, Possible, Reals
+
+    reals, excluded = Reals(rule), dict[Letter, Exclusion]()
+    possible, undecided = dict[Valuation, Letter](), dict[Valuation, Letter]()
+    for valuation, letter in _by_noise(every):
+        if letter in possible.values():
+            continue
+        match reals.answer(dict(zip(atoms, valuation, strict=True))):
+            case Possible():
+                possible[valuation] = letter
+            case Impossible(exclusion):
+                excluded.setdefault(letter, exclusion)
+            case _:
+                undecided.setdefault(valuation, letter)
+    spare = {v: letter for v, letter in undecided.items() if letter not in possible.values()}
+    letters = _quiet_first({**possible, **spare})
+    gone = (exclusion for letter, exclusion in excluded.items() if letter not in letters)
+    return _Chosen(letters, frozenset(spare), next(gone, ()))
 
 
 def _quiet_first(found: Mapping[Valuation, Letter]) -> dict[Letter, Valuation]:
     """For each letter the valuation with the fewest true atoms; the quietest letters first."""
     chosen: dict[Letter, Valuation] = {}
-    for valuation, letter in sorted(found.items(), key=lambda pair: (sum(pair[0]), pair[0][::-1])):
+    for valuation, letter in _by_noise(found):
         chosen.setdefault(letter, valuation)
     return chosen
+
+
+def _by_noise(found: Mapping[Valuation, Letter]) -> Sequence[tuple[Valuation, Letter]]:
+    return sorted(found.items(), key=lambda pair: (sum(pair[0]), pair[0][::-1]))
 
 
 # The search -------------------------------------------------------------------------------------

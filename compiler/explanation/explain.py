@@ -9,7 +9,7 @@ from typing import Any
 
 from compiler.explanation import drawing
 from compiler.explanation.diagram import Diagram, Lane, diagram, words
-from compiler.explanation.examples import Example, examples
+from compiler.explanation.examples import Example, Examples, examples
 from compiler.explanation.reasons import why
 from compiler.formalization import record
 from compiler.formalization.formalized import Formalized
@@ -69,18 +69,27 @@ def explanation(rule: Formalized) -> Explanation:
     for example in every:
         _check(rule, found.atoms, example)
     shown = tuple(_shown(rule, letters, example) for example in every)
-    notes = tuple(_notes(rule, found.note, len(found.satisfied), len(found.violated)))
+    notes = tuple(_notes(rule, found))
     return Explanation(rule, diagram(rule), found.atoms, shown, notes)
 
 
-def _notes(rule: Formalized, reason: str, satisfied: int, violated: int) -> Iterator[str]:
-    if reason:
-        yield f"no traces are shown: {reason}"
+def _notes(rule: Formalized, found: Examples) -> Iterator[str]:
+    if found.note:
+        yield f"no traces are shown: {found.note}"
         return
+    satisfied, violated = len(found.satisfied), len(found.violated)
+    if found.rounded or found.is_undecided:
+        from compiler.formalization.numbers.reals import NOT_DECIDED, only_rounded
+
+        if found.rounded:
+            yield only_rounded(found.rounded)
+        if found.is_undecided:
+            yield NOT_DECIDED
+    exactly = ", computed exactly" if found.rounded else ""
     if not satisfied:
-        yield "no run that goes on satisfies the sentence"
+        yield f"no run that goes on satisfies the sentence{exactly}"
     if not violated:
-        yield "no run violates the sentence"
+        yield f"no run violates the sentence{exactly}"
     if satisfied == 1:
         yield "no other way to satisfy the sentence was found"
     if violated == 1:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import z3
 
 from compiler.formalization.formalized import Formalized
+from compiler.formalization.numbers.terms import Term
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import BeyondError, Numbers, Tick
@@ -21,7 +22,6 @@ from fretc.analysis.arithmetic.durations import Duration, Held, held
 from fretc.analysis.arithmetic.groups import Group, choice, linked, owners
 from fretc.analysis.arithmetic.past import Remembered, remembered
 from fretc.analysis.arithmetic.projection import Limit
-from fretc.analysis.arithmetic.terms import Term
 from fretish.bindings.declarations import Role
 
 

@@ -9,11 +9,11 @@ from fractions import Fraction
 import z3
 
 from compiler.formalization.formalized import Formalized
+from compiler.formalization.numbers.terms import Before, NoTermError, Term, Terms, read_by
 from fretc.analysis.arena.alphabet import BeyondError, Tick
 from fretc.analysis.arithmetic.durations import Lasting, parted
 from fretc.analysis.arithmetic.readings import Reading, readings
 from fretc.analysis.arithmetic.steps import AtomOfTick, Moment, Steps, linked, tick, unknown
-from fretc.analysis.arithmetic.terms import Before, Term, Terms, read_by
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +112,7 @@ class Atoms:
         try:
             parts, lasting = parted(name, reading)
             made = {each: self._moment(part) for each, part in parts.items()}
-        except BeyondError as error:
+        except (BeyondError, NoTermError) as error:
             self.refused[name] = f"`{name}` {error}"
             return
         moments |= made

@@ -14,10 +14,10 @@ from fractions import Fraction
 
 import z3
 
+from compiler.formalization.numbers.terms import Term, read_by
 from fretc.analysis.arena.alphabet import BeyondError
 from fretc.analysis.arithmetic.projection import Limit, projected
 from fretc.analysis.arithmetic.projection import model as next_model
-from fretc.analysis.arithmetic.terms import Term, read_by
 
 MOST = 4_096
 """Patterns, or cells, of a group; one with more is refused."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from compiler.formalization.numbers.terms import Term
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Tick
@@ -12,7 +13,6 @@ from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.cells import Point, fixed
 from fretc.analysis.arithmetic.groups import Group
 from fretc.analysis.arithmetic.projection import Limit
-from fretc.analysis.arithmetic.terms import Term
 
 
 class NumberCourse:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import z3
 
+from compiler.formalization.numbers.terms import Term
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import BeyondError, Numbers, Tick
@@ -25,7 +26,6 @@ from fretc.analysis.arithmetic.cells import (
     reads,
 )
 from fretc.analysis.arithmetic.projection import Limit
-from fretc.analysis.arithmetic.terms import Term
 from fretish.bindings.declarations import Role
 
 

@@ -13,9 +13,9 @@ from math import ceil, floor
 
 import z3
 
+from compiler.formalization.numbers.terms import Before, Term, read_by
 from fretc.analysis.arithmetic.atoms import Atom, Atoms
 from fretc.analysis.arithmetic.steps import AtomOfTick
-from fretc.analysis.arithmetic.terms import Before, Term, read_by
 from fretc.analysis.arithmetic.thresholds import Bound, reached
 
 

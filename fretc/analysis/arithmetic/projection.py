@@ -18,9 +18,9 @@ from fractions import Fraction
 
 import z3
 
+from compiler.formalization.numbers.terms import Term
 from fretc.analysis.arena.alphabet import BeyondError
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arithmetic.terms import Term
 
 SECONDS = 10.0
 """Of a processor, for a group of comparisons."""

@@ -18,7 +18,7 @@ from typing import assert_never
 
 import z3
 
-from fretc.analysis.arithmetic.terms import Term
+from compiler.formalization.numbers.terms import Term
 from fretish.bindings.declarations import Aggregate
 
 

@@ -19,7 +19,7 @@ from itertools import product
 import z3
 from z3 import z3util
 
-from fretc.analysis.arithmetic.terms import Term, read_by
+from compiler.formalization.numbers.terms import Term, read_by
 
 _MOST = 64
 """Alternatives of one comparison; of one with more no bound is computed."""

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import z3
 
 from compiler.formalization.formalized import Formalized
+from compiler.formalization.numbers.terms import Term, read_by
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import numbers
@@ -25,7 +26,6 @@ from fretc.analysis.arena.product import arena
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arithmetic.alphabet import Cells
 from fretc.analysis.arithmetic.atoms import Atoms
-from fretc.analysis.arithmetic.terms import Term, read_by
 from fretc.analysis.games.replay import ROUNDS, kept
 from fretish.bindings.declarations import Role
 

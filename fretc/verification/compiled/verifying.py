@@ -9,6 +9,7 @@ with the monitor in Python by all that a reading has, with unknown values too.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import product
 from pathlib import Path
 from random import Random
@@ -18,8 +19,9 @@ from typing import NamedTuple
 from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import excluded
+from compiler.formalization.numbers.reals import MOST_SEARCHED, by_numbers
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
-from compiler.logic.orders import only_possible
+from compiler.logic.orders import Exclusion, only_possible
 from compiler.targets.python import monitor as python
 from fretc.verification.compiled.delays import FreeLetter, PythonDelayed
 from fretc.verification.compiled.plan import (
@@ -37,7 +39,7 @@ from fretc.verification.compiled.tools import ToolError
 from fretc.verification.engines.sandbox import Limits, Session, Stopped
 from fretc.verification.monitor import rails
 from fretc.verification.monitor.equivalence import Difference
-from fretc.verification.monitor.verifying import MOST_STATES, judged_wrongly, lock_step
+from fretc.verification.monitor.verifying import MOST_STATES, judged_wrongly, lock_step, noted
 from monitors.loading import load
 
 
@@ -216,19 +218,25 @@ def _read(rule: Formalized, machines: Machines, limit: int) -> int | Outcome:
         return not_checked(
             f"{len(names)} propositions, more than {most}, are too many for unknown values"
         )
-    letters = _letters(rule, names)
+    every = _letters(rule, names)
     monitor, states = load("reference", python.text(rule)), 0
-    for doubt in (False, True):
+
+    def compare(more: Sequence[Exclusion], *, doubt: bool) -> rails.Same | rails.Apart | None:
+        letters = only_possible(every, names, more)
         left = machines.rail(letters, doubt=doubt)
         right = PythonRail(monitor, rule, names, doubt=doubt)
-        result = rails.in_lock_step(left, right, letters, limit, NAMES)
+        most = min(limit, MOST_SEARCHED) if more else limit
+        return rails.in_lock_step(left, right, letters, most, NAMES)
+
+    for doubt in (False, True):
+        result, note = by_numbers(rule, names, rails.Apart, partial(compare, doubt=doubt))
         match result:
             case None:
                 return not_checked(f"with unknown values there are more than {limit} states")
             case rails.Apart(word, signal):
                 which = "possible" if doubt else "certain"
                 fault = f"the monitor in Python tells another {signal} in `{which}` on a trace"
-                return refuted(fault, Trace(names, word))
+                return refuted(f"{fault}{noted(note)}", Trace(names, word))
             case rails.Same(count):
                 states += count
     return states

@@ -109,18 +109,38 @@ class Terms:
 # Drawn traces -----------------------------------------------------------------------------------
 
 
+@dataclass(frozen=True, slots=True)
+class Disagreement:
+    """A trace at whose last tick both programs differ."""
+
+    word: Word
+
+
 def agreed(
-    rule: Formalized, monitor: Monitor, place: int, atoms: Sequence[str]
-) -> tuple[int, Word | None]:
-    """The ticks on which both programs agree; and a trace on which they do not."""
-    bound, never = rule.ticks or 0, excluded(rule)
+    rule: Formalized,
+    monitor: Monitor,
+    place: int,
+    atoms: Sequence[str],
+    never: Sequence[Exclusion] = (),
+) -> int | Disagreement:
+    """The ticks on which both programs agree; or a trace on which they do not.
+
+    Args:
+        rule: the requirement.
+        monitor: it has both programs.
+        place: of the requirement among those of the monitor.
+        atoms: what the requirement depends on.
+        never: what is left out beside what can never be.
+    """
+    bound, never = rule.ticks or 0, (*excluded(rule), *never)
     is_alone = len(monitor.REQUIREMENTS) == 1
     traces = _traces(monitor, bound, *((tuple(atoms), never) if is_alone or never else ((), ())))
     for columns, ticks in traces:
         tick = ticks[place]
         if tick is not None:
-            return 0, tuple(_rows({n: columns.get(n, _FALSE) for n in atoms}, tick + 1))
-    return len(traces) * _length(bound), None
+            word = tuple(_rows({n: columns.get(n, _FALSE) for n in atoms}, tick + 1))
+            return Disagreement(word)
+    return len(traces) * _length(bound)
 
 
 def _length(bound: int) -> int:

@@ -66,6 +66,8 @@ class Difference:
     actual: Judgement
     shortest: bool = True
     """Whether no shorter trace shows the difference; False where there were too many pairs."""
+    note: str = ""
+    """What is to be known of the numbers that make it."""
 
 
 def compare(

@@ -16,15 +16,18 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, excluded
+from compiler.formalization.numbers.reals import MOST_SEARCHED, by_numbers
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
+from compiler.logic.orders import Exclusion
 from compiler.targets.python import monitor as target
 from compiler.targets.python.monitor import prefixes_of
 from fretc.verification.monitor import front_terms, rails
-from fretc.verification.monitor.columns import Terms, Word, agreed
+from fretc.verification.monitor.columns import Disagreement, Terms, Word, agreed
 from fretc.verification.monitor.equivalence import (
     Difference,
     Equivalence,
@@ -139,9 +142,12 @@ def _compared(
         fault = _front_compared(rule, (generated, whole), text, monitor, atoms)
         if fault is not None:
             return fault
-    ticks, word = agreed(rule, monitor, place, needed)
-    if word is not None:
-        return _disagreement(atoms, word)
+    ticks, note = by_numbers(
+        rule, needed, Disagreement, lambda more: agreed(rule, monitor, place, needed, more)
+    )
+    if isinstance(ticks, Disagreement):
+        apart = f"its column program and its steps differ{noted(note)}"
+        return _disagreement(atoms, ticks.word, apart)
     if text == generated or (whole is not None and _is_like(whole, text)):
         return _proved(result, ticks)
     states = _compared_with_generated(
@@ -165,16 +171,24 @@ def lock_step(
 ) -> Equivalence | Difference | str:
     """The comparison with the automaton of the sentence, over all valuations of the atoms.
 
-    Where they differ, over those that can occur: a trace that no numbers make shows nothing.
+    Where they differ, over those that can occur: a trace that no numbers make shows nothing. One
+    that floats may make and real numbers do not is shown where there is no other, with a note.
     """
     sentence, ticks = rule.sentence, rule.ticks or 0
     start = machine.save()
     result = compare(machine, sentence, ticks, atoms, limit)
     impossible = excluded(rule) if isinstance(result, Difference) else ()
-    if not impossible:
-        return result
-    machine.load(start)
-    return compare(machine, sentence, ticks, atoms, limit, impossible)
+
+    def compare_without(more: Sequence[Exclusion]) -> Equivalence | Difference | str:
+        if not impossible and not more:
+            return result
+        machine.load(start)
+        most = min(limit, MOST_SEARCHED) if more else limit
+        return compare(machine, sentence, ticks, atoms, most, (*impossible, *more))
+
+    found: Equivalence | Difference | str
+    found, note = by_numbers(rule, atoms, Difference, compare_without)
+    return replace(found, note=note) if isinstance(found, Difference) else found
 
 
 def _proved(same: Equivalence, ticks: int, states: int = 0) -> Outcome:
@@ -204,9 +218,14 @@ def judged_wrongly(difference: Difference, atoms: tuple[str, ...]) -> Outcome:
     kind = "the shortest trace" if difference.shortest else "a trace"
     return refuted(
         f"{kind} that shows it has {length}; after it, {_in_words(difference.actual)}, and should "
-        f"be {_in_words(difference.expected)}",
+        f"be {_in_words(difference.expected)}{noted(difference.note)}",
         _whole(atoms, difference.word),
     )
+
+
+def noted(note: str) -> str:
+    """What is added to what is shown, where there is something to say."""
+    return f"; {note}" if note else ""
 
 
 def _in_words(judgement: Judgement) -> str:
@@ -217,7 +236,7 @@ def _in_words(judgement: Judgement) -> str:
 def _disagreement(
     atoms: Sequence[str],
     word: Word,
-    fault: str = "its column program and its steps differ",
+    fault: str,
     values: str = "",
 ) -> Outcome:
     """The signals of the monitor are wrong at the last tick of a trace.
@@ -316,12 +335,19 @@ def _compared_with_generated(
             f"{most}, are too many to compare both with unknown values"
         )
     reference = load("generated", generated)
-    comparison = rails.compared(monitor, place, reference, names[:count], limit, excluded(rule))
+    never = excluded(rule)
+
+    def compare_without(more: Sequence[Exclusion]) -> rails.Same | rails.Apart | None:
+        most = min(limit, MOST_SEARCHED) if more else limit
+        every = (*never, *more)
+        return rails.compared(monitor, place, reference, names[:count], most, every)
+
+    comparison, note = by_numbers(rule, names[:count], rails.Apart, compare_without)
     match comparison:
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")
         case rails.Apart(word, signal):
-            fault = f"the text that fretc writes tells another {signal}"
+            fault = f"the text that fretc writes tells another {signal}{noted(note)}"
             return _disagreement(names, word, fault)
         case rails.Same(states):
             terms = Terms()

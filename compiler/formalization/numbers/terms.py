@@ -14,7 +14,6 @@ import z3
 from z3 import z3util
 
 from compiler.formalization.formalized import Formalized
-from fretc.analysis.arena.alphabet import BeyondError
 from fretish import expressions as e
 from fretish import units
 from fretish.bindings import constants
@@ -24,6 +23,10 @@ from fretish.reading.recursion import deep
 
 Term = Any
 """A number or a truth value of z3, which has no types."""
+
+
+class NoTermError(Exception):
+    """What is said of numbers has no formula here; the message says why, in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +41,15 @@ class Before:
 class Terms:
     """The variables of some rules, and what is said of them."""
 
-    def __init__(self, rules: Sequence[Formalized]) -> None:
+    def __init__(self, rules: Sequence[Formalized], *, is_linear: bool = True) -> None:
+        """No variable is known yet.
+
+        Args:
+            rules: whose comparisons are read.
+            is_linear: whether products of variables are refused, and signals without a unit that
+                meet one; else such a signal has a variable of its own in base units.
+        """
+        self._is_linear = is_linear
         self._signals = {
             name: signal
             for rule in rules
@@ -61,7 +72,7 @@ class Terms:
             known: when all variables of a comparison are known.
 
         Raises:
-            BeyondError: it is not linear, or no comparison of numbers.
+            NoTermError: it is not linear, or no comparison of numbers.
         """
         return self._holds(part, value, known, is_base=self._meets_units(part))
 
@@ -133,7 +144,7 @@ class Terms:
                 compared = e.COMPARE[op](a, b)
                 return z3.And(compared if value else z3.Not(compared), known(compared))
             case _:
-                raise BeyondError("is no comparison of numbers")
+                raise NoTermError("is no comparison of numbers")
 
     # Numbers
 
@@ -152,19 +163,19 @@ class Terms:
             case e.Negation(arg):
                 return -read(arg)
             case e.Arithmetic(op, left, right):
-                return _computed(op, read(left), read(right))
+                return _computed(op, read(left), read(right), is_linear=self._is_linear)
             case e.Call("preInt" | "preReal", (first, e.Name(id))) if not is_base:
                 return self._before(printed(part), read(first), id)
             case e.Call(name, args):
                 return _called(name, [read(each) for each in args])
             case _:
-                raise BeyondError("is no comparison of numbers")
+                raise NoTermError("is no comparison of numbers")
 
     def _before(self, name: str, first: Term, of: str) -> Term:
         """The number of the tick before, as a variable of its own."""
         now = self._variable(of, is_base=False)
         if now.is_int() and first.is_real():
-            raise BeyondError("begins with what is no whole number")
+            raise NoTermError("begins with what is no whole number")
         first = z3.ToReal(first) if now.is_real() and first.is_int() else first
         made = z3.Int(name) if now.is_int() else z3.Real(name)
         self.before[name] = Before(of, first)
@@ -174,15 +185,18 @@ class Terms:
         signal, known = self._signals.get(name), self._kind(name)
         is_word = signal is not None and bool(signal.values)
         if known is Kind.TRUTH:
-            raise BeyondError("compares a truth value with a number")
+            raise NoTermError("compares a truth value with a number")
         whole = is_word or known in (Kind.WHOLE, Kind.NATURAL) or self._range(name) is not None
         made = z3.Int(name) if whole else z3.Real(name)
         variable = self.variables.setdefault(name, made)
         if not is_base or is_word:
             return variable
         scale = self._scale(name)
+        if scale is None and not self._is_linear:
+            base = f"{name} in base units"
+            return self.variables.setdefault(base, z3.Real(base))
         if scale is None:
-            raise BeyondError(f"needs the unit of `{name}`, which has none")
+            raise NoTermError(f"needs the unit of `{name}`, which has none")
         return variable if scale == 1 else _exact(scale) * variable
 
 
@@ -212,22 +226,22 @@ def _constant(part: e.Expression) -> Term:
     except ValueError:
         value = None
     if value is None:
-        raise BeyondError("computes with a number that there is not, or that is too long")
+        raise NoTermError("computes with a number that there is not, or that is too long")
     return _exact(value)
 
 
-def _computed(op: e.ArithmeticOperator, left: Term, right: Term) -> Term:
+def _computed(op: e.ArithmeticOperator, left: Term, right: Term, *, is_linear: bool) -> Term:
     match op:
         case "+":
             return left + right
         case "-":
             return left - right
-        case "*" if _is_number(left) or _is_number(right):
+        case "*" if not is_linear or _is_number(left) or _is_number(right):
             return left * right
         case "/" if _is_number(right) and not z3.simplify(right == 0).eq(z3.BoolVal(True)):
             return (z3.ToReal(left) if left.is_int() else left) / right
         case _:
-            raise BeyondError("is not linear")
+            raise NoTermError("is not linear")
 
 
 def _is_number(term: Term) -> bool:
@@ -244,4 +258,4 @@ def _called(name: str, args: Sequence[Term]) -> Term:
         case (("max" | "maxreal" | "maxint"), [left, right]):
             return z3.If(left >= right, left, right)
         case _:
-            raise BeyondError(f"calls `{name}`")
+            raise NoTermError(f"calls `{name}`")

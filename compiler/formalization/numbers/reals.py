@@ -1,0 +1,193 @@
+"""Whether real numbers make the comparisons of a sentence true and false as a valuation has them.
+
+It is decided exactly, of whole numbers where a signal has no others. Monitors compute in floats,
+where rounding makes `x + 1 > x` false of a large x. So what is impossible here chooses among
+the traces that people see, and no proof rests on it: `compiler.logic.orders` says on what they do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Protocol, TypeVar
+
+import z3
+
+from compiler.formalization.formalized import Formalized
+from compiler.formalization.letters import comparisons, exclusion_in_words
+from compiler.formalization.numbers.terms import NoTermError, Term, Terms
+from compiler.logic.orders import Exclusion
+from fretish import expressions as e
+
+MOST_STEPS = 300_000
+"""Of z3 for one question, in its own measure: the same answer on every machine."""
+MOST_QUESTIONS = 400
+"""About one sentence."""
+MOST_ROUNDS = 10
+"""Of the search for a trace that numbers make."""
+MOST_SEARCHED = 10_000
+"""States in each of them: what is refuted must not become undecided by the time that this takes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Possible:
+    """These numbers make it so, of the signals in their units."""
+
+    numbers: Mapping[str, Fraction]
+    """Without those that are no fractions, such as a root."""
+
+
+@dataclass(frozen=True, slots=True)
+class Impossible:
+    """No real numbers make it so."""
+
+    exclusion: Exclusion
+    """What of it they do not: nothing of that can be spared."""
+
+
+@dataclass(frozen=True, slots=True)
+class Undecided:
+    """It is not known."""
+
+
+Answer = Possible | Impossible | Undecided
+
+
+class Reals:
+    """The comparisons of a rule, to be asked about."""
+
+    def __init__(self, rule: Formalized) -> None:
+        """Nothing is asked yet."""
+        compared = comparisons(rule)
+        terms = Terms([rule], is_linear=False)
+        self._solver = z3.Solver()
+        self._solver.set("rlimit", MOST_STEPS)
+        self._flags: dict[str, Term] = {}
+        read, beyond = {}, set()
+        for name, part in compared.items():
+            try:
+                read[name] = terms.holds(part, True, lambda _: z3.BoolVal(True))
+            except NoTermError:
+                beyond.add(name)
+        for place, (name, formula) in enumerate(read.items()):
+            self._flags[name] = z3.Bool(f"comparison {place}")
+            self._solver.add(self._flags[name] == formula)
+        self._solver.add([terms.domain(name) for name in terms.variables])
+        self._variables = dict(terms.variables)
+        self._unread = frozenset(name for name in beyond if _meets_others(name, compared))
+        self._excluded: list[Exclusion] = []
+        self._left = MOST_QUESTIONS
+
+    def answer(self, valuation: Mapping[str, bool | None]) -> Answer:
+        """Whether numbers make it so; atoms that compare no numbers are free."""
+        for each in self._excluded:
+            if all(valuation.get(name) is value for name, value in each):
+                return Impossible(each)
+        literals = tuple(
+            (name, value) for name in self._flags if (value := valuation.get(name)) is not None
+        )
+        found = self._ask(literals)
+        if found == z3.unsat:
+            return self._impossible(literals)
+        if found == z3.unknown or any(valuation.get(name) is not None for name in self._unread):
+            return Undecided()
+        return Possible(dict(self._numbers()))
+
+    def _impossible(self, literals: Exclusion) -> Impossible:
+        """Without literals that can be spared."""
+        core = {str(each) for each in self._solver.unsat_core()}
+        needed = tuple(each for each in literals if str(self._literal(each)) in core)
+        for literal in needed:
+            less = tuple(each for each in needed if each != literal)
+            if self._ask(less) == z3.unsat:
+                needed = less
+        self._excluded.append(needed)
+        return Impossible(needed)
+
+    def _ask(self, literals: Exclusion) -> Term:
+        if self._left <= 0:
+            return z3.unknown
+        self._left -= 1
+        return self._solver.check([self._literal(each) for each in literals])
+
+    def _literal(self, literal: tuple[str, bool]) -> Term:
+        name, value = literal
+        return self._flags[name] if value else z3.Not(self._flags[name])
+
+    def _numbers(self) -> Iterator[tuple[str, Fraction]]:
+        model = self._solver.model()
+        for name, variable in self._variables.items():
+            value = model.eval(variable, model_completion=True)
+            if z3.is_int_value(value) or z3.is_rational_value(value):
+                yield name, Fraction(str(value))
+
+
+def _meets_others(name: str, compared: Mapping[str, e.Comparison]) -> bool:
+    """Whether another comparison reads what this one does; else it is free, as far as is known."""
+    own = {each.id for each in e.names(compared[name])}
+    return any(
+        not own.isdisjoint(each.id for each in e.names(part))
+        for other, part in compared.items()
+        if other != name
+    )
+
+
+# Counterexamples --------------------------------------------------------------------------------
+
+
+class Counterexample(Protocol):
+    """A trace that shows a fault."""
+
+    @property
+    def word(self) -> Sequence[Sequence[bool | None]]:
+        """The values of atoms at each tick."""
+
+
+Found = TypeVar("Found", bound=Counterexample)
+Other = TypeVar("Other")
+
+NOT_DECIDED = "whether numbers make these comparisons true and false so was not decided"
+
+
+def only_rounded(exclusion: Exclusion) -> str:
+    """What is to be known of a trace that no numbers make, computed exactly."""
+    made = exclusion_in_words(exclusion)
+    return f"computed exactly, no numbers make {made}; floats that round may"
+
+
+def by_numbers(
+    rule: Formalized,
+    atoms: Sequence[str],
+    kind: type[Found],
+    compare: Callable[[Sequence[Exclusion]], Found | Other],
+) -> tuple[Found | Other, str]:
+    """What a comparison finds: a counterexample that real numbers make, where it finds one.
+
+    Args:
+        rule: whose comparisons its atoms are.
+        atoms: the order of the values of a tick.
+        kind: of counterexamples.
+        compare: searches for one without valuations that have any of these, where there are any
+            among at most `MOST_SEARCHED` states.
+
+    Returns:
+        What it finds when nothing is left out, or another counterexample; and what is to be said
+        of its numbers. Whatever is left out, a counterexample becomes no proof.
+    """
+    first = compare(())
+    if not isinstance(first, kind) or not comparisons(rule):
+        return first, ""
+    reals, excluded, shown = Reals(rule), list[Exclusion](), first
+    for _ in range(MOST_ROUNDS):
+        word: Sequence[Sequence[bool | None]] = shown.word
+        answers = [reals.answer(dict(zip(atoms, row, strict=False))) for row in word]
+        new = [each.exclusion for each in answers if isinstance(each, Impossible)]
+        if not new:
+            return shown, NOT_DECIDED if Undecided() in answers else ""
+        excluded += dict.fromkeys(new)
+        other = compare(excluded)
+        if not isinstance(other, kind):
+            break
+        shown = other
+    return first, f"no other trace was found that shows it, and {only_rounded(excluded[0])}"
