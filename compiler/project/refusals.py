@@ -72,10 +72,15 @@ def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
     tables = project.declarations.mistakes.values() if project.declarations else ()
     of_formulas = {why for each in project.refused for why in each.why} - of_headers
     of_formulas.update(why for mistakes in tables for why in mistakes)
-    others = [d for d in project.diagnostics if d.is_error and d not in of_formulas]
+    others = {
+        mistake: [each for each in project.requirements if _is_in(mistake, each)]
+        for mistake in project.diagnostics
+        if mistake.is_error and mistake not in of_formulas
+    }
     for requirement in project.requirements if others else ():
         way = _Way.of(requirement, project)
-        found.setdefault(id(requirement), []).extend(each for each in others if way.reads(each))
+        reasons = [mistake for mistake, owners in others.items() if way.reads(mistake, owners)]
+        found.setdefault(id(requirement), []).extend(reasons)
     return {key: tuple(dict.fromkeys(why)) for key, why in found.items() if why}
 
 
@@ -86,11 +91,13 @@ _OF_SETTINGS = (Code.BAD_SETTINGS, Code.BAD_ACCEPTANCE)
 class _Way:
     """The way from a requirement up to what it is there for."""
 
-    project: Project
     above: Sequence[Requirement]
     """It, and the requirements above it."""
-    ends: frozenset[str]
-    """Ids of parents that are no requirements."""
+    leaves: bool
+    """Whether it leads to a parent that is no requirement."""
+    is_lost: bool
+    """Whether it leads to one that nothing declares: perhaps a requirement whose header cannot be
+    read."""
 
     @classmethod
     def of(cls, requirement: Requirement, project: Project) -> _Way:
@@ -102,19 +109,20 @@ class _Way:
                     ends.add(parent)
                 elif by_id[parent] not in above:
                     above.append(by_id[parent])
-        return cls(project, above, frozenset(ends))
+        lost = ends - project.hazards.keys() - project.parents.keys()
+        return cls(above, bool(ends), bool(lost))
 
-    def reads(self, mistake: Diagnostic) -> bool:
-        """Whether the mistake is on the way, or in the settings of all.
+    def reads(self, mistake: Diagnostic, owners: Sequence[Requirement]) -> bool:
+        """Whether a mistake is on the way, or in the settings of all.
 
-        A parent that nothing declares may be a requirement whose header cannot be read.
+        Args:
+            mistake: an error.
+            owners: the requirements that it is in.
         """
-        owners = [each for each in self.project.requirements if _is_in(mistake, each)]
         if not owners:
-            return bool(self.ends) or mistake.code in _OF_SETTINGS
-        undeclared = self.ends - {*self.project.hazards} - {*self.project.parents}
-        lost = undeclared and any(mistake in each.mistakes for each in owners)
-        return bool(lost) or any(each in self.above for each in owners)
+            return self.leaves or mistake.code in _OF_SETTINGS
+        of_header = any(mistake in each.mistakes for each in owners)
+        return (self.is_lost and of_header) or any(each in self.above for each in owners)
 
 
 def _is_in(mistake: Diagnostic, requirement: Requirement) -> bool:

@@ -36,7 +36,7 @@ def lines(
         left_out: ids of requirements that nothing is known of, because of mistakes.
     """
     sign = SIGNS[analysis.verdict]
-    yield f"{sign.glyph} {_headline(analysis)}", sign.colour
+    yield f"{sign.glyph} {_headline(analysis, 'other ' if left_out else '')}", sign.colour
     if left_out:
         yield f"{signs.UNKNOWN.glyph} without {listed(left_out)}: see the mistakes", _UNKNOWN
     for component in analysis.components:
@@ -58,7 +58,7 @@ def lines(
     yield from _rest(analysis)
 
 
-def _headline(analysis: Analysis) -> str:
+def _headline(analysis: Analysis, which: str) -> str:
     count = len(analysis.components)
     bad = sum(each.verdict is Verdict.UNREALIZABLE for each in analysis.components)
     match analysis.verdict:
@@ -66,9 +66,9 @@ def _headline(analysis: Analysis) -> str:
             how = (
                 "while the assumptions hold" if analysis.assumptions else "whatever the inputs are"
             )
-            return f"realizable: a system can keep all requirements, {how}"
+            return f"realizable: a system can keep all {which}requirements, {how}"
         case Verdict.UNREALIZABLE if count == 1:
-            return "unrealizable: no system can keep all requirements"
+            return f"unrealizable: no system can keep all {which}requirements"
         case Verdict.UNREALIZABLE:
             return f"unrealizable: {bad} of {count} components cannot be kept"
         case Verdict.NOT_CHECKED:

@@ -37,7 +37,7 @@ def read_project(
         hazards: None: the `hazards.toml` in the folder, if there is one.
 
     Raises:
-        Refusal: there is no requirement, or a file cannot be read as a whole.
+        Refusal: there is no requirement, or no part of the bindings or the hazards can be used.
     """
     project = accepted(whole(os.fspath(requirements), _path(bindings), _path(hazards)))
     if has_errors(project.general):

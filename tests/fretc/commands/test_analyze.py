@@ -10,7 +10,7 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from fretc.analysis import findings
-from tests.command import Fretc
+from tests.command import Fretc, write
 
 FIGHT = (
     "whenever start the line shall within 2 ticks satisfy run",
@@ -332,3 +332,19 @@ def test_the_mission_cannot_be_kept_without_scans(fretc: Fretc, tmp_path: Path) 
     assert begun <= 200
     assert len(play) == begun + 51
     assert [n for n, tick in enumerate(play) if tick["moving"]] in ([], [len(play) - 1])
+
+
+def test_an_answer_says_without_which_requirements_it_is(fretc: Fretc) -> None:
+    """That others can be kept is no claim about all; a component is named in the other's file."""
+    write("requirements/a.fret", "the alpha shall always satisfy p")
+    write("requirements/b.fret", "the beta shall allways satisfy q")
+    for words in (("analyze",), ("analyze", "--component", "alpha")):
+        run = fretc(*words)
+        assert run.status == 2
+        assert run.out.startswith("✔ realizable: a system can keep all other requirements, ")
+        assert run.out.splitlines()[1] == "? without b: see the mistakes"
+        assert run.err.startswith("F107 ")
+        assert (
+            "left out because of mistakes: 1 of 2 requirements\n  F107 requirements/b." in run.err
+        )
+        assert json.loads(Path("build/analysis.json").read_text())["requirements"].keys() == {"a"}
