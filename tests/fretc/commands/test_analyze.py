@@ -336,6 +336,7 @@ def test_the_mission_cannot_be_kept_without_scans(fretc: Fretc, tmp_path: Path) 
 
 def test_an_answer_says_without_which_requirements_it_is(fretc: Fretc) -> None:
     """That others can be kept is no claim about all; a component is named in the other's file."""
+    write("requirements/bindings.toml", '[variable.p]\nrole = "output"\n')
     write("requirements/a.fret", "the alpha shall always satisfy p")
     write("requirements/b.fret", "the beta shall allways satisfy q")
     for words in (("analyze",), ("analyze", "--component", "alpha")):
