@@ -24,6 +24,8 @@ MOST_STEPS = 300_000
 """Of z3 for one question, in its own measure: the same answer on every machine."""
 MOST_QUESTIONS = 400
 """About one sentence."""
+_UNANSWERED = 20
+"""As so many questions counts one that took all of its steps."""
 MOST_ROUNDS = 10
 """Of the search for a trace that numbers make."""
 MOST_SEARCHED = 10_000
@@ -108,8 +110,9 @@ class Reals:
     def _ask(self, literals: Exclusion) -> Term:
         if self._left <= 0:
             return z3.unknown
-        self._left -= 1
-        return self._solver.check([self._literal(each) for each in literals])
+        found = self._solver.check([self._literal(each) for each in literals])
+        self._left -= _UNANSWERED if found == z3.unknown else 1
+        return found
 
     def _literal(self, literal: tuple[str, bool]) -> Term:
         name, value = literal
