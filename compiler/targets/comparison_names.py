@@ -17,8 +17,10 @@ from compiler.logic.printing import identifier, is_compound
 from fretish import expressions as e
 from fretish.bindings.comparisons import bound, is_measured
 from fretish.printer import expression
+from fretish.reading.recursion import deep
 
 
+@deep
 def comparison_names(rule: Formalized) -> Mapping[str, str]:
     """The name of each atom of a rule that is a comparison or a call."""
     atoms = dict.fromkeys((*rule.propositions, *atoms_of(rule.sentence)))
@@ -26,6 +28,7 @@ def comparison_names(rule: Formalized) -> Mapping[str, str]:
     return legal_names(filter(is_compound, atoms), others)
 
 
+@deep
 def in_words(rule: Formalized) -> Mapping[str, str]:
     """What each of these atoms means, in the units of its signals: `battery < 20 %`."""
     parts = dict(candidates(rule.sentence))
