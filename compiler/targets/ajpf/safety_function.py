@@ -96,7 +96,7 @@ def sif(rule: Formalized, guarded: bool = True) -> Sif | Diagnostic:
     released = len(terms) == len(terms[0]) == len(responses) == len(believed) == 1
     answer = tuple(deed for name in responses for deed in _answer(rule, name))
     spoilt = tuple(Action(_action(rule, name)) for name in believed)
-    spelt = names.spelt(rule)
+    spelt = _spelt(rule)
     terms = tuple(tuple((spelt[name], value) for name, value in term) for term in terms)
     last = Guard(False, spelt[believed[-1]]) if believed and not released else None
     plans, mutant = (
@@ -180,11 +180,17 @@ def _wrong_name(
             mend = 'an agent brings about a belief ("B") or does an action ("D")'
             return not_expressible(_TARGET, rule, f"the response `{name}`, neither,", mend)
         done = _modality(rule, name) is Modality.DONE
-        action = names.spelt(rule)[name] if done else _action(rule, name)
+        action = _spelt(rule)[name] if done else _action(rule, name)
         if action in AJPF_ACTIONS:
             mend = "MCAPL has an action or a word of that name: use another"
             return not_expressible(_TARGET, rule, f"the action `{action}`", mend)
     return None
+
+
+def _spelt(rule: Formalized) -> Mapping[str, str]:
+    """The names in the texts, also by names as the syntax tree has them: without quotes."""
+    spelt = names.spelt(rule)
+    return {**spelt, **{atom[1:-1]: spelt[atom] for atom in spelt if atom.startswith('"')}}
 
 
 def _modality(rule: Formalized, name: str) -> Modality:
@@ -199,14 +205,14 @@ def _is_belief(rule: Formalized, *names: str) -> bool:
 def _answer(rule: Formalized, name: str) -> tuple[Deed, ...]:
     """An action and the belief that it was done; only the action where that is the response."""
     if not _is_belief(rule, name):
-        return (Action(names.spelt(rule)[name]),)
-    return Action(_action(rule, name)), Change("+", names.spelt(rule)[name])
+        return (Action(_spelt(rule)[name]),)
+    return Action(_action(rule, name)), Change("+", _spelt(rule)[name])
 
 
 def _action(rule: Formalized, name: str) -> str:
     """What the agent does to make it true, as the bindings call it."""
     declared = rule.glossary.get(name)
-    return (declared.action if declared else "") or f"do_{names.spelt(rule)[name]}"
+    return (declared.action if declared else "") or f"do_{_spelt(rule)[name]}"
 
 
 def _reactions(

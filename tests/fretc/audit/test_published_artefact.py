@@ -173,7 +173,14 @@ def test_audit_finds_the_blind_sensor_and_the_stop_that_is_never_released(robot:
 def test_verify_finds_that_no_agent_believes_an_action(robot: Fretc) -> None:
     files = ("--agent", "agent.gwen", "--properties", "agent.psl")
     run = robot(
-        "verify", "requirements/r2.fret", "--layer", "agent", *files, "--percept", "too_close"
+        "verify",
+        "requirements/r2.fret",
+        "--layer",
+        "agent",
+        *files,
+        "--percept",
+        "too_close",
+        "--all",
     )
     assert run.status == 3
     lines = run.out.splitlines()

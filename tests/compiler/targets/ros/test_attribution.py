@@ -72,7 +72,7 @@ def test_what_is_missing_is_asked_for_once(fretc: Fretc, missing: str | None) ->
     assert run.err.count("F634") == 1
     names = missing or ", ".join(FIELDS)
     assert f"what `[project]` of fretc.toml does not say: {names}\n" in run.err
-    assert run.err.rstrip().endswith(EXAMPLE.rstrip())
+    assert f"\n\n{EXAMPLE}" in run.err
     assert not Path("build").exists()
 
 
