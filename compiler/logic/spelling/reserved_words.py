@@ -86,10 +86,13 @@ DAFNY = _words(
     opaque opened ORDINAL original predicate print protected provides reads real refines
     referrers replaceable requires return returns reveal reveals seq set static string then this
     trait true twostate type unchanged var where while witness yield yields
+    Floor IsLimit IsNat IsSucc Items Keys Length Offset Values
     """,
-    r"(?:array|bv)\d+",
+    r"(?:array|bv|Length)\d+",
 )
-"""Dafny Reference Manual, 2.6.2 (reserved words), of versions 2.3 and 4; and names of types."""
+"""Dafny Reference Manual, 2.6.2 (reserved words), of versions 2.3 and 4; names of types, and of
+their members: Dafny 2.3 ends in an exception where a field has one of those.
+"""
 
 C = _words(
     """
