@@ -11,6 +11,8 @@ from fretc.analysis.arena.alphabet import Value
 from monitors.kernel.verdicts import Verdict
 
 SCHEMA: Final = "fretc-tests-1"
+LONGEST_NAME: Final = 100
+"""Characters of the name of a test, which also names its files."""
 Ids = tuple[Name, ...]
 
 
@@ -150,9 +152,10 @@ class Suite(Record, frozen=True):
 
 
 def unused(name: str, names: set[str]) -> str:
-    """The name, with a number where it is taken; it is taken then."""
-    others = (f"{name}-{number}" for number in count(2))
-    found = next(each for each in chain([name], others) if each not in names)
+    """The name, shortened to `LONGEST_NAME`, with a number where it is taken; it is taken then."""
+    ends = chain([""], (f"-{number}" for number in count(2)))
+    candidates = (name[: LONGEST_NAME - len(end)].rstrip("-") + end for end in ends)
+    found = next(each for each in candidates if each not in names)
     names.add(found)
     return found
 

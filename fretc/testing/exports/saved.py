@@ -17,7 +17,7 @@ from compiler.formalization.formalized import Formalized
 from compiler.targets.python import monitor as emitted
 from compiler.targets.python.comparisons import NUMBER, TRUTH, Input, front
 from fretc.testing.exports.tables import Table, table, truths
-from fretc.testing.suite import Suite, Test
+from fretc.testing.suite import LONGEST_NAME, Suite, Test
 from fretc.testing.words import outcome
 from monitors.kernel import Monitor
 from monitors.loading import load
@@ -25,7 +25,6 @@ from monitors.loading import load
 MOST = 1_000_000
 """Ticks of all tests of a file."""
 _NAME = re.compile(r"[a-z0-9]+(?:[-_][a-z0-9]+)*", re.ASCII)
-_LONGEST = 100
 
 
 class WrongError(Exception):
@@ -58,8 +57,11 @@ def saved(suite: Suite, rules: Sequence[Formalized]) -> Saved:
         raise WrongError(f"its tests have more than {MOST} ticks")
     names = Counter(test.name for test in tests)
     for test in tests:
-        if not _NAME.fullmatch(test.name) or len(test.name) > _LONGEST:
-            raise WrongError(f"`{test.name}` cannot name a test: small letters, digits and `-` can")
+        if not _NAME.fullmatch(test.name) or len(test.name) > LONGEST_NAME:
+            raise WrongError(
+                f"`{test.name}` cannot name a test: at most {LONGEST_NAME} small letters, digits "
+                "and `-` can"
+            )
         if names[test.name] > 1:
             raise WrongError(f"the name `{test.name}` comes twice")
     for id in same:

@@ -39,6 +39,21 @@ def test_what_was_made_is_taken_as_it_is(made: Made) -> None:
     assert {test.requirement for test in found.suite.tests} == {"R1", "R2"}
 
 
+@pytest.mark.parametrize("length", [1, 40, 99, 100, 101, 150])
+def test_what_was_made_is_taken_however_long_its_names_are(length: int) -> None:
+    rules = (
+        rule(f"the robot shall always satisfy {'n' * length} => s_{'m' * length}", "R1"),
+        rule("the robot shall always satisfy s => q", f"R{'2' * length}"),
+        rule("the robot shall always satisfy q => s", f"R{'2' * length}3"),
+    )
+    written = suite(rules, (), [batch(each, (), 60.0) for each in rules])
+    found = saved(decoded(plain(written), Suite), rules)
+    assert found.suite == written
+    names = {test.name for test in written.tests}
+    assert len(names) == len(written.tests)
+    assert names.issuperset(name for each in written.obligations for name in each.tests)
+
+
 def test_what_is_about_another_sentence_is_left_out(made: Made) -> None:
     changed = (rule(WITHIN.replace("2", "3"), "R1"), made.rules[1])
     found = saved(decoded(made.document, Suite), changed)
