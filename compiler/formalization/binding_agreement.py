@@ -228,11 +228,12 @@ def way_out(rule: Formalized, name: str, declarations: Declarations) -> str:
 
     Signals for a comparison; a comparison for the word of a signal; else a proposition.
     """
+    file = declarations.source.name
     missing = missing_signals(rule, name, declarations.signals)
     if missing:
         tables = " and ".join(f"`[signal.{as_key(each)}]`" for each in missing)
-        return f"add {tables} there; `fretc bind --from LOG` drafts signals"
-    bind = f"add `[proposition.{as_key(name)}]` there"
+        return f"add {tables} with its `path` to {file}; `fretc bind --from LOG` drafts signals"
+    bind = f"add `[proposition.{as_key(name)}]` with its `expr` to {file}"
     signal = next((s.name for s in declarations.signals.values() if name in s.values), None)
     if signal is None:
         return bind

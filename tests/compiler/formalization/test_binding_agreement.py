@@ -202,7 +202,7 @@ def test_a_word_in_the_place_of_a_mode_is_told_where_it_belongs() -> None:
     assert missing.message == "`docking` of r has no binding in bindings.toml"
     assert missing.help == (
         "`docking` is a word of `state`: write `state = docking` (as a scope `while state = "
-        "docking`), or add `[proposition.docking]` there"
+        "docking`), or add `[proposition.docking]` with its `expr` to bindings.toml"
     )
 
 

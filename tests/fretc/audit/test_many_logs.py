@@ -177,7 +177,7 @@ def test_a_proposition_without_a_binding_is_told_at_the_sentence(fretc: Fretc) -
         "  --> requirements/r1.fret:12:58\n"
         "   | whenever too_close agilex_agent shall eventually satisfy halted\n"
         "   |                                                          ^^^^^^\n"
-        "help: add `[proposition.halted]` there\n",
+        "help: add `[proposition.halted]` with its `expr` to requirements/bindings.toml\n",
     )
 
 

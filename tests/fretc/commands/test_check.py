@@ -332,6 +332,9 @@ def test_a_comparison_of_what_is_no_signal_is_shown_itself_with_the_signal(good:
     assert run.status == 2
     assert "F304 `(range < 3)` of R1 has no binding in requirements/bindings.toml\n" in run.err
     assert run.err.splitlines()[3].count("^") == len("range < 3")
-    assert "help: add `[signal.range]` there; `fretc bind --from LOG` drafts" in run.err
+    assert (
+        "help: add `[signal.range]` with its `path` to requirements/bindings.toml; "
+        "`fretc bind --from LOG` drafts signals\n"
+    ) in run.err
     edited("r1.fret", "range < 3", "range mod 2 < 3")
-    assert 'add `[proposition."((range mod 2) < 3)"]` there\n' in good("check").err
+    assert 'add `[proposition."((range mod 2) < 3)"]` with its `expr` to ' in good("check").err

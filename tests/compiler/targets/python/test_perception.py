@@ -256,4 +256,7 @@ def test_the_way_out_of_a_comparison_is_a_signal() -> None:
     subject = rules(Setting().bindings, ["the r shall always satisfy (level + 1 > 2)"])[0]
     refusal = perception.refuse(subject)
     assert refusal is not None
-    assert refusal.help == "add `[signal.level]` there; `fretc bind --from LOG` drafts signals"
+    assert refusal.help == (
+        "add `[signal.level]` with its `path` to bindings.toml; "
+        "`fretc bind --from LOG` drafts signals"
+    )
