@@ -81,7 +81,7 @@ def not_text(path: str, at: int) -> Diagnostic:
         Code.NOT_TEXT,
         f"`{path}` is not UTF-8 text: byte {at} does not fit",
         Source(path, "").span(),
-        help="requirements and bindings are plain text in UTF-8",
+        help="name a text file, in UTF-8",
     )
 
 
@@ -95,7 +95,7 @@ def unreadable(path: str, error: OSError) -> Diagnostic:
             Code.IS_A_DIRECTORY,
             f"`{path}` is a directory",
             span,
-            help=f"name the files in it: `{path.rstrip('/')}/*`",
+            help="name a file",
         )
     return Diagnostic(
         Code.UNREADABLE,

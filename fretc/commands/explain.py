@@ -143,7 +143,7 @@ def _rules(what: str, folder: str, bindings: str | None, *, is_file: bool) -> li
 
     paths = listed([what]) if is_file else requirement_files(folder)
     if isinstance(paths, Diagnostic):
-        stop(paths)
+        stop(_unknown_code(what) or paths)
     project = load(paths, bindings)
     ids = [requirement.id for requirement in project.requirements]
     matches = ids if is_file else [id for id in ids if id.casefold() == what.casefold()]
@@ -187,6 +187,18 @@ def _nearest(project: Project, diagnostic: Diagnostic) -> Requirement | None:
     return None
 
 
+def _unknown_code(what: str) -> Diagnostic | None:
+    """F515 for a word that looks like a code and is none."""
+    if not re.fullmatch(r"[Ff]\d+", what):
+        return None
+    area = [code.number for code in Code if code.number[1] == what[1]]
+    return Diagnostic(
+        Code.NO_SUCH_REQUIREMENT,
+        f"no diagnostic has the code `{what.upper()}`, and no requirement that id",
+        help=f"there are {', '.join(sorted(area))}" if area else "codes begin with F1 to F9",
+    )
+
+
 def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Diagnostic:
     """F515; a word that looks like a code is taken for one."""
     if is_file:
@@ -195,13 +207,8 @@ def _unknown(what: str, ids: Sequence[str], folder: str, *, is_file: bool) -> Di
             f"`{what}` holds no requirement",
             help="write one: `whenever p the robot shall within 3 ticks satisfy q`",
         )
-    if re.fullmatch(r"[Ff]\d+", what):
-        area = [code.number for code in Code if code.number[1] == what[1]]
-        return Diagnostic(
-            Code.NO_SUCH_REQUIREMENT,
-            f"no diagnostic has the code `{what.upper()}`, and no requirement that id",
-            help=f"there are {', '.join(sorted(area))}" if area else "codes begin with F1 to F9",
-        )
+    if (unknown_code := _unknown_code(what)) is not None:
+        return unknown_code
     if any(character.isspace() for character in what):
         return Diagnostic(
             Code.NO_SUCH_REQUIREMENT,

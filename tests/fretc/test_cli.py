@@ -280,8 +280,25 @@ def test_a_file_that_is_not_text_is_refused(fretc: Fretc) -> None:
         2,
         "",
         "F904 `r1.fret` is not UTF-8 text: byte 7 does not fit\n  --> r1.fret\n"
-        "help: requirements and bindings are plain text in UTF-8\n",
+        "help: name a text file, in UTF-8\n",
     )
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("check", "--bindings"),
+        ("check", "--hazards"),
+        ("test", "--suite"),
+        ("import",),
+    ],
+)
+def test_a_folder_in_place_of_a_file_is_refused(fretc: Fretc, command: tuple[str, ...]) -> None:
+    write("requirements/r1.fret", R1)
+    Path("folder").mkdir()
+    run = fretc(*command, "folder")
+    assert run.status == 2
+    assert "F902 `folder` is a directory\n  --> folder\nhelp: name a file\n" in run.err
 
 
 def test_a_bad_header_points_at_its_place(fretc: Fretc) -> None:

@@ -62,7 +62,9 @@ class Log:
                 yield Opened(self.name)
                 yield from self._read(stream, place)
         except FileNotFoundError:
-            yield Problem(_no_such_file(place))
+            yield Problem(storage_diagnostics.no_such_file(place))
+        except IsADirectoryError:
+            yield Problem(storage_diagnostics.is_a_directory(place))
         except OSError as error:
             yield Problem(storage_diagnostics.unreadable(error, place))
 
@@ -198,10 +200,6 @@ def _message_of(length: int) -> Callable[..., Message]:
 
 def _log_time(arrival: Arrival) -> int:
     return arrival.log_time
-
-
-def _no_such_file(place: Span) -> Diagnostic:
-    return Diagnostic(Code.NO_SUCH_FILE, "there is no such log", place)
 
 
 def _broken(at: int, why: str, place: Span) -> Diagnostic:

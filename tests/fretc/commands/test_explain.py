@@ -244,6 +244,12 @@ def test_a_folder_that_is_not_there(fretc: Fretc) -> None:
     assert run.err.startswith("F901 ")
 
 
+def test_a_code_that_is_none_needs_no_project(fretc: Fretc) -> None:
+    run = fretc("explain", "F699")
+    assert run.status == 2
+    assert run.err.startswith("F515 no diagnostic has the code `F699`, ")
+
+
 def test_a_code_is_explained(fretc: Fretc) -> None:
     run = fretc("explain", "f104")
     assert (run.status, run.err) == (0, "")

@@ -143,6 +143,18 @@ def test_a_log_that_breaks_off_satisfies_nothing(fretc: Fretc) -> None:
     assert run.out.splitlines()[-1].endswith("R1 no data")
 
 
+@pytest.mark.parametrize(("log", "code"), [("nowhere.mcap", "F901"), ("folder", "F902")])
+def test_what_is_no_file_is_refused_as_an_audit_refuses_it(
+    fretc: Fretc, log: str, code: str
+) -> None:
+    recorded("run.mcap")
+    Path("folder").mkdir()
+    run = fretc("watch", log)
+    assert run.status == 2
+    assert f"{code} " in run.err
+    assert "\nhelp: " in run.err
+
+
 def test_a_log_that_is_being_recorded_is_followed_to_its_end(fretc: Fretc) -> None:
     """It comes in pieces of some bytes: each record is there in part before it is whole."""
     data = Path(recorded("whole.mcap", stops=False)).read_bytes()
