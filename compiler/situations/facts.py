@@ -133,7 +133,24 @@ class Facts:
     def _longest(self) -> int:
         """The most ticks from a trigger to one that its demand is still open for."""
         n = self.demand.ticks
-        return n if self.demand.kind is Kind.WITHIN else n + 1
+        match self.demand.kind:
+            case Kind.WITHIN:
+                return n
+            case Kind.AFTER | Kind.NOT_AFTER:  # the answer comes a tick after the bound
+                return n + 1
+            case (
+                Kind.IMMEDIATELY
+                | Kind.NEXT
+                | Kind.FINALLY
+                | Kind.EVENTUALLY
+                | Kind.ALWAYS
+                | Kind.FOR
+                | Kind.UNTIL
+                | Kind.BEFORE
+            ):
+                raise AssertionError("no trigger of these is asked for by its age")
+            case _:
+                assert_never(self.demand.kind)
 
     def _unanswered(self, least: int, most: int) -> f.Formula:
         """A trigger lies from least to most ticks back, at least one, and no answer came since."""
