@@ -21,6 +21,7 @@ from tests.fault_injection.drawing import (
 from tests.fault_injection.known import Misfit, known
 from tests.fault_injection.selection import Neighbourhood
 from tests.fault_injection.trial import Bench, Finding
+from tests.programs import installed
 
 MODULE = '''\
 from typing import TYPE_CHECKING
@@ -167,7 +168,7 @@ def project(tmp_path: Path) -> Path:
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, "utf-8")
-    subprocess.run(["git", "init", "-q"], cwd=tmp_path, check=True)
+    subprocess.run([installed("git"), "init", "-q"], cwd=tmp_path, check=True)
     return tmp_path
 
 

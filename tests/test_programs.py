@@ -17,6 +17,7 @@ from tests.each import each
 
 ROOT = Path(__file__).parent.parent
 FINDS = re.compile(r"\bwhich\(|/usr/bin/(?!env )|\bdefpath\b|\bskipif\(|\bskip\(|\bimportorskip\(")
+STARTS = re.compile(r"\b(?:run|Popen|check_output|check_call)\(\s*\[\s*\"([\w+-]+)\"")
 PLACES = {"programs.py", "effort.py", "test_programs.py"}
 ROOMS = ("fretish", "monitors", "compiler", "fretc", "simulation")
 
@@ -35,6 +36,17 @@ def test_nothing_else_looks_for_a_program_or_skips_a_test() -> None:
         name
         for name, text in texts("tests")
         if FINDS.search(text) and name.removeprefix("tests/") not in PLACES
+    ]
+    assert found == []
+
+
+def test_no_test_starts_a_program_that_may_be_missing_by_its_name() -> None:
+    """`installed(NAME)` starts it, and skips the test where it is missing."""
+    found = [
+        (name, program)
+        for name, text in texts("tests")
+        for program in STARTS.findall(text)
+        if program in programs.PROGRAMS
     ]
     assert found == []
 

@@ -14,7 +14,7 @@ from compiler.project.parents import Parent, parents
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from tests.command import Fretc, write
-from tests.programs import needs
+from tests.programs import installed, needs
 
 SDOC = """\
 [DOCUMENT]
@@ -130,7 +130,7 @@ def test_strictdoc_gives_every_node_with_a_uid_and_its_whole_statement() -> None
 def test_strictdoc_itself_writes_what_is_read() -> None:
     write("docs/hazards.sdoc", SDOC)
     subprocess.run(
-        ["strictdoc", "export", "--formats=json", "--output-dir", "out", "docs"],
+        [installed("strictdoc"), "export", "--formats=json", "--output-dir", "out", "docs"],
         check=True,
         capture_output=True,
     )

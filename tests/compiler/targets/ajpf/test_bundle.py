@@ -22,7 +22,7 @@ from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from tests.command import Fretc
-from tests.programs import needs
+from tests.programs import installed, needs
 
 ROOT = Path(__file__).parents[4]
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
@@ -305,7 +305,17 @@ def test_the_environment_compiles_against_what_it_uses_of_mcapl(tmp_path: Path) 
     made = rule("whenever a & b the ag shall satisfy r", id="7-A")
     (tmp_path / "Env.java").write_text(bundle(made)["r7_a_ajpf/Env.java"], encoding="utf-8")
     done = subprocess.run(
-        ["javac", "--release", "11", "-Xlint:all", "-Werror", "-d", "classes", "Env.java", *STUBS],
+        [
+            installed("javac"),
+            "--release",
+            "11",
+            "-Xlint:all",
+            "-Werror",
+            "-d",
+            "classes",
+            "Env.java",
+            *STUBS,
+        ],
         cwd=tmp_path,
         capture_output=True,
         text=True,

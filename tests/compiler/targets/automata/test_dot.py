@@ -15,7 +15,7 @@ from compiler.targets.automata.chart import chart
 from tests import meaning
 from tests.each import each
 from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, rule
-from tests.programs import needs
+from tests.programs import installed, needs
 from tests.strategies import Template, templates
 
 
@@ -209,7 +209,9 @@ def test_names_are_no_commands_of_graphviz() -> None:
 def test_graphviz_draws_it(sentence: str, tmp_path: Path) -> None:
     path = tmp_path / "r1.dot"
     path.write_text(text_of(sentence), encoding="utf-8")
-    done = subprocess.run(["dot", "-Tsvg", str(path)], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [installed("dot"), "-Tsvg", str(path)], capture_output=True, text=True, check=False
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert "</svg>" in done.stdout
 

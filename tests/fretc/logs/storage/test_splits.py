@@ -16,7 +16,7 @@ from fretc.logs.storage.splits import split
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.fretc.logs.logs import MS, S, Sent, X, codes, number, recorded, values
 from tests.fretc.logs.storage.test_bags import bag
-from tests.programs import DEBIANS_PATH, debians_python, needs
+from tests.programs import DEBIANS_PATH, debians_python, installed, needs
 
 SIX = [number(float(i), 1000 * S + i * 100 * MS, encoding="ros1") for i in range(6)]
 
@@ -167,7 +167,7 @@ def test_what_ros_itself_reindexes_is_known_as_that(tmp_path: Path) -> None:
     environment = {"PATH": DEBIANS_PATH, "HOME": str(tmp_path)}
     subprocess.run([python, "-c", _ROS], cwd=tmp_path, env=environment, check=False)
     assert isinstance(look(str(tmp_path / "x.bag.active")), Diagnostic)
-    subprocess.run(["rosbag", "reindex", "-q", "x.bag.active"], cwd=tmp_path, check=True)
+    subprocess.run([installed("rosbag"), "reindex", "-q", "x.bag.active"], cwd=tmp_path, check=True)
     found = read(str(tmp_path / "x.bag.active"), X, ["x"])
     assert isinstance(found, Recording)
     assert 0 < len(found.samples["x"].values) < 300
