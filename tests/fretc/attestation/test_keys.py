@@ -23,7 +23,7 @@ from fretc.attestation.keys import (
     signed_envelope,
 )
 from tests import keys
-from tests.programs import needs
+from tests.programs import installed, needs
 
 KINDS = ("ed25519", "nistp256", "nistp384", "nistp521", "rsa2048")
 PAIRS = {kind: keys.make(kind) for kind in KINDS}
@@ -186,11 +186,25 @@ def test_ssh_keygen_makes_the_keys_and_names_them_alike(kind: str, tmp_path: Pat
     file = tmp_path / "key"
     for word in ("", "secret words"):
         file.unlink(missing_ok=True)
-        new = ["ssh-keygen", "-q", "-t", *kind.split(), "-N", word, "-C", "me", "-f", str(file)]
+        new = [
+            installed("ssh-keygen"),
+            "-q",
+            "-t",
+            *kind.split(),
+            "-N",
+            word,
+            "-C",
+            "me",
+            "-f",
+            str(file),
+        ]
         subprocess.run(new, check=True)
         file.chmod(0o644)  # ssh itself would refuse it
         line = subprocess.run(
-            ["ssh-keygen", "-l", "-f", f"{file}.pub"], check=True, capture_output=True, text=True
+            [installed("ssh-keygen"), "-l", "-f", f"{file}.pub"],
+            check=True,
+            capture_output=True,
+            text=True,
         ).stdout
         mine = private_key(file.read_bytes(), lambda word=word: word)  # type: ignore[misc]
         assert mine.public.text == line.replace(" me ", " ").strip()
