@@ -97,7 +97,7 @@ def cli(folders: tuple[str, ...]) -> None:
 
 
 def main() -> None:
-    """What the `fretc` command runs: no traceback ever reaches a user."""
+    """Run a command: no traceback ever reaches a user."""
     _prepare()
     try:
         _run()

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import os
 import pickle
+import signal
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
+
+_STOPS = (signal.SIGINT, signal.SIGTERM)
 
 
 def shield() -> None:
@@ -17,6 +21,27 @@ def shield() -> None:
     handed on by multiprocessing, the environment by every program in between.
     """
     os.environ["PYTHONSAFEPATH"] = "1"
+
+
+@contextmanager
+def stops_blocked() -> Iterator[None]:
+    """Block the signals that stop a process, for a child that starts in here until it ignores them.
+
+    It would print a traceback for a Ctrl-C that comes while it imports. `ignore_interrupts` ends
+    this in the child.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _STOPS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def ignore_interrupts() -> None:
+    """Ignore Ctrl-C in a child: it goes to all, and the parent decides. SIGTERM ends the child."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _STOPS)
 
 
 def reply(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> tuple[bool, Any]:

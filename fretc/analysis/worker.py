@@ -16,7 +16,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import ForkProcess
 from typing import Any, TypeVar
 
-from compiler.files.processes import reply
+from compiler.files.processes import ignore_interrupts, reply, stops_blocked
 from fretc.analysis.arena.budget import guard
 from fretc.analysis.games.job import Job
 from fretish.reading.recursion import deep
@@ -109,14 +109,15 @@ def _started(jobs: Sequence[Job[F]], found: Sequence[F]) -> tuple[ForkProcess, C
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=_answer, args=(theirs, jobs, tuple(found)), daemon=True)
-    process.start()
+    with stops_blocked():
+        process.start()
     theirs.close()
     return process, ours
 
 
 def _answer(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) -> None:
     """Send each finding, None at the end of each job, and a mistake of ours where there is one."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to both; the parent decides
+    ignore_interrupts()
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # BuDDy's last words
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))

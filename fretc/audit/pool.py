@@ -6,18 +6,17 @@ Each process has a pipe of its own, so that it is certain which thing it worked 
 from __future__ import annotations
 
 import multiprocessing
-import signal
 import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from enum import Enum
 from multiprocessing.connection import Connection, wait
 from multiprocessing.context import ForkProcess
 from typing import Any, TypeVar, overload
 
-from compiler.files.processes import reply
+from compiler.files.processes import ignore_interrupts, reply, stops_blocked
 from fretc.logs.storage.log_names import name_of
 from fretish.bindings.amounts import exact_duration
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -25,8 +24,6 @@ from fretish.diagnostics.source import Source
 
 T = TypeVar("T")
 R = TypeVar("R")
-
-_STOPS = (signal.SIGINT, signal.SIGTERM)
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,7 +253,7 @@ class _Crew:
         inherited = [ours, *self.busy, *(connection for connection, _ in self._idle)]
         arguments = (self._function, self._things, theirs, inherited)
         process = context.Process(target=_serve, args=arguments, daemon=True)
-        with _undisturbed():
+        with stops_blocked():
             process.start()
         theirs.close()
         return ours, process
@@ -268,16 +265,6 @@ def _end(connection: Connection, process: ForkProcess) -> None:
     process.join()
 
 
-@contextmanager
-def _undisturbed() -> Iterator[None]:
-    """No signal to stop arrives in here: a child that is being born has no answer to it."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, _STOPS)
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
 def _serve(
     function: Callable[[Any], Any],
     things: Sequence[Any],
@@ -285,9 +272,7 @@ def _serve(
     inherited: Sequence[Connection],
 ) -> None:
     """Work on the things whose places are sent, until nobody is there to send one."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all; the first one decides
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, _STOPS)
+    ignore_interrupts()
     for other in inherited:
         other.close()
     with suppress(EOFError, OSError):

@@ -17,10 +17,11 @@ from dataclasses import dataclass
 from math import ceil
 from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnProcess
+from multiprocessing.resource_tracker import ensure_running
 from types import ModuleType
 from typing import Any, ParamSpec, TypeVar
 
-from compiler.files.processes import reply, shield
+from compiler.files.processes import ignore_interrupts, reply, shield, stops_blocked
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -121,7 +122,8 @@ class Session:
             context = multiprocessing.get_context("spawn")
             self._connection, theirs = context.Pipe()
             self._process = context.Process(target=_serve, args=(theirs, self._limits), daemon=True)
-            with _without_main():
+            ensure_running()  # else `start` would do it, which unblocks the signals
+            with _without_main(), stops_blocked():
                 self._process.start()
             theirs.close()
         return self._connection, self._process
@@ -176,7 +178,7 @@ def _out_of_memory(limits: Limits) -> str:
 
 def _serve(connection: Connection, limits: Limits) -> None:
     """Answer calls until no further one comes."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all; the first one decides
+    ignore_interrupts()
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_AS, (limits.memory, limits.memory))
     gc.set_threshold(*_RARELY)

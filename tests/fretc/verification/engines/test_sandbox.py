@@ -116,6 +116,35 @@ def test_the_program_itself_is_not_executed_once_more(tmp_path: Path) -> None:
     assert (run.stdout, run.stderr) == ("-21\n", "")
 
 
+def test_a_child_that_is_interrupted_while_it_imports_answers_without_a_word(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "sitecustomize.py").write_text(
+        "import os, signal, sys\n"
+        "class Finder:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        if name == os.environ.get('INTERRUPTED'):\n"
+        "            os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Finder())\n"
+    )
+    script = (
+        "import os\n"
+        "from fretc.verification.engines.sandbox import DEFAULT, confined\n"
+        "os.environ['INTERRUPTED'] = confined.__module__\n"
+        "print(confined(DEFAULT, abs, -3))\n"
+    )
+    folders = os.pathsep.join((str(tmp_path), str(Path(__file__).parents[4])))
+    run = subprocess.run(
+        [sys.executable, "-c", script],
+        env={**os.environ, "PYTHONPATH": folders},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (run.returncode, run.stdout, run.stderr) == (0, "3\n", "")
+
+
 def test_an_interruption_ends_the_process(tmp_path: Path) -> None:
     (tmp_path / "waits.py").write_text(
         "import os, time\n"
