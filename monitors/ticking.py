@@ -208,8 +208,10 @@ class Ledger:
         self._rows: list[Mapping[str, bool | None]] = []
         self._states = [(0, self._state())]
         """Before which of the rows the monitors were so."""
-        self.late = 0
-        """Ticks that have become unknown after they were judged."""
+        self._late: set[int] = set()
+        """The kept ticks that have become unknown after they were judged."""
+        self._dropped_late = 0
+        """Such ticks that are not kept any more."""
         self.beyond = 0
         """Ticks that should have become so and were not kept: what is said of them stands."""
         self._dropped = 0
@@ -220,6 +222,11 @@ class Ledger:
     def __len__(self) -> int:
         """How many ticks there were."""
         return self._dropped + len(self._times)
+
+    @property
+    def late(self) -> int:
+        """How many ticks have become unknown after they were judged."""
+        return self._dropped_late + len(self._late)
 
     @property
     def last(self) -> Mapping[str, bool | None] | None:
@@ -266,7 +273,7 @@ class Ledger:
             self._rows[i] = {**self._rows[i], **dict.fromkeys(propositions)}
         if changed:
             self._again(changed[0])
-        self.late += len(changed)
+        self._late.update(self._times[i] for i in changed)
         return len(changed)
 
     def insert(self, time: int, propositions: Collection[str]) -> None:
@@ -282,7 +289,7 @@ class Ledger:
         place = bisect_right(self._times, time)
         self._times.insert(place, time)
         self._rows.insert(place, dict.fromkeys(propositions))
-        self.late += 1
+        self._late.add(time)
         self._again(place)
 
     def _again(self, place: int) -> None:
@@ -301,6 +308,9 @@ class Ledger:
         if not drop:
             return
         self._before, self._dropped = self._times[drop - 1], self._dropped + drop
+        dropped = self._late.intersection(self._times[:drop])
+        self._late -= dropped
+        self._dropped_late += len(dropped)
         del self._times[:drop], self._rows[:drop]
         self._states = [(place - drop, state) for place, state in self._states if place >= drop]
 

@@ -119,8 +119,9 @@ def watch(
         stop(not_written(record, "two outputs would go there"))
     if record == "-":
         stop(not_written(record, "a recording is a file"))
-    if evidence is not None and Path(evidence).is_dir():  # not after a night of watching
-        stop(not_written(evidence, "there is a directory of that name"))
+    for path in outputs:
+        if path.is_dir():  # not after a night of watching
+            stop(not_written(str(path), "it is a folder"))
     publishers = _opened(publish, source)
     try:
         followed = source.name if isinstance(source, Log) else None

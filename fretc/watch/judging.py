@@ -39,12 +39,11 @@ class Judges:
         """One more tick."""
         self.ledger.advance(tick.time, tick.truth)
 
-    def withdraw(self, late: Withdrawn) -> int:
-        """Ticks become unknown, and perhaps there is one more; how many have changed."""
+    def withdraw(self, late: Withdrawn) -> None:
+        """Ticks become unknown, and perhaps there is one more."""
         if late.tick is not None:
             self.ledger.insert(late.tick, self.propositions)
-        changed = self.ledger.withdraw(late.first, late.last, late.propositions)
-        return changed + (late.tick is not None)
+        self.ledger.withdraw(late.first, late.last, late.propositions)
 
     def standings(self) -> tuple[Standing, ...]:
         """What would be said of each requirement if the trace ended here."""

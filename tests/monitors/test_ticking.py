@@ -114,7 +114,7 @@ def test_a_tick_that_becomes_unknown_is_as_if_it_always_had_been(
     """Each change comes after so many rows, and reaches so many ticks back."""
     for each in (*pairs[0], *pairs[1]):
         each.reset()
-    ledger, final, known = Ledger(pairs[0]), [dict(row) for row in rows], 0
+    ledger, final, known = Ledger(pairs[0]), [dict(row) for row in rows], set[int]()
     for i, row in enumerate(rows):
         ledger.advance(i * PERIOD, row)
         for after, length, back, changed in changes:
@@ -122,13 +122,14 @@ def test_a_tick_that_becomes_unknown_is_as_if_it_always_had_been(
                 first = max(0, i - back)
                 last = min(i, first + length)
                 for k in range(first, last + 1):
-                    known += any(final[k][name] is not None for name in changed)
+                    if any(final[k][name] is not None for name in changed):
+                        known.add(k)
                     final[k].update(dict.fromkeys(changed))
                 ledger.withdraw(first * PERIOD, last * PERIOD, changed)
     for each in pairs[1]:
         each.advance(final)
     assert states(pairs[0]) == states(pairs[1])
-    assert (ledger.late, ledger.beyond) == (known, 0)
+    assert (ledger.late, ledger.beyond) == (len(known), 0)
 
 
 @given(rows=rows.filter(bool), place=st.integers(0, 200))
@@ -153,5 +154,8 @@ def test_what_is_not_kept_any_more_is_counted() -> None:
         ledger.advance(i, {"p": True, "q": True})
     assert ledger.withdraw(899, 899, ("p",)) == 1
     assert (ledger.late, ledger.beyond) == (1, 0)
+    assert ledger.withdraw(899, 899, ("p", "q")) == 1
     assert ledger.withdraw(3, 3, ("p",)) == 0
+    for i in range(1000, 2000):
+        ledger.advance(i, {"p": True, "q": True})
     assert (ledger.late, ledger.beyond) == (1, 1)

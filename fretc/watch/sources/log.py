@@ -100,7 +100,8 @@ class Log:
             # a stream would give again what it has in its buffer, whatever the file has now
             file, size = stream.fileno(), len(self._before)
             known = os.pread(file, size, at - size)
-            is_there = os.fstat(file).st_size >= at + length
+            file_size = os.fstat(file).st_size
+            is_there = file_size >= at + length
             data = os.pread(file, length, at) if is_there else b""
             if known == self._before and len(data) == length:
                 self._before = (known + data[-_KNOWN:])[-_KNOWN:]
@@ -114,7 +115,7 @@ class Log:
             if self._closed.is_set():
                 return None
             if not self._follow:
-                yield Problem(_broken(at, "it breaks off", place))
+                yield Problem(_broken(at, "it breaks off" if file_size else "it is empty", place))
                 yield Missed(self._latest, self._latest, 1)
                 return None
             yield Idle(None)

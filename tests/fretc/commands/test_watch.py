@@ -119,6 +119,10 @@ def test_a_clock_by_stamps_asks_for_a_lateness(fretc: Fretc) -> None:
         (["run.mcap", "--record", "there.mcap"], "F905"),
         (["run.mcap", "--record", "no/such/folder.mcap"], "F905"),
         (["run.mcap", "--record", "-"], "F905"),
+        (
+            ["run.mcap", "--record", "requirements"],
+            "F905 `requirements` cannot be written: it is a folder",
+        ),
         (["run.mcap", "--record", "new.mcap", "--evidence", "requirements"], "F905"),
         (["requirements/r1.fret"], "F402"),
     ],
@@ -136,11 +140,13 @@ def test_bad_use_and_bad_input(fretc: Fretc, arguments: list[str], code: str) ->
 
 def test_a_log_that_breaks_off_satisfies_nothing(fretc: Fretc) -> None:
     data = Path(recorded("run.mcap")).read_bytes()
-    Path("cut.mcap").write_bytes(data[: len(data) // 2])
-    run = fretc("watch", "cut.mcap")
-    assert run.status == 2
-    assert "it breaks off" in run.err
-    assert run.out.splitlines()[-1].endswith("R1 no data")
+    for size, why in ((len(data) // 2, "it breaks off"), (0, "it is empty")):
+        Path("cut.mcap").write_bytes(data[:size])
+        run = fretc("watch", "cut.mcap")
+        assert run.status == 2
+        assert why in run.err
+        assert "missed 1 message: unknown" in run.out
+        assert run.out.splitlines()[-1].endswith("R1 no data")
 
 
 @pytest.mark.parametrize(("log", "code"), [("nowhere.mcap", "F901"), ("folder", "F902")])
