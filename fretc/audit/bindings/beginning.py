@@ -124,7 +124,11 @@ def _bounds(declarations: Declarations, recording: Recording) -> Iterator[Bound]
     """What each signal of the recording keeps, the best one to begin with first."""
     signals = sorted(
         declarations.signals.values(),
-        key=lambda signal: (not _is_steady(signal, recording), _rank(signal)),
+        key=lambda signal: (
+            not _is_steady(signal, recording),
+            not _varies(signal, recording),
+            _rank(signal),
+        ),
     )
     for signal in signals:
         samples = recording.samples.get(signal.name)
@@ -140,6 +144,12 @@ def _is_steady(signal: Signal, recording: Recording) -> bool:
     topic = recording.topics[signal.path.topic]
     gap = topic.longest_gap_ns
     return signal.max_age is not None and gap is not None and gap <= signal.max_age
+
+
+def _varies(signal: Signal, recording: Recording) -> bool:
+    """Whether it has more than one value: the limit of any other would say nothing."""
+    samples = recording.samples.get(signal.name)
+    return samples is not None and bool((samples.values[1:] != samples.values[:-1]).any())
 
 
 def _rank(signal: Signal) -> int:

@@ -34,12 +34,12 @@ def odometry() -> list[Sent]:
 
 
 def strange() -> list[Sent]:
-    """A type that nobody knows, in JSON."""
+    """A type that nobody knows, in JSON; its first number is always the same."""
     return [
         Sent(
             "/pump",
             "acme/Pump",
-            b'{"flow rate": 1, "flow": %d.5, "valve": "%s"}' % (i, b"open" if i < 9 else b"shut"),
+            b'{"charge": 0, "flow rate": 1, "flow": %d.5, "valve": "%s"}' % (i, b"open" if i < 9 else b"shut"),
             1000 * S + i * 100 * MS,
             None,
             "json",
