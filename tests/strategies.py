@@ -88,6 +88,22 @@ def templates(counts: tuple[int, ...] = COUNTS) -> Iterator[Template]:
                     yield Template(scope, condition, timing, n)
 
 
+def few_templates(counts: tuple[int, ...] = COUNTS) -> list[Template]:
+    """Every template with the full profile; else each condition with each timing.
+
+    Scopes and counts take turns: no timing has only scopes with `only`, or none of them.
+    """
+    if FULL:
+        return [*templates(counts)]
+    found = []
+    for i, condition in enumerate(meaning.CONDITIONS):
+        for j, timing in enumerate(meaning.TIMINGS):
+            scope = meaning.SCOPES[(j + 3 * i) % len(meaning.SCOPES)]
+            n = counts[(i + j) % len(counts)] if timing in meaning.COUNTING else 0
+            found.append(Template(scope, condition, timing, n))
+    return found
+
+
 # Sentences -----------------------------------------------------------------------------------
 
 NAMES = ("p", "q", "r1", "speed", "arm.joint", "load%", "too_close", "two words", "a[3]", "Fault")

@@ -6,7 +6,9 @@ import json
 import os
 import subprocess
 import sys
+from copy import copy
 from pathlib import Path
+from shutil import copytree
 from typing import Any
 
 import pytest
@@ -82,6 +84,13 @@ class Mcapl:
         self.tool("javac", '[ "$1" = --release ] && [ "$2" = 11 ] && mkdir -p classes')
         self.java("11.0.22")
         self.says({})
+
+    def copied(self, folder: Path) -> "Mcapl":
+        """The same in another folder, with what has run in it."""
+        other = copy(self)
+        other.folder, other.bundle = folder, folder / self.bundle.name
+        copytree(self.folder, folder)
+        return other
 
     def write(self, path: Path, text: str) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -2,6 +2,7 @@
 
 import os
 import re
+from collections.abc import Callable, Iterable
 from importlib.metadata import PackageNotFoundError
 from itertools import cycle
 from pathlib import Path
@@ -23,6 +24,7 @@ from tests.compiler.targets.test_dafny import (
     emitted,
     rule,
 )
+from tests.each import each
 from tests.effort import full_only
 from tests.programs import needs, needs_package
 from tests.proofs import outcome
@@ -200,26 +202,50 @@ def say(text: str) -> Outcome:
     return dafny_answer(text, seconds=120)[0]
 
 
-@pytest.mark.slow
-@needs_dafny
-def test_dafny_verifies_monitors_at_any_bound() -> None:
-    """All in one text, each in a module of its own; conditions and bounds take turns."""
+def monitors() -> list[str]:
+    """The monitor of each timing; conditions and bounds take turns."""
     timings = ("within {n} ticks", *TIMINGS[-5:], "eventually")
     turns = zip(timings, cycle(CONDITIONS), cycle((0, 1, 20, 10000)), strict=False)
     sentences = [f"{c}robot shall {timing.format(n=n)} satisfy q" for timing, c, n in turns]
-    monitors = [emitted(one, None).partition("// Interceptor -")[0] for one in sentences]
-    assert len(set(monitors)) == 7
-    modules = [f"module M{i} {{\n{one}}}\n" for i, one in enumerate(monitors)]
-    assert say("\n".join(modules)).result is Result.PROVED
+    texts = [emitted(one, None).partition("// Interceptor -")[0] for one in sentences]
+    assert len(set(texts)) == 7
+    return texts
+
+
+def latching() -> str:
+    """A file with the interceptor and the loop."""
+    bindings = BINDINGS.replace("[assume]", "latching = true\n\n[assume]")
+    file = emitted("when p robot shall within 20 ticks satisfy q", bindings)
+    assert "NeverViolatedAsDeclared" in file
+    return file
+
+
+def modules(texts: Iterable[str]) -> str:
+    """All in one text, each in a module of its own: one run is faster than several."""
+    return "\n".join(f"module M{i} {{\n{one}}}\n" for i, one in enumerate(texts))
+
+
+@pytest.mark.slow
+@full_only("the lemmas that say most are verified with the mutants")
+@needs_dafny
+def test_dafny_verifies_monitors_at_any_bound() -> None:
+    assert say(modules(monitors())).result is Result.PROVED
+
+
+@pytest.mark.slow
+@full_only("the lemmas that say most are verified with the mutants")
+@needs_dafny
+def test_dafny_verifies_the_interceptor_and_the_loop() -> None:
+    assert say(latching()).result is Result.PROVED
 
 
 @pytest.mark.slow
 @needs_dafny
-def test_dafny_verifies_the_interceptor_and_the_loop() -> None:
-    latching = BINDINGS.replace("[assume]", "latching = true\n\n[assume]")
-    file = emitted("when p robot shall within 20 ticks satisfy q", latching)
-    assert "NeverViolatedAsDeclared" in file
-    assert say(file).result is Result.PROVED
+def test_dafny_verifies_what_holds() -> None:
+    lemmas = LEMMAS.replace("A()", "A(x: nat)\n  ensures x + 1 > 0").replace(
+        "(x: int)", "(x: nat)\n  requires x != 0"
+    )
+    assert say(lemmas) == proved("2 parts verified, among them all 2 lemmas and methods")
 
 
 def replaced(text: str, old: str, new: str) -> str:
@@ -252,30 +278,51 @@ def released_at_once_and_late() -> str:
     )
 
 
+def late_and_forwarding() -> str:
+    """A monitor whose deadline is a tick too late, and an interceptor that never stops."""
+    late = replaced(emitted(SENTENCE, None), "d.count == n)", "d.count == n + 1)")
+    return replaced(late, "      out := ZERO;", "      out := command;")
+
+
 @pytest.mark.slow
 @needs_dafny
-def test_dafny_rejects_mutants() -> None:
-    """Of the monitor, the plain interceptor, the hold and the loop: in one run, which is faster."""
-    good = emitted(SENTENCE, None)
-    late = replaced(good, "d.count == n)", "d.count == n + 1)")
-    forwarding = replaced(late, "      out := ZERO;", "      out := command;")
-    other = only(released_at_once_and_late(), "HeldIsOwed", "NeverViolated")
-    answer = say(f"module A {{\n{forwarding}}}\nmodule B {{\n{other}}}\n")
+def test_dafny_rejects_mutants_and_nothing_else() -> None:
+    """Of the monitor, the plain interceptor, the hold and the loop."""
+    counted, stopped = monitors()[3:5]
+    answer = say(
+        modules(
+            (
+                only(late_and_forwarding(), "InvariantHolds", "CommandCallback"),
+                only(released_at_once_and_late(), "HeldIsOwed", "NeverViolated"),
+                only(latching(), "HeldIsOwed", "CommandCallback", "NeverViolated"),
+                only(counted, "InvariantHolds", "Exact"),
+                only(stopped, "InvariantHolds"),
+            )
+        )
+    )
     assert answer.result is Result.NOT_CHECKED
-    for name in ("InvariantHolds", "CommandCallback", "HeldIsOwed", "NeverViolated"):
-        assert f"`{name}`" in answer.detail
+    assert re.findall(r"`(\w+)` \(line", answer.detail) == [
+        *("CommandCallback", "InvariantHolds", "HeldIsOwed", "NeverViolated"),
+    ]
 
 
 @pytest.mark.slow
 @full_only("the same mutants are rejected")
 @needs_dafny
-def test_dafny_rejects_an_interceptor_without_hold_and_a_loop_with_too_long_a_delay() -> None:
-    """By each lemma and method that depends on it."""
-    answer = say(released_at_once_and_late())
+@each(
+    "case",
+    [
+        (late_and_forwarding, {"InvariantHolds", "CommandCallback"}),
+        (released_at_once_and_late, {"HoldLasts", "StopCallback", "NeverViolated"}),
+    ],
+)
+def test_dafny_rejects_mutants_by_each_lemma_and_method_that_depends_on_them(
+    case: tuple[Callable[[], str], set[str]],
+) -> None:
+    text, names = case
+    answer = say(text())
     assert answer.result is Result.NOT_CHECKED
-    assert "`HoldLasts`" in answer.detail
-    assert "`StopCallback`" in answer.detail
-    assert "`NeverViolated`" in answer.detail
+    assert names <= {*re.findall(r"`(\w+)` \(line", answer.detail)}
 
 
 # CrossHair ------------------------------------------------------------------------------------
