@@ -80,8 +80,13 @@ class Brief:
 
     @property
     def content(self) -> str:
-        """What tells its log from another one: copies have the same."""
-        return self.log or self.fingerprints.log_summary or self.run
+        """What tells its log from another one: copies have the same.
+
+        So has a log whose messages were written again, in other chunks, say. What cannot be read
+        has no hash.
+        """
+        prints = self.fingerprints
+        return prints.messages or prints.log or prints.log_summary or self.run
 
 
 @dataclass(frozen=True, slots=True)

@@ -92,14 +92,10 @@ def _intact(results: Sequence[Brief]) -> int:
 
 
 def _distinct(results: Sequence[Brief]) -> list[Brief]:
-    """Each content once: a copy of a log tells nothing new, nor does one that was written again.
-
-    What cannot be read has no hash.
-    """
+    """Each content once: a copy of a log tells nothing new, nor does one that was written again."""
     first: dict[str, Brief] = {}
-    for place, result in enumerate(results):
-        prints = result.fingerprints
-        first.setdefault(prints.messages or prints.log or prints.log_summary or f"{place}", result)
+    for result in results:
+        first.setdefault(result.content, result)
     return list(first.values())
 
 

@@ -92,6 +92,13 @@ def counts() -> tuple[int, int, int]:
     return triggers["answered"], triggers["failed"], triggers["open"]
 
 
+def suspicions(fretc: Fretc) -> list[str]:
+    """Why a report does not count what the evidence says of all runs."""
+    fretc("report", "--json", "report.json")
+    (requirement,) = json.loads(Path("report.json").read_text("utf-8"))["requirements"]
+    return list(requirement["probability"]["suspicions"])
+
+
 @pytest.mark.slow
 def test_many_answers_support_it(fretc: Fretc) -> None:
     logs(33, "1000", "0100")
@@ -259,6 +266,7 @@ def test_a_copy_of_a_log_counts_once(fretc: Fretc) -> None:
     shutil.copy("runs/000.mcap", "runs/copy.mcap")
     assert fretc("audit", "runs").status == 3
     assert (counts(), estimate()["logs"]["copies"]) == ((28, 0, 0), 1)
+    assert suspicions(fretc) == []
 
 
 @pytest.mark.slow
@@ -278,6 +286,7 @@ def test_a_log_that_was_written_again_counts_once(fretc: Fretc, integrity: str) 
     write_log(Path("runs/bare.mcap"), unnoted, data_crcs=True, statistics=False)
     assert fretc("audit", "runs", "--integrity", integrity).status == 3
     assert (counts(), estimate()["logs"]["copies"]) == ((28, 0, 0), 4)
+    assert suspicions(fretc) == []
 
 
 def test_runs_that_differ_in_a_value_or_a_time_are_no_copies(fretc: Fretc) -> None:
