@@ -6,9 +6,10 @@ Logs that others have recorded are read where `FRETC_LOGS` names their folder.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from itertools import product
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import pytest
 from hypothesis import settings
@@ -29,3 +30,39 @@ def full_only(why: str) -> pytest.MarkDecorator:
 def some(cases: Iterable[Case], step: int, first: int = 0) -> list[Case]:
     """Return every `step`-th of the cases from the place `first` on; all with the full profile."""
     return [*cases] if FULL else [*cases][first::step]
+
+
+def examples(count: int) -> settings:
+    """Draw so many examples, where one takes long; with the full profile as many as it says."""
+    return settings() if FULL else settings(max_examples=count)
+
+
+def pairwise(*axes: Sequence[Any]) -> list[tuple[Any, ...]]:
+    """Return combinations in which any two values of two axes meet; all with the full profile."""
+    if FULL:
+        return [*product(*axes)]
+    return [tuple(axis[i] for axis, i in zip(axes, row, strict=True)) for row in _rows(axes)]
+
+
+def _rows(axes: Sequence[Sequence[Any]]) -> list[list[int]]:
+    """The places of the values: one axis after the other is added, and rows where pairs lack."""
+    rows = [[first] for first in range(len(axes[0]))]
+    for at, axis in enumerate(axes[1:], 1):
+        lacking = {
+            (place, value, new)
+            for place, before in enumerate(axes[:at])
+            for value in range(len(before))
+            for new in range(len(axis))
+        }
+        for number, row in enumerate(rows):
+            turns = [(number + turn) % len(axis) for turn in range(len(axis))]
+            new = max(turns, key=lambda new: sum((*p, new) in lacking for p in enumerate(row)))
+            lacking -= {(*p, new) for p in enumerate(row)}
+            row.append(new)
+        for place, value, new in sorted(lacking):
+            if (place, value, new) in lacking:
+                row = [(value + new + i) % len(before) for i, before in enumerate(axes[:at])]
+                row[place] = value
+                lacking -= {(*p, new) for p in enumerate(row)}
+                rows.append([*row, new])
+    return rows

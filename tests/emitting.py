@@ -1,17 +1,8 @@
 """A sentence through a target, as the tests of targets want it."""
 
 from compiler.emit import TARGETS
-from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
 from fretish.diagnostics.rendering import render
-from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
-
-
-def rule(sentence: str, id: str = "R1") -> Formalized:
-    result, diagnostics = formalize(Requirement(id, Source("r.fret", sentence).span()), None)
-    assert result is not None, diagnostics
-    return result
+from tests.monitoring import rule as rule
 
 
 def emitted(target: str, sentence: str, id: str = "R1") -> dict[str, str]:

@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from textwrap import indent
 from typing import NamedTuple
 
@@ -45,8 +46,9 @@ class Step(NamedTuple):
     answer: Truth
 
 
+@lru_cache(maxsize=4096)
 def rule(sentence: str, id: str = "R1", clock: Clock | None = None) -> Formalized:
-    """The rule of a sentence."""
+    """The rule of a sentence; tests that ask for the same one share it."""
     source = Source("r.fret", sentence)
     declared = Declarations(Source("bindings.toml", ""), clock, {}, {}) if clock else None
     result, diagnostics = formalize(Requirement(id, source.span()), declared)

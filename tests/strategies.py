@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -13,7 +13,7 @@ from compiler.logic import formula as f
 from fretish import expressions as e
 from fretish import syntax as s
 from tests import meaning
-from tests.effort import FULL
+from tests.effort import FULL, pairwise
 
 # Templates -----------------------------------------------------------------------------------
 
@@ -70,7 +70,7 @@ class Template:
         }
         return tuple(name for name, named in used.items() if named)
 
-    def satisfied(self, columns: dict[str, list[bool]]) -> bool:
+    def satisfied(self, columns: Mapping[str, Sequence[bool]]) -> bool:
         """The meaning of the template, from its definition."""
         m, p, q, s = (columns.get(name, columns["q"]) for name in "mpqs")
         return meaning.satisfied(self.scope, self.condition, self.timing, self.n, m, p, q, s)
@@ -102,6 +102,13 @@ def few_templates(counts: tuple[int, ...] = COUNTS) -> list[Template]:
             n = counts[(i + j) % len(counts)] if timing in meaning.COUNTING else 0
             found.append(Template(scope, condition, timing, n))
     return found
+
+
+def some_templates(counts: tuple[int, ...] = COUNTS) -> list[Template]:
+    """Templates with every two of a scope, a condition and a timing; all with the full profile."""
+    timings = [(t, n) for t in meaning.TIMINGS for n in (counts if t in meaning.COUNTING else (0,))]
+    chosen = {*pairwise(meaning.SCOPES, meaning.CONDITIONS, timings)}
+    return [t for t in templates(counts) if (t.scope, t.condition, (t.timing, t.n)) in chosen]
 
 
 # Sentences -----------------------------------------------------------------------------------
