@@ -2,18 +2,17 @@
 
 import random
 from collections.abc import Iterator
-from itertools import product
 
 import pytest
 
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Result
 from fretc.verification.monitor.verifying import verified
-from tests.effort import FULL
+from tests.effort import FULL, pairwise
 from tests.meaning import SCOPES
 from tests.monitoring import emitted, monitor, rule, steps
 from tests.spot_monitors import Ltl3
-from tests.strategies import templates
+from tests.strategies import some_templates
 
 LENGTH = 12
 
@@ -43,7 +42,7 @@ def check(sentence: str, made: Formalized, names: tuple[str, ...], count: int) -
 @pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_each_template_is_decided_at_the_earliest_tick(scope: str) -> None:
-    for template in templates():
+    for template in some_templates():
         if template.scope == scope:
             sentence = template.sentence
             check(sentence, rule(sentence), template.columns, 12)
@@ -93,18 +92,17 @@ def counted() -> Iterator[tuple[str, int]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scope", SCOPES)
-def test_parts_that_share_atoms_are_decided_at_the_earliest_tick(scope: str) -> None:
-    for condition, (timing, n), draw in product(WHEN, counted(), range(2 if FULL else 1)):
+def test_parts_that_share_atoms_are_decided_at_the_earliest_tick() -> None:
+    draws = range(2 if FULL else 1)
+    for scope, condition, (timing, n), draw in pairwise(SCOPES, WHEN, [*counted()], draws):
         sentence = sharing(scope, condition, timing, n, f"{scope} {condition} {timing} {n} {draw}")
         check(sentence, rule(sentence), ("a", "b"), 6)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("n", [7, 9, 25])
-def test_long_durations_over_shared_atoms_are_decided_at_the_earliest_tick(n: int) -> None:
+def test_long_durations_over_shared_atoms_are_decided_at_the_earliest_tick() -> None:
     """Above the length to which durations are shortened, at their own length."""
-    for scope, condition, timing in product(SCOPES, WHEN, COUNTED):
+    for scope, condition, timing, n in pairwise(SCOPES, WHEN, COUNTED, (7, 9, 25)):
         if n == 25 and scope.startswith("only") and timing.startswith("after"):
             continue  # what it demands of each trigger is another: 2^25 states
         sentence = sharing(scope, condition, timing, n, f"{scope} {condition} {timing}")
