@@ -8,6 +8,7 @@ import pytest
 from compiler.explanation.drawing import svg
 from compiler.explanation.explain import Row, as_record, explanation, text
 from fretish.clock import Clock
+from tests.effort import FULL
 from tests.monitoring import rule
 
 PARTS = ("p", "q", "!p", "!q", "p & q", "p | q", "p xor q", "p -> q", "true", "false", "p & !r")
@@ -20,7 +21,7 @@ TIMINGS = (
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(8 if FULL else 3))
 def test_sentences_whose_parts_share_propositions_are_explained(seed: int) -> None:
     choose = random.Random(seed)
     for _ in range(25):

@@ -12,9 +12,10 @@ from fretish.clock import Clock, End
 from monitors.kernel import VIOLATED, evaluate
 from monitors.kernel.columns import column
 from tests.compiler.formalization.test_anticipation import WHEN, counted, sharing
+from tests.effort import pairwise
 from tests.meaning import SCOPES
 from tests.monitoring import monitor, rule
-from tests.strategies import templates
+from tests.strategies import some_templates
 
 
 def is_live(formula: Formula) -> bool:
@@ -26,16 +27,15 @@ def is_live(formula: Formula) -> bool:
 @pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_of_each_template_spot_says_the_same(scope: str) -> None:
-    for template in templates((0, 1, 3)):
+    for template in some_templates((0, 1, 3)):
         if template.scope == scope:
             made = rule(template.sentence)
             assert is_violable(made) is not is_live(made.ft_infinite), template.sentence
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scope", SCOPES)
-def test_of_parts_that_share_atoms_spot_says_the_same(scope: str) -> None:
-    for condition, (timing, n) in product(WHEN, counted()):
+def test_of_parts_that_share_atoms_spot_says_the_same() -> None:
+    for scope, condition, (timing, n) in pairwise(SCOPES, WHEN, [*counted()]):
         made = rule(sharing(scope, condition, timing, n, f"{scope} {condition} {timing} {n}"))
         assert is_violable(made) is not is_live(made.ft_infinite), made.sentence
 
@@ -44,7 +44,7 @@ def test_of_parts_that_share_atoms_spot_says_the_same(scope: str) -> None:
 @pytest.mark.parametrize("scope", SCOPES)
 def test_where_the_end_violates_some_short_run_does_exactly_if_it_is_violable(scope: str) -> None:
     clock = Clock(10**8, end=End.VIOLATED)
-    for template in templates((1,)):
+    for template in some_templates((1,)):
         if template.scope != scope:
             continue
         made, machine = rule(template.sentence, clock=clock), monitor(template.sentence)

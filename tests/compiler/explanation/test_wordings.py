@@ -73,7 +73,9 @@ def test_explanations_pictures_and_pages_use_the_numbers_of_the_sentence(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "digits"), [("deg", "30"), ("km/h", "3.0"), ("min", "0.50")])
+@pytest.mark.parametrize(
+    ("name", "digits"), some([("km/h", "3.0"), ("deg", "30"), ("min", "0.50")], 3)
+)
 def test_tests_are_shown_with_the_numbers_of_the_sentence(
     fretc: Fretc, name: str, digits: str
 ) -> None:

@@ -12,13 +12,20 @@ from compiler.files.edition import edition
 ROOT = Path(__file__).parents[3]
 
 
-@pytest.fixture
-def copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A copy of the program, of which the edition is told."""
+@pytest.fixture(scope="module")
+def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the program; each test undoes what it changes."""
+    folder = tmp_path_factory.mktemp("copied")
     for room in ("fretish", "monitors", "compiler", "fretc"):
-        shutil.copytree(ROOT / room, tmp_path / room)
-    monkeypatch.setattr(module, "_SITE", tmp_path)
-    return tmp_path
+        shutil.copytree(ROOT / room, folder / room, ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+@pytest.fixture
+def copy(copied: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A copy of the program, of which the edition is told."""
+    monkeypatch.setattr(module, "_SITE", copied)
+    return copied
 
 
 def edition_now() -> str:
@@ -33,13 +40,17 @@ def test_a_copy_is_the_same_edition(copy: Path) -> None:
     "name", ["fretish/grammar.lark", "monitors/kernel/columns.py", "fretc/audit/many_logs.py"]
 )
 def test_a_changed_text_is_another_edition(copy: Path, name: str) -> None:
-    (copy / name).write_text((copy / name).read_text("utf-8") + "\n", "utf-8")
+    text = (copy / name).read_bytes()
+    (copy / name).write_bytes(text + b"\n")
     assert edition_now() != edition()
+    (copy / name).write_bytes(text)
+    assert edition_now() == edition()
 
 
 def test_a_file_more_is_another_edition(copy: Path) -> None:
     (copy / "monitors/more.py").touch()
     assert edition_now() != edition()
+    (copy / "monitors/more.py").unlink()
 
 
 def test_another_library_is_another_edition(monkeypatch: pytest.MonkeyPatch) -> None:

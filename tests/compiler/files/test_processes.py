@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.effort import FULL, some
+
 ROOT = Path(__file__).parents[3]
 FRETC = str(Path(sys.executable).parent / "fretc")
 OURS = ("fretish", "monitors", "compiler", "fretc", "simulation")
@@ -61,22 +63,25 @@ def test_the_modules_are_executed_where_nobody_keeps_them_out(hostile: Path) -> 
     assert "json" in executed(hostile)
 
 
+BEGUN_ANEW = [
+    ["requirements/r1.fret", "--emit", "monitor", "--emit", "interceptor"],
+    ["verify", "requirements/r1.fret", "--layer", "monitor"],
+    ["audit", "a.mcap", "b.mcap", "--jobs", "1", "--engine", "dask"],
+]
+"""A plain command; and those that begin other processes, which look for modules again."""
+IN_ONE_PROCESS = [
+    ["verify", "requirements/r1.fret", "--layer", "loop"],
+    ["audit", "a.mcap", "b.mcap", "--jobs", "2"],
+    ["audit", "a.mcap", "--parquet", "table.parquet"],
+    ["check"],
+    ["report"],
+    ["explain", "requirements/r1.fret"],
+]
+"""In one process, or in copies of it."""
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "command",
-    [
-        ["verify", "requirements/r1.fret", "--layer", "monitor"],
-        ["verify", "requirements/r1.fret", "--layer", "loop"],
-        ["audit", "a.mcap", "b.mcap", "--jobs", "2"],
-        ["audit", "a.mcap", "b.mcap", "--jobs", "1", "--engine", "dask"],
-        ["audit", "a.mcap", "--parquet", "table.parquet"],
-        ["check"],
-        ["report"],
-        ["explain", "requirements/r1.fret"],
-        ["requirements/r1.fret", "--emit", "monitor", "--emit", "interceptor"],
-    ],
-    ids=" ".join,
-)
+@pytest.mark.parametrize("command", [*BEGUN_ANEW, *(IN_ONE_PROCESS if FULL else ())], ids=" ".join)
 def test_no_command_executes_what_lies_in_the_present_folder(
     hostile: Path, command: list[str]
 ) -> None:
@@ -113,7 +118,7 @@ def test_a_generated_file_executes_nothing_that_lies_beside_it(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("option", ["-P", "-I"])
+@pytest.mark.parametrize("option", some(["-P", "-I"], 2))
 def test_a_generated_monitor_runs_where_python_leaves_its_folder_out_itself(
     tmp_path: Path, option: str
 ) -> None:

@@ -14,6 +14,7 @@ from compiler.logic.spot import equivalent, holds_on, same_language, simplified
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests.each import each
+from tests.effort import examples
 from tests.strategies import quoted_texts
 
 a, b = f.Atom("a"), f.Atom("b")
@@ -68,6 +69,7 @@ def test_the_last_tick_is_free_on_infinite_traces() -> None:
 
 
 @pytest.mark.slow
+@examples(10)
 @given(st.lists(quoted_texts, min_size=2, max_size=2, unique=True))
 def test_an_atom_of_any_text_is_an_atom(texts: list[str]) -> None:
     """Of quoted names, and of comparisons with words."""

@@ -141,5 +141,4 @@ def test_a_delay_means_what_it_means_in_lustre(stream: Stream) -> None:
     assert steps(machine, columns)[-1].first_violation is None
     for place, value in enumerate(values):
         other = [*values[:place], not value, *values[place + 1 :]]
-        machine = monitor(f"the sw shall always satisfy r <-> ({expression(tree)})")
         assert steps(machine, {**RUN, "r": other})[-1].first_violation == place

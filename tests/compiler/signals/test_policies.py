@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -16,9 +17,12 @@ from fretish import expressions as e
 from fretish.bindings.declarations import Path, Proposition, Signal
 from fretish.units import ONE
 from tests.each import each
+from tests.effort import examples
 from tests.signal_policies import KINDS, SIGNS, audited_truth, signals, truth_of, truths_of
 
 
+@pytest.mark.slow
+@examples(15)
 @given(st.data())
 def test_a_description_has_the_truth_that_the_audit_computes(data: st.DataObject) -> None:
     declared: dict[str, Signal] = {name: data.draw(signals(name)) for name in ("a", "b")}

@@ -28,6 +28,7 @@ from fretish.printer import expression
 from fretish.printer import sentence as printed
 from fretish.syntax import Sentence
 from monitors.kernel.columns import Column
+from tests.effort import FULL
 from tests.emitting import rule
 from tests.strategies import sentences
 
@@ -90,7 +91,10 @@ def test_an_operand_decides_alone_where_its_opposite_leads_elsewhere(sentence: s
     judged = Judged(sentence)
     listed = {each.key: each for each in situations(judged.rule)}
     choose, seen = random.Random(sentence), set[str]()
-    for _ in range(500):
+    alone = {key for key in listed if key.startswith("alone-")}
+    for number in range(500):
+        if not FULL and number >= 80 and seen == alone:
+            break
         run = judged.run(choose, choose.choice((1, 1, 2, 3, 6)))
         bits = {n: sum(row[n] << t for t, (_, row) in enumerate(run)) for n in judged.atoms}
         for (name, part), atom in product(PARTS.items(), judged.atoms):
@@ -106,7 +110,7 @@ def test_an_operand_decides_alone_where_its_opposite_leads_elsewhere(sentence: s
                 value = judged.letter(row)[part]
                 assert shown == {True: expected and value, False: expected and not value}
                 seen |= {keys[v] for v in shown if shown[v]}
-    assert seen == {key for key in listed if key.startswith("alone-")}
+    assert seen == alone
 
 
 @pytest.mark.slow
@@ -117,8 +121,10 @@ def test_an_unknown_decides_where_both_values_may_lead_elsewhere(sentence: str) 
     choose, seen = random.Random(sentence), set[str]()
     listed = [each for each in situations(judged.rule) if each.unknown is not None]
     assert {each.unknown for each in listed} == {*judged.atoms}
-    for each, _ in product(listed, range(300)):
+    for each, number in product(listed, range(300)):
         assert each.unknown is not None
+        if not FULL and number >= 50 and each.key in seen:
+            continue
         run = judged.run(choose, choose.randrange(1, 6))
         state, row = run[-1]
         at, length = len(run) - 1, len(run)

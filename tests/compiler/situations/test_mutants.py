@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import Formalized
@@ -17,6 +17,7 @@ from fretish.documents import Requirement
 from fretish.parser import parse
 from fretish.printer import canonical
 from fretish.printer import sentence as printed
+from tests.effort import examples
 from tests.emitting import rule
 from tests.strategies import sentences, templates
 
@@ -64,7 +65,7 @@ def assert_others(original: Formalized, found: tuple[Mutant, ...]) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=25)
+@examples(8)
 @given(sentences)
 def test_no_two_mutants_say_the_same_and_each_says_what_its_text_says(sentence: s.Sentence) -> None:
     original = formalized(printed(sentence))
