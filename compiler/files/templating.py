@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import sys
 from contextlib import suppress
 from functools import cache
@@ -99,8 +100,13 @@ class _Compiled(FileSystemBytecodeCache):
 def python(value: object) -> str:
     """The value as a Python literal, in ASCII."""
     if isinstance(value, str):
-        return json.dumps(value)
+        return f'"{"".join(map(_character, value))}"'
     return ascii(value)
+
+
+def _character(one: str) -> str:
+    """It in a Python string; beyond 16 bits JSON would write two, which Python does not join."""
+    return json.dumps(one)[1:-1] if ord(one) < 0x10000 else f"\\U{ord(one):08x}"
 
 
 def script(text: str) -> str:
@@ -130,7 +136,7 @@ def c_remark(text: str) -> str:
 def _harmless(text: str) -> str:
     """In printable ASCII, without the signs that begin or end a comment of C, and no trigraphs."""
     flat = comment(text, "").strip()
-    return flat.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?")
+    return re.sub(r"\?(?=\?)", "? ", flat.replace("*/", "* /").replace("/*", "/ *"))
 
 
 def quoted(text: str) -> str:

@@ -1,11 +1,24 @@
+import ast
 import json
+import re
+import tomllib
 from typing import Any
 
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from compiler.files.templating import to_json
+from compiler.files.templating import (
+    c_comment,
+    c_remark,
+    comment,
+    data,
+    python,
+    quoted,
+    script,
+    to_json,
+    toml,
+)
 
 SCALARS = st.none() | st.booleans() | st.integers() | st.text(max_size=60) | st.floats(
     allow_nan=False, allow_infinity=False
@@ -44,3 +57,57 @@ def test_what_fits_on_a_line_stands_on_one(value: Any) -> None:
 def test_json_has_no_number_that_is_none(number: float) -> None:
     with pytest.raises(ValueError, match="not JSON compliant"):
         to_json([number])
+
+
+# Text of a user within the text of another language ----------------------------------------------
+
+TEXTS = st.text(max_size=30) | st.text("*/?\\\"'<!-> \n\r\t\u2028a", max_size=12)
+
+
+def hostile(test: Any) -> Any:
+    """The test with texts that end comments, strings and scripts."""
+    for text in ("*/*/", "/*/ **/", "???/", '\\" \\', "</script>", "<!-- ]]>", "a\nb\\", "\x00"):
+        test = example(text)(test)
+    return given(TEXTS)(test)
+
+
+def is_plain(line: str) -> bool:
+    return line.isascii() and line.isprintable()
+
+
+@hostile
+def test_a_string_is_read_back(text: str) -> None:
+    assert ast.literal_eval(python(text)) == text
+    assert json.loads(script(text)) == text
+    assert is_plain(python(text).replace("\x7f", ""))
+    assert is_plain(script(text).replace("\x7f", ""))
+
+
+@hostile
+def test_no_text_ends_the_script_that_it_stands_in(text: str) -> None:
+    assert "<" not in script(text)
+    assert "<" not in data({text: [text]})
+    assert json.loads(data({text: [text]})) == {text: [text]}
+
+
+@hostile
+def test_no_text_ends_the_comment_that_it_stands_in(text: str) -> None:
+    assert is_plain(comment(text))
+    for inner in (c_comment(text).removeprefix(" * "), c_remark(text)[3:-3]):
+        assert is_plain(inner)
+        assert not re.search(r"\*/|/\*|\?\?", inner)
+    assert re.fullmatch(r"/\* .* \*/", c_remark(text))
+
+
+@hostile
+def test_no_text_ends_the_string_of_an_automaton(text: str) -> None:
+    written = quoted(text)
+    assert re.fullmatch(r'"([^"\\]|\\.)*"', written)
+    assert re.sub(r"\\(.)", r"\1", written[1:-1]) == " ".join(text.split())
+
+
+@given(st.text(st.characters(codec="utf-8"), max_size=30))
+@example("\\\n'''\x00\"\"\"")
+def test_a_text_of_toml_is_read_back(text: str) -> None:
+    assert tomllib.loads(f"x = {toml(text)}") == {"x": text}
+    assert "\n" not in toml(text)
