@@ -117,10 +117,14 @@ def script(text: str) -> str:
 def comment(text: str, mark: str = "#") -> str:
     """One line that cannot end the comment it stands in, in printable ASCII."""
     flat = " ".join(text.split())
-    safe = "".join(
-        c if c.isascii() and c.isprintable() else c.encode("unicode_escape").decode() for c in flat
-    )
-    return f"{mark} {safe}"
+    if not (flat.isascii() and flat.isprintable()):
+        flat = "".join(map(_safe, flat))
+    return f"{mark} {flat}"
+
+
+def _safe(sign: str) -> str:
+    is_plain = sign.isascii() and sign.isprintable()
+    return sign if is_plain else sign.encode("unicode_escape").decode()
 
 
 def c_comment(text: str, indent: str = "") -> str:

@@ -95,8 +95,11 @@ def planned(
     errors = tuple(dict.fromkeys(reason for _, why in unauditable for reason in why))
     if declarations is None or not rules:
         return errors or (Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit"),)
-    basis_of = bases(project)
-    claims = tuple(_claim(rule, basis_of[id(rule.requirement)]) for rule in rules)
+    texts = {id(rule.requirement): monitors.text(rule) for rule in rules}
+    basis_of = bases(project, monitors={place: sha256(text) for place, text in texts.items()})
+    claims = tuple(
+        _claim(rule, basis_of[id(rule.requirement)], texts[id(rule.requirement)]) for rule in rules
+    )
     refused = tuple(_refused(basis_of, requirement, why) for requirement, why in unauditable)
     used = declarations.reading(name for rule in rules for name in rule.watched)
     digest = _digest(claims, refused, used, evaluation, integrity)
@@ -110,12 +113,12 @@ def _refused(
     return RefusedRequirement(requirement.id, wording(requirement), basis_of[id(requirement)], why)
 
 
-def _claim(rule: Formalized, basis: Basis) -> Claim:
+def _claim(rule: Formalized, basis: Basis, monitor: str) -> Claim:
     return Claim(
         rule.id,
         wording(rule.requirement),
         basis,
-        monitors.text(rule),
+        monitor,
         demand(rule),
         situations(rule, exact=True),
         chance(rule),

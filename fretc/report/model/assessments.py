@@ -28,7 +28,7 @@ from fretc.audit.measurements.trials import NO_TRIALS
 from fretc.report.model.audits import ProbabilityAudit, SingleAudit
 from fretc.report.model.suspicions import AboutResults, about_estimation, since_review
 from fretc.report.model.views import Mark, verdict_mark
-from fretc.report.traceability.artefacts import Product, products
+from fretc.report.traceability.artefacts import Product, monitors, products
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, Standing, standings
 from fretc.report.traceability.waivers import Waiver
@@ -182,7 +182,7 @@ def assessments(
     diagnostics = {id(each.requirement): each.diagnostic for each in project.failed}
     results = briefs.by_requirement if briefs else {}
     products_of = {id: products(rule) for id, rule in rules.items()}
-    basis_of = bases(project, monitors=_monitors(products_of))
+    basis_of = bases(project, monitors=monitors(products_of))
     all_chains = chains(project, briefs, products_of, proofs, basis_of, analyzed)
     standing_of_each = standings(all_chains, lock)
     audited_by = briefs.source.fretc if briefs else ""
@@ -212,16 +212,6 @@ def assessments(
             )
         )
     return tuple(assessed)
-
-
-def _monitors(products_of: Mapping[int, Sequence[Product]]) -> Mapping[int, str]:
-    """The SHA-256 of each monitor that can be made."""
-    return {
-        id: product.sha256
-        for id, some in products_of.items()
-        for product in some
-        if product.target == monitor.TARGET.name and product.sha256
-    }
 
 
 def _probability(

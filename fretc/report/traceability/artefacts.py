@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
 
@@ -11,7 +11,7 @@ from compiler.files.text_files import sha256
 from compiler.formalization.formalized import Formalized
 from compiler.logic.claims import Proof
 from compiler.targets.interceptor_options import ASSUMED, assumed
-from compiler.targets.python import interceptor
+from compiler.targets.python import interceptor, monitor
 from compiler.targets.target import Options, Target
 from fretish.bindings.declarations import Declarations
 
@@ -40,6 +40,16 @@ def products(rule: Formalized | None) -> tuple[Product, ...]:
     planned = [name for name in rule.requirement.verify if name in TARGETS]
     names = [name for name in dict.fromkeys((*_ALWAYS, *planned)) if TARGETS[name].per_rule]
     return tuple(product for name in names for product in _of_target(TARGETS[name], rule))
+
+
+def monitors(products_of: Mapping[int, Sequence[Product]]) -> Mapping[int, str]:
+    """The SHA-256 of each monitor that can be made, by the same keys."""
+    return {
+        id: product.sha256
+        for id, some in products_of.items()
+        for product in some
+        if product.target == monitor.TARGET.name and product.sha256
+    }
 
 
 _LANGUAGES = {"_monitor.c": "c", "lib.rs": "rust", "_monitor.mjs": "js"}

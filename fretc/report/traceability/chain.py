@@ -27,7 +27,7 @@ from fretc.audit.evidence.basis import Basis
 from fretc.audit.evidence.briefs import Brief, Briefs, Recorded
 from fretc.report.traceability import texts
 from fretc.report.traceability.analyses import Answer, answers
-from fretc.report.traceability.artefacts import Product, shared_products
+from fretc.report.traceability.artefacts import Product, monitors, shared_products
 from fretc.report.traceability.artefacts import products as products_of
 from fretc.report.traceability.texts import Texts
 from fretish.bindings.canonical import described, digest
@@ -154,14 +154,14 @@ def chains(
     """
     rules = {id(rule.requirement): rule for rule in project.rules}
     results = briefs.by_requirement if briefs else {}
-    common = _common(project, briefs, proofs, known, analyzed)
+    if artefacts is None:
+        artefacts = {requirement: products_of(rule) for requirement, rule in rules.items()}
+    common = _common(project, briefs, artefacts, proofs, known, analyzed)
     return tuple(
         _ChainBuilder(common, requirement).build(
             requirement,
             rules.get(id(requirement)),
-            products_of(rules.get(id(requirement)))
-            if artefacts is None
-            else artefacts.get(id(requirement), ()),
+            artefacts.get(id(requirement), ()),
             [each for _, each in results.get(requirement.id, ())],
             [proof for proof in proofs if proof.requirement == requirement.id],
         )
@@ -193,6 +193,7 @@ class _Common:
 def _common(
     project: Project,
     briefs: Briefs | None,
+    artefacts: Mapping[int, Sequence[Product]],
     proofs: Sequence[Proof],
     known: Mapping[int, Basis] | None,
     analyzed: AnalyzedSet | None,
@@ -202,7 +203,7 @@ def _common(
     return _Common(
         project,
         {requirement.id: requirement for requirement in project.requirements},
-        bases(project, topics) if known is None else known,
+        bases(project, topics, monitors(artefacts)) if known is None else known,
         briefs.source.fretc if briefs else "",
         _by_requirement(project.acceptances),
         {product.file: product.sha256 for product in shared},
