@@ -31,6 +31,8 @@ from tests.command import Fretc, runner  # noqa: E402
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
+    from tests.simulation.missions import Missions
+
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell starts what runs in its background so, and every process that a test starts would
     # inherit that Ctrl-C does nothing.
@@ -109,3 +111,14 @@ def browser() -> "Iterator[Browser]":
         chromium = started.chromium.launch(executable_path=path, args=["--no-sandbox"])
         yield chromium
         chromium.close()
+
+
+@pytest.fixture(scope="session")
+def missions(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> "Missions":
+    """Missions of the simulated robot, kept in pytest's cache where it has one."""
+    from tests.simulation.missions import Missions
+
+    cache = getattr(request.config, "cache", None)
+    return Missions(cache.mkdir("missions") if cache else tmp_path_factory.mktemp("missions"))

@@ -70,8 +70,12 @@ def share(count: int, runs: int) -> Share:
 
 def simulated(scenario: Scenario, seed: int, out: Path) -> Run:
     """Record one mission, and audit its log."""
-    mission = recorded(scenario, seed, out)
-    audit = audited(plan(), str(out))
+    return assessed(recorded(scenario, seed, out))
+
+
+def assessed(mission: Mission) -> Run:
+    """Audit the log of a mission."""
+    audit = audited(plan(), str(mission.path))
     return _run(mission, {r.requirement: r.verdict for r in audit.results})
 
 

@@ -12,16 +12,16 @@ from simulation.mission import Contact
 from simulation.picture import _clusters, _contact_times, _counts, _nose, _state, animate, draw
 from simulation.world.motion import Pose
 from simulation.world.scenario import load
-from tests.simulation.missions import record
+from tests.simulation.missions import Missions, cut_off, record
 
 
 @pytest.mark.slow
-def test_the_picture_shows_what_was_moved_and_where_the_robot_was_stopped(tmp_path: Path) -> None:
+def test_the_picture_shows_what_was_moved_and_where_the_robot_was_stopped(
+    missions: Missions,
+) -> None:
     shares = {}
     for name in ("nominal", "obstacle-moved"):
-        mission = record(tmp_path / "a.mcap", load(name), max_seconds=20)
-        (tmp_path / f"{name}.png").write_bytes(draw(mission))
-        image = imread(tmp_path / f"{name}.png")[..., :3]
+        image = imread(BytesIO(draw(missions(cut_off(name)))))[..., :3]
         assert image.shape[0] > 600
         shares[name] = {
             colour: float((np.abs(image - np.array(rgb) / 255).max(axis=2) < 0.02).mean())
@@ -48,13 +48,12 @@ def test_the_picture_and_the_film_show_where_the_robot_touched_something(tmp_pat
 
 
 @pytest.mark.slow
-def test_the_film_shows_the_whole_mission(tmp_path: Path) -> None:
-    mission = record(tmp_path / "a.mcap", load("obstacle-moved"), max_seconds=30)
-    film = Image.open(BytesIO(animate(mission)))
+def test_the_film_shows_the_whole_mission(missions: Missions) -> None:
+    film = Image.open(BytesIO(animate(missions(cut_off("obstacle-moved")))))
     assert isinstance(film, GifImageFile)
-    assert film.n_frames == 16
+    assert film.n_frames == 12
     red = []
-    for frame in (0, 15):
+    for frame in (0, 11):
         film.seek(frame)
         seen = np.asarray(film.convert("RGB")).astype(int) - (192, 24, 42)
         red.append(int((np.abs(seen).max(axis=2) < 40).sum()))

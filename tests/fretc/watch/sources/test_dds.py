@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from tests.fretc.watch.test_session import audited_rows
 from tests.fretc.watch.watched import ROOT, Watched, audited
 from tests.programs import needs_package
 from tests.ros1 import until
-from tests.simulation import missions
+from tests.simulation.missions import Missions
 
 LATENESS = 'lateness = "2 s"'
 """What a machine takes at most that is busy with other tests."""
@@ -125,8 +126,8 @@ def test_robot_watch_and_node_agree_with_the_audit_in_real_time(tmp_path: Path) 
 
 @full_only("minutes")
 @pytest.mark.parametrize("name", scenarios.names())
-def test_they_agree_in_every_scenario(name: str, tmp_path: Path) -> None:
-    missions.record(tmp_path / "mission.mcap", scenarios.load(name), max_seconds=LAST)
-    found = agreed(tmp_path / "mission.mcap", tmp_path, FIRST, LAST)
+def test_they_agree_in_every_scenario(missions: Missions, name: str, tmp_path: Path) -> None:
+    mission = missions(replace(scenarios.load(name), duration=LAST))
+    found = agreed(mission.path, tmp_path, FIRST, LAST)
     print(name, found)  # shown by `-rP`
     assert found["ticks"] > 20
