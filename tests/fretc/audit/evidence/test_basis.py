@@ -19,12 +19,14 @@ from mcap.writer import Writer
 
 from compiler.files.records import decoded
 from compiler.project.folder import whole
+from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.schema import Document
 from fretc.audit.evidence.writer import text
-from fretc.audit.store.anywhere import read
+from fretc.audit.store.anywhere import read, source
 from fretc.audit.store.writer import write_document
 from fretc.report.make import make
-from fretc.report.traceability.lock import Lock
+from fretc.report.traceability.chain import chains
+from fretc.report.traceability.lock import Lock, standings
 from fretc.report.traceability.lock import read as read_lock
 from fretc.report.traceability.lock import text as lock_text
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -155,6 +157,11 @@ class Change:
     respelt: str = ""
     """The requirement of which a threshold is written otherwise: it means the same, and its digits
     say where beside it runs are looked through."""
+
+    @property
+    def things(self) -> frozenset[str]:
+        """What it touches, whichever requirement that belongs to."""
+        return frozenset(thing.partition(" ")[0] for thing in self.touches)
 
     def stale(self, audited: bool) -> set[str]:
         """Requirements whose evidence is about something else than what is here."""
@@ -427,13 +434,15 @@ CHANGES = {
 }
 
 NOTHING = [name for name, one in CHANGES.items() if not (one.touches or one.respelt)]
-GROUPS = len(NOTHING) if FULL else 8
+GROUPS = len(NOTHING) if FULL else 4
 TOGETHER = [tuple(NOTHING[i::GROUPS]) for i in range(GROUPS)]
 """Made one after the other in quick tests: what changes nothing changes nothing beside others."""
 REACHING = {name: one for name, one in CHANGES.items() if name not in NOTHING}
-KINDS = {(one.touches, one.of_audit, one.respelt): name for name, one in REACHING.items()}
-AUDITED = REACHING if FULL else {*KINDS.values()}
-"""After which there is a new audit: quick tests make one of each kind."""
+KINDS = {(one.things, one.of_audit, bool(one.respelt)): name for name, one in REACHING.items()}
+TOLD = REACHING if FULL else [*KINDS.values()]
+"""What all commands are asked about: in quick tests one of each kind; `chains` about all."""
+AUDITED = REACHING if FULL else {n for n in TOLD if REACHING[n].things & {"clock", "log", "words"}}
+"""After which there is a new audit."""
 
 
 # What is said -----------------------------------------------------------------------------------
@@ -507,7 +516,35 @@ def asked(fretc: Fretc) -> Said:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", REACHING)
+def test_a_change_is_in_the_chains_of_what_is_made_of_it_and_of_nothing_else(
+    reviewed: Fretc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for place, (name, change) in enumerate(CHANGES.items()):
+        folder = tmp_path / str(place)
+        shutil.copytree(".", folder, ignore=shutil.ignore_patterns(*map(str, range(place))))
+        with monkeypatch.context() as there:
+            there.chdir(folder)
+            change.make()
+            stale, suspect = chained()
+        shutil.rmtree(folder)
+        assert stale == change.stale(audited=False), name
+        assert suspect == change.suspect(audited=False), name
+
+
+def chained() -> tuple[set[str], set[str]]:
+    """Requirements whose evidence is of something else, and those with a review to be renewed."""
+    project, evidence = whole("requirements"), source("build/evidence")
+    lock = read_lock("requirements/fretc.lock")
+    assert not isinstance(project, Diagnostic)
+    assert not isinstance(evidence, Diagnostic)
+    assert isinstance(lock, Lock)
+    found = chains(project, Briefs.of(evidence))
+    suspect = {one.chain.requirement for one in standings(found, lock) if one.suspects}
+    return {chain.requirement for chain in found if chain.outdated}, suspect
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", TOLD)
 def test_a_change_reaches_what_is_made_of_it_and_nothing_else(reviewed: Fretc, name: str) -> None:
     change = REACHING[name]
     change.make()
