@@ -12,6 +12,7 @@ from fretish.diagnostics.diagnostic import Diagnostic, Severity
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.parser import parse
+from tests.effort import FULL
 from tests.meaning import CONDITIONS, SCOPES
 from tests.strategies import Template
 
@@ -243,7 +244,7 @@ def test_two_different_periods_are_not_shown_alike() -> None:
     st.integers(1, 30),
     st.lists(st.tuples(st.booleans(), st.booleans(), st.booleans()), min_size=1, max_size=9),
 )
-@settings(max_examples=1000)
+@settings(max_examples=2000 if FULL else 150)
 def test_whatever_satisfies_the_rounded_sentence_satisfies_the_exact_one(
     scope: str, condition: str, timing: str, parts: int, amount: int, rows: list[tuple[bool, ...]]
 ) -> None:

@@ -17,6 +17,7 @@ from monitors.kernel import Monitor, evaluate
 from monitors.kernel.outcomes import stepped as run_by_steps
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
+from tests.effort import FULL
 from tests.monitoring import emitted, monitor, packed, rule, step
 
 WINDOW = "sw shall always satisfy (p | occurred(2, 5, q))"
@@ -479,7 +480,7 @@ def test_what_requirements_share_is_computed_once() -> None:
 @pytest.mark.parametrize("sentence", SENTENCES)
 def test_a_look_ahead_says_what_would_be_and_changes_nothing(sentence: str) -> None:
     machine, other = monitor(sentence), monitor(sentence)
-    for seed in range(60):
+    for seed in range(60 if FULL else 15):
         block = rows(machine, 1 + seed % 3, seed, 0.1 if seed % 2 else 0.0)
         before = machine.state()
         copy = monitor(sentence)
