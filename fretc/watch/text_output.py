@@ -95,9 +95,9 @@ def line(news: News, start: int | None) -> str | None:
         case Reconnected(since, until):
             return f"connected again: what came within {duration((until - since) / _S)} is lost"
         case Missed(since, until, count):
-            messages = "1 message" if count == 1 else f"{count} messages"
+            what = "1 message" if count == 1 else f"{count} messages"
             within = f" within {duration((until - since) / _S)}" if until > since else ""
-            return f"missed {messages}{within}: unknown"
+            return f"missed {what}{within}: unknown"
         case RunEnded(number, verdicts, recording, ticks):
             where = f", recorded in {recording}" if recording else ""
             of = ", ".join(f"{id} {verdict}" for id, verdict in verdicts.items())
