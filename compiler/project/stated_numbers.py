@@ -6,7 +6,7 @@ A title that says 5 cm beside a binding of 0.9 m misleads everyone who reads onl
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
 from compiler.formalization.formalized import Formalized
@@ -43,8 +43,7 @@ def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diag
 def drifted(rule: Formalized, declarations: Declarations) -> Iterator[tuple[str, str]]:
     """The same as field and number: `("title", "0.40 m/s")`, `("params", "0.40 m/s")`."""
     for name, text in rule.requirement.params.items():
-        stated, known = units.quantity(text), _propositions(rule, declarations, name)
-        if stated is not None and known and not _is_stated(stated, known):
+        if _has_drifted(text, _propositions(rule, declarations, name)):
             yield "params", text
     yield from ((field, words) for field, words, _ in _drifted_words(rule, declarations))
 
@@ -83,15 +82,14 @@ def _parameters(rule: Formalized, declarations: Declarations) -> Iterator[Diagno
                 help="name the proposition or signal that the number belongs to, and bind it",
             )
             continue
-        stated = units.quantity(text)
-        if stated is None:
+        if units.quantity(text) is None:
             yield Diagnostic(
                 Code.BAD_FIELD,
                 f"`{text}` is no quantity",
                 place,
                 help='write a number and a unit: `"5 cm"`',
             )
-        elif known and not _is_stated(stated, known):
+        elif _has_drifted(text, known):
             yield Diagnostic(
                 Code.PARAMETER_DRIFT,
                 f"the requirement states {text} for `{name}`, and its binding has another number",
@@ -99,6 +97,12 @@ def _parameters(rule: Formalized, declarations: Declarations) -> Iterator[Diagno
                 help="make the binding or `params` say what is meant",
                 severity=Severity.WARNING,
             )
+
+
+def _has_drifted(text: str, known: Sequence[Proposition]) -> bool:
+    """Whether a quantity of `params` is a number of none of its propositions."""
+    stated = units.quantity(text)
+    return stated is not None and bool(known) and not _is_stated(stated, known)
 
 
 def _is_stated(number: Exact, known: Iterable[Proposition]) -> bool:
