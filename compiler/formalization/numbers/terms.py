@@ -11,7 +11,6 @@ from fractions import Fraction
 from typing import Any
 
 import z3
-from z3 import z3util
 
 from compiler.formalization.formalized import Formalized
 from fretish import expressions as e
@@ -210,7 +209,17 @@ _RANGES: Mapping[str, tuple[int, int]] = {
 
 def read_by(formula: Term) -> frozenset[str]:
     """The variables that a formula is about."""
-    return frozenset(str(each) for each in z3util.get_vars(formula))
+    names: set[str] = set()
+    waiting, seen = [formula], set()
+    while waiting:
+        term = waiting.pop()
+        if (id := term.get_id()) not in seen:
+            seen.add(id)
+            parts = term.children()
+            waiting.extend(parts)
+            if not parts and term.decl().kind() == z3.Z3_OP_UNINTERPRETED:
+                names.add(term.decl().name())
+    return frozenset(names)
 
 
 def _exact(value: Fraction) -> Term:

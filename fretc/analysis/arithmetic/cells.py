@@ -183,7 +183,7 @@ def _seen(formulas: Sequence[Term], domain: Term, limit: Limit) -> Iterator[Patt
 def reads(formula: Term, variables: Sequence[Term]) -> bool:
     """Whether a formula is about one of the variables."""
     names = read_by(formula)
-    return any(str(each) in names for each in variables)
+    return any(each.decl().name() in names for each in variables)
 
 
 def literals(formulas: Sequence[Term], pattern: Sequence[bool]) -> list[Term]:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -132,10 +133,13 @@ def _fits(content: float | Sequence[float], field: Field) -> bool:
     return limits.min <= number <= limits.max
 
 
-def _beams(signal: Signal, gap: float) -> Iterator[float]:
-    """The two ranges of a beam straight ahead whose end is so far from the outline, or about so."""
-    if gap == 0 and signal.invalid.negative_infinity is Reading.NEAR:
-        yield -math.inf
+@lru_cache
+def _beams(signal: Signal, gap: float) -> tuple[float, ...]:
+    """The two ranges of a beam straight ahead whose end is so far from the outline, or about so.
+
+    Every test of a requirement asks for the same few.
+    """
+    first = (-math.inf,) if gap == 0 and signal.invalid.negative_infinity is Reading.NEAR else ()
     low, high = np.float32(0), np.float32(_FARTHEST)
     while np.nextafter(low, high) < high:
         middle = np.float32((low + high) / 2)
@@ -143,7 +147,7 @@ def _beams(signal: Signal, gap: float) -> Iterator[float]:
             low = middle
         else:
             high = middle
-    yield from (float(high), float(low))
+    return (*first, float(high), float(low))
 
 
 def _unknown(signal: Signal, field: Field) -> Iterator[Choice]:

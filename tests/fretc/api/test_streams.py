@@ -14,6 +14,7 @@ from fretc.audit.one_log import audit
 from fretc.audit.plan import Plan, monitored_requirements, planned
 from fretc.logs.signals.samples import Recording, Samples, Topic
 from fretish.diagnostics.diagnostic import Code
+from tests.effort import FULL
 
 ROOT = Path(__file__).parent.parent.parent.parent
 SENTENCES = (
@@ -65,7 +66,9 @@ def verdicts(plan: Plan, samples: list[tuple[int, float]]) -> dict[str, str]:
 
 
 @pytest.mark.slow
-@settings(max_examples=20)  # each makes monitors and looks at all phases of the ticks
+@settings(
+    max_examples=100 if FULL else 8
+)  # each makes monitors and looks at all phases of the ticks
 @given(
     st.lists(
         st.tuples(st.integers(1, 120), st.sampled_from([0.0, 2.0, 4.0, float("nan")])), min_size=1

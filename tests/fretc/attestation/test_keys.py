@@ -23,6 +23,7 @@ from fretc.attestation.keys import (
     signed_envelope,
 )
 from tests import keys
+from tests.effort import some
 from tests.programs import installed, needs
 
 KINDS = ("ed25519", "nistp256", "nistp384", "nistp521", "rsa2048")
@@ -142,7 +143,7 @@ def test_the_library_itself_reads_and_verifies_the_envelope() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", some(KINDS, 2))
 def test_an_encrypted_key_needs_its_passphrase(kind: str) -> None:
     for form in (PrivateFormat.OpenSSH, PrivateFormat.PKCS8):
         data = keys.private(PAIRS[kind], "open sesame", form)
@@ -181,7 +182,9 @@ def test_keys_that_do_not_count_are_refused_with_a_reason() -> None:
 
 @pytest.mark.slow
 @needs("ssh-keygen")
-@pytest.mark.parametrize("kind", ["ed25519", "ecdsa -b 256", "ecdsa -b 521", "rsa -b 2048"])
+@pytest.mark.parametrize(
+    "kind", some(["ed25519", "ecdsa -b 256", "ecdsa -b 521", "rsa -b 2048"], 2)
+)
 def test_ssh_keygen_makes_the_keys_and_names_them_alike(kind: str, tmp_path: Path) -> None:
     file = tmp_path / "key"
     for word in ("", "secret words"):

@@ -39,7 +39,8 @@ def strange() -> list[Sent]:
         Sent(
             "/pump",
             "acme/Pump",
-            b'{"charge": 0, "flow rate": 1, "flow": %d.5, "valve": "%s"}' % (i, b"open" if i < 9 else b"shut"),
+            b'{"charge": 0, "flow rate": 1, "flow": %d.5, "valve": "%s"}'
+            % (i, b"open" if i < 9 else b"shut"),
             1000 * S + i * 100 * MS,
             None,
             "json",

@@ -6,6 +6,7 @@ The logs are audited once for each integrity, and every change is compared with 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,7 @@ from fretc.verification import reader as proven
 from fretc.verification.engines.sandbox import Limits
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import write
+from tests.effort import FULL
 from tests.fretc.commands.test_verify_evidence import BINDINGS, log, manifested
 
 Step = str | int
@@ -141,8 +143,12 @@ def others(value: Any) -> list[Any]:
             return [0, "", False]
 
 
-def changes(content: Any) -> Iterator[tuple[str, Place, str]]:
-    """What is done, where, and the text of the file then."""
+def changes(content: Any, *, every: bool = True) -> Iterator[tuple[str, Place, str]]:
+    """What is done, where, and the text of the file then.
+
+    Not every one: one key of an object is there twice, and other values of a leaf take turns.
+    """
+    turns = count()
     for at in places(content):
         value = inside(content, at)
         if at:
@@ -151,7 +157,7 @@ def changes(content: Any) -> Iterator[tuple[str, Place, str]]:
             yield "emptied", at, put(content, at, type(value)())
         if isinstance(value, dict):
             yield "a key more", at, put(content, at, {**value, "more": 1})
-            for key in value:
+            for key in value if every else [*value][:1]:
                 twice = {**value, f"{MARK}{key}": value[key]}
                 yield "twice", (*at, key), put(content, at, twice)
         elif isinstance(value, list):
@@ -162,18 +168,24 @@ def changes(content: Any) -> Iterator[tuple[str, Place, str]]:
             if [*reversed(value)] != value:
                 yield "in another order", at, put(content, at, [*reversed(value)])
         else:
-            for other in others(value):
+            values = others(value)
+            for other in values if every else [values[next(turns) % len(values)]]:
                 yield f"{other!r}", at, put(content, at, other)
 
 
 def is_free(content: Any, what: str, at: Place) -> bool:
     """Whether it is a leaf that may be otherwise, or the order of what is not ordered."""
-    generic = tuple("*" if isinstance(step, int) else step for step in at)
+    place = tuple(map(generic, at))
     if what == "in another order":
-        return generic in UNORDERED
-    if what == "taken out" and generic[:-1] == ASSUMED:
+        return place in UNORDERED
+    if what == "taken out" and place[:-1] == ASSUMED:
         return str(inside(content, at)).endswith(DEFAULTS)
-    return generic in FREE and what not in STRUCTURE
+    return place in FREE and what not in STRUCTURE
+
+
+def generic(step: Step) -> str:
+    """A key, or any place of a list."""
+    return "*" if isinstance(step, int) else step
 
 
 UNORDERED: Mapping[tuple[str, ...], str] = {
@@ -259,12 +271,14 @@ def case(folder: Path) -> Case:
 def test_no_change_to_evidence_is_certified(case: Case) -> None:
     content = json.loads(Path("build/evidence.json").read_text())
     assert stands(case.judged(json.dumps(content)))
-    passed, count = [], 0
-    for what, at, text in changes(content):
-        count += 1
-        if not is_free(content, what, at) and stands(case.judged(text)):
-            passed.append((what, at))
-    assert count > 1000
+    passed, tried = [], 0
+    first: dict[tuple[str, ...], Place] = {}  # of the places that differ by their numbers alone
+    for what, at, text in changes(content, every=FULL):
+        if FULL or first.setdefault(tuple(map(generic, at)), at) == at:
+            tried += 1
+            if not is_free(content, what, at) and stands(case.judged(text)):
+                passed.append((what, at))
+    assert tried > (1000 if FULL else 300)
     assert passed == []
 
 

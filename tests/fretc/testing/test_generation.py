@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from itertools import count, product
 
 from compiler.formalization.formalized import Formalized
@@ -35,6 +36,7 @@ MOST = 1 << (12 if os.environ.get("HYPOTHESIS_PROFILE") == "full" else 8)
 """Words that are listed of each length."""
 
 
+@cache
 def made(*sentences: str) -> Batch:
     """The tests of the first sentence, which keep the others."""
     first, *others = rules(*sentences)

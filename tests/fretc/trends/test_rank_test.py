@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import random
+from collections import Counter
 from fractions import Fraction
 from itertools import combinations, product
 from math import inf
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.trends.rank_test import MOST, Stratum, decidable, doubled_ranks, fewer, holm, larger
+from tests.effort import examples
 from tests.programs import needs_package
 
 NUMBERS = st.sampled_from([0.0, 1.0, 1.5, 2.0, 7.0, inf])
@@ -25,14 +27,18 @@ def rank(number: float, among: list[float]) -> Fraction:
     return less + Fraction(among.count(number) + 1, 2)
 
 
-def sums(strata: list[Stratum]) -> list[Fraction]:
-    """The rank sum of each arrangement."""
-    of_strata = []
+def sums(strata: list[Stratum]) -> Counter[Fraction]:
+    """How many arrangements have each rank sum."""
+    found = Counter({Fraction(): 1})
     for before, after in strata:
         together = [*before, *after]
         ranks = [rank(number, together) for number in together]
-        of_strata.append([sum(some, Fraction()) for some in combinations(ranks, len(after))])
-    return [sum(some, Fraction()) for some in product(*of_strata)]
+        own = Counter(sum(some, Fraction()) for some in combinations(ranks, len(after)))
+        summed = Counter[Fraction]()
+        for (one, count), (other, more) in product(found.items(), own.items()):
+            summed[one + other] += count * more
+        found = summed
+    return found
 
 
 def observed(strata: list[Stratum]) -> Fraction:
@@ -46,21 +52,21 @@ def both(strata: list[tuple[list[float], list[float]]]) -> list[Stratum]:
     return [(before, after) for before, after in strata if before and after]
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(STRATA)
 def test_p_is_the_share_of_arrangements_that_are_as_large(
     strata: list[tuple[list[float], list[float]]],
 ) -> None:
     tail, known = larger(strata), both(strata)
     every = sums(known)
-    assert tail.arrangements == len(every)
-    share = Fraction(sum(one >= observed(known) for one in every), len(every))
-    assert tail.p == pytest.approx(float(share), abs=1e-12)
-    least = Fraction(every.count(max(every)), len(every))
+    assert tail.arrangements == every.total()
+    as_large = sum(count for one, count in every.items() if one >= observed(known))
+    assert tail.p == pytest.approx(as_large / every.total(), abs=1e-12)
+    least = Fraction(every[max(every)], every.total())
     assert tail.least == pytest.approx(float(least), abs=1e-12)
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(st.lists(NUMBERS, min_size=3, max_size=7), st.integers(1, 3))
 def test_it_alarms_no_more_often_than_it_says(pooled: list[float], after: int) -> None:
     """Of all arrangements of the same numbers, at most a share of p has a p of at most p."""
@@ -74,7 +80,7 @@ def test_it_alarms_no_more_often_than_it_says(pooled: list[float], after: int) -
 
 
 @needs_package("scipy")
-@settings(max_examples=40)
+@examples(40)
 @given(st.lists(st.integers(0, 10**6), min_size=2, max_size=40, unique=True), st.data())
 def test_without_ties_it_is_scipy_s(numbers: list[int], data: st.DataObject) -> None:
     from scipy import stats

@@ -19,6 +19,7 @@ from fretc.analysis.controllers.moves import mealy
 from fretc.analysis.games.replay import first_breaches
 from fretc.analysis.stage import Stage
 from monitors.kernel.verdicts import VIOLATED
+from tests.effort import FULL
 from tests.monitoring import monitor
 from tests.requirement_sets import assumed, drawn, rule, staged
 
@@ -77,18 +78,19 @@ def machines(count: int, *, given: bool) -> Iterator[tuple[Stage, list[Formalize
 @pytest.mark.parametrize("given", [False, True])
 def test_no_run_of_an_automaton_breaks_a_requirement(given: bool) -> None:
     shown = 0
-    for setting, assumptions, found in machines(120, given=given):
+    count = 120 if FULL else 40
+    for setting, assumptions, found in machines(count, given=given):
         automaton = spot.automaton(hoa(found))
         wrong = f"({formula(assumptions)}) & !({formula(setting.rules)})"
         assert not runs_that(automaton, wrong), [each.requirement.wording for each in setting.rules]
         assert runs_that(automaton, "1")
         shown += 1
-    assert shown > 30
+    assert shown > count / 4
 
 
 @pytest.mark.slow
 def test_the_program_does_as_the_automaton_and_breaks_nothing() -> None:
-    for number, (setting, _, found) in enumerate(machines(60, given=False)):
+    for number, (setting, _, found) in enumerate(machines(60 if FULL else 30, given=False)):
         choose = random.Random(number)
         states, state = mealy(found, ["R1"], ENDLESS).states, 0
         step = program(found, setting)().step

@@ -24,16 +24,17 @@ from fretc.testing.generation import batch
 from fretc.testing.suite import Polarity, Suite
 from monitors.loading import executed, load
 from tests.each import each
-from tests.effort import some
+from tests.effort import FULL, some
 from tests.monitoring import rule
 from tests.programs import needs
 from tests.requirement_sets import rules
 
+LONG = 600 if FULL else 60
 SENTENCES = (
     "upon a the sw shall within 3 ticks satisfy x",
     "in b mode whenever a the sw shall for 2 ticks satisfy x & !y",
     "whenever a the sw shall until b satisfy y",
-    "upon level > 5 the sw shall within 600 ticks satisfy speed < 0.5 | x",
+    f"upon level > 5 the sw shall within {LONG} ticks satisfy speed < 0.5 | x",
 )
 
 
@@ -88,7 +89,7 @@ def test_emitted_tests_pass(sentence: str, tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_long_bounds_stay_short(tmp_path: Path) -> None:
     found, _ = written(tmp_path, Form.PYTEST, SENTENCES[3])
-    assert max(test.ticks for test in found.tests) > 600
+    assert max(test.ticks for test in found.tests) > LONG
     assert len((tmp_path / "test_r1.py").read_text()) < 40000
 
 
@@ -133,7 +134,7 @@ FAULTS = (
     (r"< 0 and ", "< 0 or "),
 )
 """What is replaced in the step of a rail, at each place by itself."""
-TICKS = 6
+TICKS = 6 if FULL else 5
 
 
 def faulty(text: str) -> list[str]:
@@ -202,7 +203,7 @@ WRONG = (
 
 @needs_both
 @pytest.mark.slow
-@each("wrong", some(WRONG, 3))
+@each("wrong", some(WRONG, 4))
 def test_a_wrong_monitor_fails_in_its_language(
     wrong: tuple[str, str, str, str], tmp_path: Path
 ) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import pytest
@@ -26,10 +28,16 @@ class Made:
     document: Any
 
 
-@pytest.fixture
-def made() -> Made:
+@cache
+def made_once() -> Made:
     rules = (rule(WITHIN, "R1"), rule(NUMBERS, "R2"))
     return Made(rules, plain(suite(rules, (), [batch(each, (), 60.0) for each in rules])))
+
+
+@pytest.fixture
+def made() -> Made:
+    """Its document is one's own."""
+    return Made(made_once().rules, deepcopy(made_once().document))
 
 
 def test_what_was_made_is_taken_as_it_is(made: Made) -> None:

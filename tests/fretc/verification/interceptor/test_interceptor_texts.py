@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from compiler.logic.claims import Result
@@ -27,7 +27,7 @@ from fretc.verification.interceptor.machine import (
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
 from tests.each import each
-from tests.effort import FULL
+from tests.effort import examples
 from tests.loops import interceptor_options
 
 DECLARED = Interception(
@@ -435,7 +435,7 @@ STATEMENTS = (
     st.lists(st.sampled_from(PLACES), max_size=3),
     st.sampled_from(STATEMENTS),
 )
-@settings(max_examples=2000 if FULL else 60)
+@examples(60)
 def test_what_is_not_of_the_language_is_refused_and_not_executed(
     outside: str, places: list[str], statement: str
 ) -> None:

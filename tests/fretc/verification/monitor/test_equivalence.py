@@ -181,8 +181,8 @@ def test_a_trigger_that_restarts_the_clock_is_found() -> None:
 @pytest.mark.slow
 def test_a_trigger_that_restarts_a_long_clock_is_found() -> None:
     """There are millions of pairs, but some thousand states decide."""
-    n = 10_000 if FULL else 2000
-    result = compare(within(n, restarts=True), sentence_within(n), n, ("p", "q"))
+    n, most = (10_000, 10**6) if FULL else (2000, 10**5)
+    result = compare(within(n, restarts=True), sentence_within(n), n, ("p", "q"), most)
     assert isinstance(result, Difference)
     assert len(result.word) == n + 1
     assert result.word[0] == (True, False)
