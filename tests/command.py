@@ -48,3 +48,22 @@ def write(path: str, text: str) -> str:
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     Path(path).write_bytes(text.encode())
     return path
+
+
+_MADE: dict[str, dict[str, bytes]] = {}
+
+
+def made_once(name: str, make: Callable[[], object]) -> None:
+    """Files in the present folder, which is empty: made once by each process, then written again.
+
+    Args:
+        name: of what is made, no other one's.
+        make: runs commands, which take longer than to write what they wrote.
+    """
+    if name not in _MADE:
+        make()
+        _MADE[name] = {str(p): p.read_bytes() for p in Path().rglob("*") if p.is_file()}
+        return
+    for path, content in _MADE[name].items():
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        Path(path).write_bytes(content)

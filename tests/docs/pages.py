@@ -5,16 +5,18 @@
     <!-- end -->
 
 The answers are written anew by `pytest -n0 tests/docs --update-golden`; without it, a page that has
-other ones is a failure.
+other ones is a failure. Those that take seconds are made with the full profile and then, only.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
 import pytest
+
+from tests.effort import FULL
 
 FOLDER = Path(__file__).parents[2] / "docs"
 _PART = re.compile(
@@ -24,12 +26,24 @@ Makers = Mapping[str, Callable[[str], str]]
 """Kind of a part → its text, by what the page asks for."""
 
 
-def is_current(name: str, makers: Makers, request: pytest.FixtureRequest) -> None:
-    """Compare the parts of a page with what the code makes of them, or rewrite them."""
+def is_current(
+    name: str, makers: Makers, request: pytest.FixtureRequest, costly: Collection[str] = ()
+) -> None:
+    """Compare the parts of a page with what the code makes of them, or rewrite them.
+
+    Args:
+        name: of the page.
+        makers: of the parts.
+        request: of the test.
+        costly: the subjects of parts that are left as they are, but with the full profile.
+    """
     path = FOLDER / name
     written = path.read_text(encoding="utf-8")
-    made = _PART.sub(lambda part: _made(part, makers), written)
-    if request.config.getoption("--update-golden"):
+    updates = request.config.getoption("--update-golden")
+    left = () if FULL or updates else costly
+    assert {*costly} <= {part["subject"] for part in _PART.finditer(written)}
+    made = _PART.sub(lambda p: p[0] if p["subject"] in left else _made(p, makers), written)
+    if updates:
         path.write_text(made, encoding="utf-8")
         return
     assert written == made, f"docs/{name}: pytest -n0 tests/docs --update-golden"

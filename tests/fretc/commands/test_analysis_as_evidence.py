@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from tests import keys
-from tests.command import Fretc, write
+from tests.command import Fretc, made_once, write
 from tests.fretc.commands.test_sign import envelopes, payload, signed
 from tests.fretc.commands.test_verify_evidence import BINDINGS, R1, log
 
@@ -19,14 +19,18 @@ Change = Callable[[dict[str, Any]], object]
 @pytest.fixture
 def analyzed(fretc: Fretc) -> Fretc:
     """One log, and three requirements that fight."""
-    sentences = (R1, "the sw shall always satisfy p", "the sw shall never satisfy q")
-    for number, sentence in enumerate(sentences, 1):
-        write(f"requirements/r{number}.fret", sentence)
-    roles = BINDINGS.replace('path = "/x.data"', 'path = "/x.data"\nrole = "output"')
-    write("requirements/bindings.toml", roles)
-    log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0)
-    fretc("audit", "logs", "-o", "build/evidence.json")
-    assert fretc("analyze", "requirements").status == 1
+
+    def make() -> None:
+        sentences = (R1, "the sw shall always satisfy p", "the sw shall never satisfy q")
+        for number, sentence in enumerate(sentences, 1):
+            write(f"requirements/r{number}.fret", sentence)
+        roles = BINDINGS.replace('path = "/x.data"', 'path = "/x.data"\nrole = "output"')
+        write("requirements/bindings.toml", roles)
+        log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0)
+        fretc("audit", "logs", "-o", "build/evidence.json")
+        assert fretc("analyze", "requirements").status == 1
+
+    made_once("a set that was analyzed", make)
     return fretc
 
 

@@ -13,7 +13,7 @@ from fretc.api.reports import make_report
 from fretc.audit.store.reader import Store, opened
 from fretc.audit.store.tables import RESULTS, VIOLATIONS
 from tests import keys
-from tests.command import Fretc, write
+from tests.command import Fretc, made_once, write
 from tests.fretc.audit.store.test_hostile import changed, with_table
 from tests.fretc.commands.test_verify_evidence import BINDINGS, R1, log
 
@@ -108,13 +108,17 @@ FAULTS: Mapping[str, tuple[str, Callable[[], object]]] = {
 def audited(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
     """A violated requirement that was reviewed before, and its evidence in a file and a store."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")
-    write("requirements/r1.fret", R1)
-    write("requirements/bindings.toml", BINDINGS)
-    keys.written("ada")
-    log("logs/bad.mcap", 0, 1.5, 0, 0, 0, 0)
-    for path in (FILE, STORE, "sound.json"):
-        assert fretc("audit", "logs", "-o", path).status == 1
-    assert fretc("lock", *BY, "--accept-violations", "--evidence", FILE).status == 0
+
+    def make() -> None:
+        write("requirements/r1.fret", R1)
+        write("requirements/bindings.toml", BINDINGS)
+        keys.written("ada")
+        log("logs/bad.mcap", 0, 1.5, 0, 0, 0, 0)
+        for path in (FILE, STORE, "sound.json"):
+            assert fretc("audit", "logs", "-o", path).status == 1
+        assert fretc("lock", *BY, "--accept-violations", "--evidence", FILE).status == 0
+
+    made_once("evidence that was reviewed", make)
     return fretc
 
 

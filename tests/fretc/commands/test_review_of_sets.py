@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.command import Fretc, write
+from tests.command import Fretc, made_once, write
 
 BY = ("--reviewer", "A. Meier", "--role", "safety engineer", "--comment", "looked at it")
 SENTENCES = {
@@ -29,10 +29,14 @@ def project(assumed: str = ASSUMED, **sentences: str) -> None:
 @pytest.fixture
 def locked(fretc: Fretc) -> Fretc:
     """R1 and R2 fight, R3 is apart, and all of that was accepted."""
-    project()
-    assert fretc("analyze", "requirements").status == 1
-    assert fretc("lock", *BY, "--accept-violations").status == 0
-    assert fretc("diff").status == 0
+
+    def make() -> None:
+        project()
+        assert fretc("analyze", "requirements").status == 1
+        assert fretc("lock", *BY, "--accept-violations").status == 0
+        assert fretc("diff").status == 0
+
+    made_once("a set that was reviewed", make)
     return fretc
 
 

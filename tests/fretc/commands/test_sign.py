@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from fretc.attestation.statement import TYPE
 from fretish.diagnostics import extras
 from tests import keys
-from tests.command import Fretc, write
+from tests.command import Fretc, made_once, write
 from tests.fretc.commands.test_verify_evidence import BINDINGS, R1, log
 
 R2 = "whenever q the sw shall within 2 ticks satisfy q"
@@ -35,15 +35,12 @@ EVIDENCE, LOCK = "build/evidence.json", "requirements/fretc.lock"
 SIGNERS = "requirements/allowed_signers"
 
 
-_MADE: dict[str, bytes] = {}
-"""The files of the project, made once."""
-
-
 @pytest.fixture
 def project(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
     """Two requirements, two logs that were audited, one of them violated; keys of Ada and Bob."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")  # 2026-09-21
-    if not _MADE:
+
+    def make() -> None:
         write("requirements/r1.fret", R1)
         write("requirements/r2.fret", R2)
         write("requirements/bindings.toml", BINDINGS)
@@ -52,10 +49,8 @@ def project(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
         assert fretc("audit", "logs", "-o", "build/evidence.json").status == 1
         for name in ("ada", "bob"):
             keys.written(name)
-        _MADE.update((str(p), p.read_bytes()) for p in Path().rglob("*") if p.is_file())
-    for path, content in _MADE.items():
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        Path(path).write_bytes(content)
+
+    made_once("a project to sign", make)
     return fretc
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests import keys
-from tests.command import Fretc, Run, write
+from tests.command import Fretc, Run, made_once, write
 from tests.fretc.commands.test_verify_evidence import BINDINGS, R1, log
 
 BY = ("--reviewer", "Ada", "--role", "engineer", "--comment", "c", "--date", "2026-09-01")
@@ -29,17 +29,21 @@ COMMANDS = {
 def audited(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
     """Two logs that were audited into a file and into a store, then reviewed; one is now worse."""
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")  # 2026-09-21
-    write("requirements/r1.fret", R1)
-    write("requirements/bindings.toml", BINDINGS)
-    keys.written("ada")
-    log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0)
-    log("logs/bad.mcap", 0, 1.5, 3, 0, 0, 0)
-    assert fretc("audit", "logs", "-o", FILE).status == 0
-    assert fretc("lock", *BY, "--evidence", FILE).status == 0
-    log("logs/bad.mcap", 0, 1.5, 0, 0, 0, 0)
-    for path in (FILE, STORE):
-        assert fretc("audit", "logs", "-o", path).status == 1
-    assert Path(STORE, "manifest.json").is_file()
+
+    def make() -> None:
+        write("requirements/r1.fret", R1)
+        write("requirements/bindings.toml", BINDINGS)
+        keys.written("ada")
+        log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0)
+        log("logs/bad.mcap", 0, 1.5, 3, 0, 0, 0)
+        assert fretc("audit", "logs", "-o", FILE).status == 0
+        assert fretc("lock", *BY, "--evidence", FILE).status == 0
+        log("logs/bad.mcap", 0, 1.5, 0, 0, 0, 0)
+        for path in (FILE, STORE):
+            assert fretc("audit", "logs", "-o", path).status == 1
+        assert Path(STORE, "manifest.json").is_file()
+
+    made_once("a file and a store", make)
     return fretc
 
 

@@ -16,7 +16,6 @@ from compiler.logic.claims import Proof
 from fretc.verification import reader
 from fretc.verification.engines import crosshair
 from fretc.verification.engines import programs as external
-from fretc.verification.engines import sandbox as confined
 from fretc.verification.engines.programs import Completion
 from fretc.verification.layers import crosshair as layer_crosshair
 from fretc.verification.layers import dafny as layer_dafny
@@ -33,17 +32,6 @@ PROVED = (
     "columns agree on 1160 drawn ticks\n"
 )
 WROTE = "wrote build/verification.json\n"
-
-
-@pytest.fixture(autouse=True)
-def in_this_process(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
-    """A new process takes a quarter of a second; that calls can be sent, some tests show."""
-
-    def direct(session: object, function: Callable[..., Any], *args: Any) -> Any:
-        return function(*args)
-
-    if "confined" not in request.keywords:
-        monkeypatch.setattr(confined.Session, "call", direct)
 
 
 @pytest.fixture

@@ -16,6 +16,7 @@ from fretc.verification.javascript.node import FLAGS as NODE_FLAGS
 from fretc.verification.rust.build import FLAGS as RUST_FLAGS
 from tests.command import Fretc, write
 from tests.compiled_monitors import TONGUES
+from tests.effort import some
 from tests.programs import installed, needs
 
 R1 = "whenever p the sw shall within 2 ticks satisfy q"
@@ -80,6 +81,7 @@ def edited(path: str, old: str, new: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.confined
+@pytest.mark.parametrize("made", some(MADE, 3, 1), indirect=True)
 def test_it_is_proved_as_what_it_is(fretc: Fretc, made: Made) -> None:
     run = fretc("verify", "--file", made.file, "r1.fret")
     assert run.status == 0, run
@@ -146,6 +148,7 @@ def test_a_monitor_in_c_needs_its_header(fretc: Fretc) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("made", some(MADE, 3), indirect=True)
 def test_ctrl_c_leaves_no_file_and_no_process(fretc: Fretc, made: Made, tmp_path: Path) -> None:
     """In the midst of the exploration: the bound takes minutes."""
     Path("r1.fret").write_text(R1.replace("2 ticks", "1000000 ticks"), encoding="utf-8")
