@@ -2,13 +2,16 @@
 
 import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from fretc import cli
+from fretc.audit import pool
+from fretc.verification.engines import sandbox
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,35 @@ def runner(
         return Run(int(str(exit_.value.code or 0)), printed.out, printed.err)
 
     return run
+
+
+def without_processes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a command audit several logs, and prove what runs code, in this process.
+
+    A new process takes a quarter of a second; to fork this large one, more than a small audit.
+    A limit of the time of logs needs a process, and has one.
+    """
+
+    def call(session: object, function: Callable[..., Any], *args: Any) -> Any:
+        return function(*args)
+
+    shared = pool._shared
+
+    def here(
+        function: Callable[[Any], Any],
+        things: Sequence[Any],
+        places: Sequence[int],
+        jobs: int,
+        clock: pool._Clock,
+    ) -> Iterator[tuple[int, Any]]:
+        if clock.patience([0.0]) is not None:
+            yield from shared(function, things, places, jobs, clock)
+            return
+        for place in places:
+            yield place, function(things[place])
+
+    monkeypatch.setattr(sandbox.Session, "call", call)
+    monkeypatch.setattr(pool, "_shared", here)
 
 
 def write(path: str, text: str) -> str:

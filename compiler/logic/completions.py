@@ -19,6 +19,8 @@ MOST_STEPS = 1 << 16
 """Steps of a search: ticks, and moves of a state that has not been moved so before."""
 
 State = tuple[int, ...]
+_Row = tuple[str, ...]
+"""Of a tick whether it counts, and the code of each proposition."""
 _Values = list[int]
 _Node = Callable[[_Values, State, list[int]], int]
 """The value of a part, from the values of parts before it and the memory of the tick before; it
@@ -49,7 +51,7 @@ def shown(
     automaton = _Automaton(formula)
     known = [columns[name] for name in automaton.names]
     possible, by_some = frozenset([automaton.initial]), None
-    moves: dict[tuple[frozenset[State], tuple[str, ...]], tuple[frozenset[State], bool]] = {}
+    moves: dict[tuple[frozenset[State], _Row], tuple[frozenset[State], bool]] = {}
     steps = 0
     for tick, row in enumerate(_rows(known, counted, ticks)):
         step = possible, row
@@ -57,8 +59,7 @@ def shown(
             steps += len(possible) << row.count("2")
             if steps > MOST_STEPS:
                 return None
-            letters = [*product(*(_VALUES[code] for code in row[1:]))]
-            moves[step] = automaton.moved(possible, letters, counts=row[0] == "1")
+            moves[step] = automaton.moved(possible, row)
         steps += 1
         if steps > MOST_STEPS:
             return None
@@ -74,7 +75,7 @@ _VALUES: Mapping[str, tuple[int, ...]] = {"0": (0,), "1": (1,), "2": (0, 1)}
 """What a proposition may be: false, true, either."""
 
 
-def _rows(columns: Sequence[Column], counted: int, ticks: int) -> Iterator[tuple[str, ...]]:
+def _rows(columns: Sequence[Column], counted: int, ticks: int) -> Iterator[_Row]:
     """Of each tick whether it counts, and the code of each proposition."""
     if not ticks:
         return
@@ -97,6 +98,8 @@ class _Automaton:
         self.names = [*f.atoms(formula)]
         self._nodes: list[_Node] = []
         self._first: list[int] = []
+        self._moves: dict[tuple[State, _Row], tuple[set[State], bool]] = {}
+        """The sets of a run have most of their states in common."""
         self._places: dict[int, tuple[f.Formula, int]] = {}
         """By identity: the hash of a tree takes as long as the tree is large."""
         self._whole = self._place(formula)
@@ -106,19 +109,28 @@ class _Automaton:
         """Before the first tick."""
         return tuple(self._first)
 
-    def moved(
-        self, states: frozenset[State], letters: Sequence[Sequence[int]], *, counts: bool
-    ) -> tuple[frozenset[State], bool]:
+    def moved(self, states: frozenset[State], row: _Row) -> tuple[frozenset[State], bool]:
         """The states after a tick of what has not shown the formula; whether something did."""
         after, some = set[State](), False
         for state in states:
-            for letter in letters:
-                following, value = self._step(state, letter)
-                if counts and value:
-                    some = True
-                else:
-                    after.add(following)
+            move = state, row
+            if move not in self._moves:
+                self._moves[move] = self._moved(state, row)
+            following, shows = self._moves[move]
+            after |= following
+            some |= shows
         return frozenset(after), some
+
+    def _moved(self, state: State, row: _Row) -> tuple[set[State], bool]:
+        """The same of one state."""
+        after, some = set[State](), False
+        for letter in product(*(_VALUES[code] for code in row[1:])):
+            following, value = self._step(state, letter)
+            if row[0] == "1" and value:
+                some = True
+            else:
+                after.add(following)
+        return after, some
 
     def _step(self, state: State, letter: Sequence[int]) -> tuple[State, int]:
         values, memory = [*letter], list[int]()
