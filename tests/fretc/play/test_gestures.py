@@ -109,7 +109,7 @@ KEYS = (
 )
 
 
-@pytest.mark.parametrize("seed", range(8 if FULL else 2))
+@pytest.mark.parametrize("seed", range(8 if FULL else 1))
 def test_a_chain_of_gestures_leaves_the_trace_that_they_say(opened: Open, seed: int) -> None:
     page = opened(*SENTENCES)
     choose, model = random.Random(seed), Model()

@@ -15,6 +15,7 @@ from fretc.trends.charts import strip
 from fretc.trends.page import html
 from fretc.trends.trends import Trends
 from fretc.trends.trends import trends as trends_of
+from tests.effort import some
 from tests.fretc.audit.results import SHA
 from tests.fretc.trends.nights import document, judged
 
@@ -93,8 +94,9 @@ def test_a_strip_is_read_without_colours() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [1440, 390])
+@pytest.mark.parametrize(
+    ("scheme", "width"), some([(s, w) for w in (1440, 390) for s in ("light", "dark")], 3)
+)
 def test_axe_finds_nothing_serious_and_nothing_is_too_wide(
     browser: Browser, tmp_path: Path, scheme: Any, width: int
 ) -> None:

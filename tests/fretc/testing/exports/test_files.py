@@ -94,14 +94,9 @@ def test_long_bounds_stay_short(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_pytest_runs_them_from_anywhere(tmp_path: Path) -> None:
-    written(tmp_path, Form.PYTEST, *SENTENCES[:2])
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)]
-    ran = subprocess.run(command, cwd="/", capture_output=True, text=True, check=False)
-    assert ran.returncode == 0, ran.stdout
-
-
-def test_no_file_of_a_test_is_that_of_a_monitor(tmp_path: Path) -> None:
+def test_no_file_of_a_test_is_that_of_a_monitor_and_pytest_runs_them_from_anywhere(
+    tmp_path: Path,
+) -> None:
     """The tests of `x_monitor` are in `test_x_monitor.py`, and so is the monitor of `test_x`."""
     every = rule(SENTENCES[0], "x_monitor"), rule(SENTENCES[2], "test_x")
     found = suite(every, (), [batch(each, (), 60) for each in every])
@@ -110,7 +105,8 @@ def test_no_file_of_a_test_is_that_of_a_monitor(tmp_path: Path) -> None:
     for artifact in artifacts:
         (tmp_path / artifact.path).write_text(artifact.text)
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)]
-    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    ran = subprocess.run(command, cwd="/", capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stdout
     assert f"{len(found.tests)} passed" in ran.stdout
 
 
