@@ -26,9 +26,11 @@ from fretc.audit.plan import Plan, packed, planned, unpacked
 from fretish.diagnostics import extras
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, untimed
+from tests.effort import FULL
+from tests.traces import MISSION, part
 
 ROOT = Path(__file__).parents[3]
-LOGS = [f"{number:02}.mcap" for number in range(12)]
+LOGS = [f"{number:02}.mcap" for number in range(12 if FULL else 6)]
 LONG = 300
 """Seconds, of the clock: whoever waits so long for what is on its way waits in vain."""
 
@@ -55,14 +57,14 @@ def cluster() -> Iterator[Any]:
 
 @pytest.fixture
 def fretc(fretc: Fretc) -> Fretc:
-    """Run the command in a folder with requirements and twelve logs, one of them damaged."""
+    """Run the command in a folder with requirements and some logs, one of them damaged."""
     shutil.copytree(ROOT / "requirements", "requirements")
-    whole = (ROOT / "traces/mission-seed15.mcap").read_bytes()
+    whole = MISSION.read_bytes() if FULL else part()
     Path(LOGS[0]).write_bytes(whole)
     for log in LOGS[1:]:
         os.link(LOGS[0], log)
     Path(LOGS[5]).unlink()
-    Path(LOGS[5]).write_bytes(whole[:900_000])
+    Path(LOGS[5]).write_bytes(whole[: len(whole) // 2])
     return fretc
 
 
@@ -250,16 +252,20 @@ def test_without_the_extra_the_line_that_installs_it_is_told(
 
 @pytest.mark.slow
 def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
-    fretc("audit", *LOGS)
+    logs = [f"long{number:02}.mcap" for number in range(12)]
+    shutil.copy(MISSION, logs[0])
+    for log in logs[1:]:
+        os.link(logs[0], log)
+    fretc("audit", *logs)
     evidence = tables()
     shutil.rmtree("build")
     code = (
         "import fretc.audit.into_store as s; s._PATIENCE = 0; s._SHARE = 0\n"
         "from fretc.cli import main; main()"
     )
-    command = [sys.executable, "-c", code, "audit", *LOGS]
+    command = [sys.executable, "-c", code, "audit", *logs]
     run = subprocess.Popen(
-        [*command, "--engine", "dask", "--jobs", "2"],
+        [*command, "--engine", "dask", "--jobs", "2" if FULL else "1"],
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stderr=subprocess.PIPE,
         text=True,
@@ -273,7 +279,7 @@ def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
     _, errors = run.communicate(timeout=LONG)
     (count,) = re.findall(r"^stopped: (\d+) of 12 logs are kept, the same command goes", errors)
     assert run.returncode == 130
-    assert fretc("audit", *LOGS).err.startswith(f"{count} of 12 logs are unchanged")
+    assert fretc("audit", *logs).err.startswith(f"{count} of 12 logs are unchanged")
     assert tables() == evidence
 
 

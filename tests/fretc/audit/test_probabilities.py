@@ -12,6 +12,7 @@ import pytest
 from mcap.writer import CompressionType
 
 from tests.command import Fretc, Run, untimed, write
+from tests.effort import FULL, some
 from tests.fretc.audit.measurements.test_count_trials import fillings
 from tests.fretc.logs.logs import MS, S, number
 from tests.fretc.logs.logs import write as write_log
@@ -78,7 +79,9 @@ def logs(count: int, c: str, r: str, folder: str = "runs") -> None:
 
 def evidence() -> Any:
     content = json.loads(Path("build/evidence.json").read_text("utf-8"))
-    validate("evidence.schema.json", content)
+    results = content["results"]  # all alike but for the last ones
+    some_results = results if FULL else [*results[:1], *results[1:][-2:]]
+    validate("evidence.schema.json", {**content, "results": some_results})
     return content
 
 
@@ -190,11 +193,11 @@ NAMES = [f"{part}{i}" for part in "mpqs" for i in (1, 2)]
 
 @pytest.mark.slow
 def test_no_sentence_with_a_probability_ends_an_audit_and_each_is_counted(fretc: Fretc) -> None:
-    """Every template with any expressions, constants among them, each a requirement of its own."""
+    """Templates with any expressions, constants among them, each a requirement of its own."""
     chance = random.Random("audits")
     expected = {}
     columns = {name: [chance.random() < 0.5 for _ in range(6)] for name in NAMES}
-    for i, filled in enumerate([*fillings(chance)][::8]):
+    for i, filled in enumerate(some([*fillings(chance)][::8], 4)):
         require(filled.sentence, f"P{i}")
         expected[f"P{i}"] = filled.naive({name: columns[name] for name in filled.names})
     Path("requirements/R7.fret").unlink()
@@ -211,7 +214,7 @@ def test_no_sentence_with_a_probability_ends_an_audit_and_each_is_counted(fretc:
     run = fretc("audit", "run.mcap")
     assert run.status == 3
     triggers = {one["requirement"]: one["triggers"] for one in evidence()["probabilities"]}
-    assert len(triggers) == len(expected) == 108
+    assert len(triggers) == len(expected) == (108 if FULL else 27)
     for id, counted in expected.items():
         numbers = {name: getattr(counted, name) for name in ("answered", "failed", "open")}
         assert triggers[id] == numbers, id
@@ -228,7 +231,7 @@ def test_what_no_run_can_meet_is_failed_at_each_trigger(fretc: Fretc) -> None:
 
 @pytest.mark.slow
 def test_what_is_unknown_in_the_middle_is_open_and_damage_withholds_support(fretc: Fretc) -> None:
-    logs(60, "1" * 20, "1" * 20)
+    logs(40, "1" * 20, "1" * 20)
     assert fretc("audit", "runs").status == 0
     path = Path(log("runs/cut.mcap", "1" * 20, "1" * 20, per_chunk=8))
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
@@ -236,7 +239,7 @@ def test_what_is_unknown_in_the_middle_is_open_and_damage_withholds_support(fret
     assert run.status == 3
     assert "1 log is damaged or could not be read: what is lost could speak against it" in run.out
     answered, failed, _ = counts()
-    assert (answered > 1200, failed) == (True, 0)
+    assert (answered > 800, failed) == (True, 0)
     assert estimate()["logs"]["damaged"] == 1
 
 
@@ -262,10 +265,10 @@ def test_a_topic_that_falls_silent_leaves_triggers_open(fretc: Fretc) -> None:
 
 @pytest.mark.slow
 def test_a_copy_of_a_log_counts_once(fretc: Fretc) -> None:
-    logs(28, "1000", "0100")
+    logs(5, "1000", "0100")
     shutil.copy("runs/000.mcap", "runs/copy.mcap")
     assert fretc("audit", "runs").status == 3
-    assert (counts(), estimate()["logs"]["copies"]) == ((28, 0, 0), 1)
+    assert (counts(), estimate()["logs"]["copies"]) == ((5, 0, 0), 1)
     assert suspicions(fretc) == []
 
 
@@ -273,7 +276,7 @@ def test_a_copy_of_a_log_counts_once(fretc: Fretc) -> None:
 @pytest.mark.parametrize("integrity", ["index", "hash", "full"])
 def test_a_log_that_was_written_again_counts_once(fretc: Fretc, integrity: str) -> None:
     """The same messages with other chunks, another compression, and a topic that nobody reads."""
-    logs(28, "1000", "0100")
+    logs(5, "1000", "0100")
     messages = [
         number(float(value), 1000 * S + tick * 100 * MS, topic)
         for tick, values in enumerate(zip("1000", "0100", strict=True))
@@ -285,7 +288,7 @@ def test_a_log_that_was_written_again_counts_once(fretc: Fretc, integrity: str) 
     write_log(Path("runs/loose.mcap"), unnoted, compression=CompressionType.NONE)
     write_log(Path("runs/bare.mcap"), unnoted, data_crcs=True, statistics=False)
     assert fretc("audit", "runs", "--integrity", integrity).status == 3
-    assert (counts(), estimate()["logs"]["copies"]) == ((28, 0, 0), 4)
+    assert (counts(), estimate()["logs"]["copies"]) == ((5, 0, 0), 4)
     assert suspicions(fretc) == []
 
 
@@ -407,7 +410,7 @@ def test_json_has_runs_and_probabilities_by_name(fretc: Fretc) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("r", "kinds"), [("0100", []), ("0001", ["failure"])])
 def test_junit_has_a_suite_of_all_runs(fretc: Fretc, r: str, kinds: Sequence[str]) -> None:
-    logs(33, "1000", r)
+    logs(33 if r == "0100" else 10, "1000", r)
     *_, suite = ElementTree.fromstring(fretc("audit", "runs", "--format", "junit").out)
     (case,) = suite
     assert (suite.get("name"), suite.get("failures")) == ("all runs", str(len(kinds)))

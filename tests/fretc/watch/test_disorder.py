@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fretc.audit.one_log import audit
@@ -16,6 +16,7 @@ from fretc.watch.sources.log import Log
 from fretc.watch.sources.source import Idle
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Code
+from tests.effort import FULL
 from tests.fretc.logs.logs import Sent as Written
 from tests.fretc.logs.logs import write
 from tests.fretc.watch.sent import Sent, Setting, plan_of, settings_
@@ -59,6 +60,7 @@ REPORTED = [
 
 @example(BY_ARRIVAL, REPORTED, None, True)
 @given(settings_, messages, st.sampled_from([None, 1, 3, 100]), st.booleans())
+@settings(max_examples=2000 if FULL else 10)
 def test_what_is_shown_at_the_end_is_what_the_evidence_says(
     setting: Setting, some: list[Sent], per_chunk: int | None, records: bool
 ) -> None:
@@ -87,6 +89,7 @@ def test_what_is_shown_at_the_end_is_what_the_evidence_says(
 
 
 @given(messages)
+@settings(max_examples=2000 if FULL else 12)
 def test_by_arrival_in_order_nothing_is_late_and_nothing_judged_again(some: list[Sent]) -> None:
     if not bound(some, BY_ARRIVAL):
         return

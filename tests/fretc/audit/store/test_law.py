@@ -16,6 +16,7 @@ from fretc.audit.evidence.writer import text
 from fretc.audit.store.reader import Store, evidence, opened
 from fretc.audit.store.tables import runs_of
 from fretc.audit.store.writer import write_document
+from tests.effort import FULL
 from tests.fretc.audit.results import SHA, result
 
 SHARED = ("run", "health", "labels")
@@ -162,7 +163,7 @@ def test_times_of_a_damaged_log_are_kept(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @settings(
-    max_examples=30,
+    max_examples=200 if FULL else 8,
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
