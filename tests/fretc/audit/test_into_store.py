@@ -301,21 +301,33 @@ def test_an_audit_that_is_stopped_leaves_the_store_of_the_last_one(fretc: Fretc)
     assert known() == {"a.mcap": "stamp"}
 
 
+NEVER_DONE = """
+import os, time
+from fretc.audit import into_store, many_logs
+from fretc.cli import main
+
+into_store._PATIENCE = into_store._SHARE = 0
+judge, process = many_logs.audited, os.getpid()
+
+def audited(plan, log, *more):
+    while log > "b" and os.getppid() == process:
+        time.sleep(0.02)
+    return judge(plan, log, *more)
+
+many_logs.audited = audited
+main()
+"""
+"""`fretc` whose processes wait at some logs as long as it lives."""
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("stop", some([signal.SIGINT, signal.SIGTERM, signal.SIGKILL], 2))
 def test_a_command_is_stopped_and_goes_on(fretc: Fretc, stop: signal.Signals) -> None:
     logs = [f"{name}{number}.mcap" for name in "ab" for number in range(3)]
     for log in logs:
         os.link("a.mcap", log)
-    code = (
-        "import time, fretc.audit.into_store as s, fretc.audit.many_logs as m\n"
-        "s._PATIENCE = 0; s._SHARE = 0\n"
-        "judge = m.audited\n"
-        "m.audited = lambda plan, log, *a: log > 'b' and time.sleep(20) or judge(plan, log, *a)\n"
-        "from fretc.cli import main; main()"
-    )
     run = subprocess.Popen(
-        [sys.executable, "-c", code, "audit", *logs, "--jobs", "2"],
+        [sys.executable, "-c", NEVER_DONE, "audit", *logs, "--jobs", "2"],
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stderr=subprocess.PIPE,
         text=True,
