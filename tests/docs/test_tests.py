@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -192,8 +191,7 @@ def emitted(sentence: str) -> str:
 
 def conformance(fault: str) -> str:
     """What is printed of a program with a fault."""
-    with TemporaryDirectory() as folder:
-        found = seen_of(Path(folder), program(fault))
+    found = seen_of(program(fault))
     drawn_of = replace(found, command=("python3", "line.py"))
     return _printed(
         'fretc test --against "python3 line.py"', lines_of(drawn_of, roles(INPUTS, OUTPUTS))

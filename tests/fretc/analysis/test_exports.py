@@ -15,7 +15,7 @@ from fretc.analysis.stage import stage
 from fretc.analysis.verdicts import verdict
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
-from tests.effort import some
+from tests.effort import full_only
 
 STUDIES = json.loads((Path(__file__).parents[2] / "data/fret_case_studies.json").read_text("utf-8"))
 """Source: NASA FRET (Apache-2.0), its case studies."""
@@ -132,16 +132,14 @@ def test_a_published_set_has_its_published_answer(
 
 
 @pytest.mark.slow
+@full_only("seconds each")
 @pytest.mark.parametrize(
     ("without", "delayed", "answer"),
-    some(
-        [
-            ("LPC_REACH_HOVER_06", True, Verdict.REALIZABLE),
-            ("LPC_REACH_HOVER_06", False, Verdict.REALIZABLE),
-            ("LPC_REACH_HOVER_12", True, Verdict.UNREALIZABLE),
-        ],
-        3,
-    ),
+    [
+        ("LPC_REACH_HOVER_12", True, Verdict.UNREALIZABLE),
+        ("LPC_REACH_HOVER_06", True, Verdict.REALIZABLE),
+        ("LPC_REACH_HOVER_06", False, Verdict.REALIZABLE),
+    ],
 )
 def test_hover_is_reached_within_twelve_ticks_and_not_within_six(
     fretc: Fretc, without: str, delayed: bool, answer: Verdict

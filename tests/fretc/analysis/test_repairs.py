@@ -57,7 +57,7 @@ def test_the_least_change_of_each_bound_is_suggested(within: int, hold: int) -> 
 
 
 def test_long_bounds_are_repaired_as_short_ones_are() -> None:
-    bound = 4000 if FULL else 500
+    bound = 4000 if FULL else 100
     assert suggested(
         f"upon a the sw shall within {bound} ticks satisfy x",
         f"the sw shall for {bound} ticks satisfy !x",

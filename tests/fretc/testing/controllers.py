@@ -6,6 +6,10 @@ import sys
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Thread
+from types import SimpleNamespace
+from typing import Self
 
 from compiler.formalization.formalized import Formalized
 from fretc.testing.conformance.campaign import Campaign
@@ -77,12 +81,49 @@ def program(fault: str | None = None) -> str:
     return RIGHT.replace(was, wrong)
 
 
-def seen_of(folder: Path, text: str) -> Conformance:
-    """What is seen of a program."""
-    path = folder / "program.py"
-    path.write_text(text)
-    command = [sys.executable, "-ISE", str(path)]
+class Within(Program):
+    """A run of a text in this process, in a thread of its own."""
+
+    def __enter__(self) -> Self:
+        """Start it."""
+        self._given, self._told = SimpleQueue[str](), SimpleQueue[str]()
+        stdin = SimpleNamespace(readline=self._given.get)
+        space = {
+            "sys": SimpleNamespace(stdin=stdin),
+            "print": lambda line, flush: self._told.put(line),
+        }
+        (text,) = self._command
+        code = compile(text.removeprefix("import sys\n"), "program.py", "exec")
+        self._thread = Thread(target=exec, args=(code, space), daemon=True)
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Give it no more lines."""
+        self._given.put("")
+        self._thread.join()
+
+    def _send(self, line: str) -> None:
+        self._given.put(line)
+
+    def _reads(self, seconds: float) -> bool:
+        try:
+            line = self._told.get(block=seconds > 0, timeout=seconds or None)
+        except Empty:
+            return False
+        self._buffer += f"{line}\n".encode()
+        return True
+
+
+def seen_of(text: str, folder: Path | None = None) -> Conformance:
+    """What is seen of a program, run in that folder, or else within this process."""
+    kind: type[Program] = Within
+    command = [text]
+    if folder is not None:
+        path = folder / "program.py"
+        path.write_text(text)
+        kind, command = Program, [sys.executable, "-ISE", str(path)]
     campaign = Campaign([*RULES.values()], [ASSUMED], roles(INPUTS, OUTPUTS), 60)
     columns = campaign.referee.inputs, campaign.referee.outputs
-    campaign.run(partial(Program, command, *columns, seconds=60), lambda words: None)
+    campaign.run(partial(kind, command, *columns, seconds=60), lambda words: None)
     return campaign.findings(command)

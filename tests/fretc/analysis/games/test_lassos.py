@@ -65,11 +65,8 @@ def test_a_goal_is_reached_just_where_the_rate_lets_it(
             ],
             Verdict.REALIZABLE,
         ),
-        (
-            [f"the sw shall always satisfy v >= preReal(0.0, v) + 0.5 & v < {SOON**2}"],
-            Verdict.UNREALIZABLE,
-        ),
-    ],
+        (["the sw shall always satisfy v >= preReal(0.0, v) + 0.5 & v < 9"], Verdict.UNREALIZABLE),
+    ][: 4 if FULL else 3],  # the last one takes longest
 )
 def test_what_no_memory_of_comparisons_tells_is_unrolled(
     sentences: list[str], verdict: Verdict

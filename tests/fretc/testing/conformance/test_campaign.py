@@ -36,15 +36,15 @@ def check(failure: Failure) -> None:
 
 @pytest.mark.slow
 def test_a_right_program_conforms(tmp_path: Path) -> None:
-    found = seen_of(tmp_path, program())
+    found = seen_of(program(), tmp_path)
     assert not found.failures
     assert found.is_complete
 
 
 @pytest.mark.slow
 @each("fault", some(FAULTS, 4))
-def test_each_planted_fault_is_found(fault: str, tmp_path: Path) -> None:
-    found = seen_of(tmp_path, program(fault))
+def test_each_planted_fault_is_found(fault: str) -> None:
+    found = seen_of(program(fault))
     assert found.failures, fault
     for failure in found.failures:
         check(failure)
