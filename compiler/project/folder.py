@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
 from pathlib import Path
@@ -21,7 +21,7 @@ from compiler.project.hazards import hazards as read_hazards
 from compiler.project.paths import BINDINGS, HAZARDS, beside, beside_first, requirement_files
 from compiler.project.refusals import Refused, refused
 from compiler.project.stated_numbers import disagreements
-from fretish.bindings.declarations import Declarations
+from fretish.bindings.declarations import SHARED, Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.documents import Requirement, requirements, unread
@@ -94,6 +94,7 @@ def load(
     hazards: str | None = None,
     *,
     parents: bool = False,
+    reads: Collection[str] = SHARED,
 ) -> Project:
     """Read requirements, and what stands beside them.
 
@@ -102,8 +103,10 @@ def load(
         bindings: their `bindings.toml`; None: the one in the folder of the first file, if any.
         hazards: their `hazards.toml`; None: no hazards are read.
         parents: whether parents in other tools are read, as the settings name them.
+        reads: the shared tables of the bindings that the caller reads; a mistake in any other one
+            keeps back nothing.
     """
-    declarations, of_bindings = _declarations(bindings or beside_first(paths, BINDINGS))
+    declarations, of_bindings = _declarations(bindings or beside_first(paths, BINDINGS), reads)
     known, of_hazards = read_hazards(hazards) if hazards else ({}, ())
     written = _written(paths)
     chosen = _settings(paths)
@@ -245,9 +248,14 @@ def _reason(remarks: Sequence[Diagnostic]) -> Diagnostic:
 
 
 def _declarations(
-    path: str | None,
+    path: str | None, reads: Collection[str]
 ) -> tuple[Declarations | None, tuple[Diagnostic, ...]]:
     if path is None:
         return None, ()
     source = read(path)
-    return (None, (source,)) if isinstance(source, Diagnostic) else read_bindings(source)
+    if isinstance(source, Diagnostic):
+        return None, (source,)
+    declarations, remarks = read_bindings(source)
+    if declarations is not None and any((kind, "") in declarations.mistakes for kind in reads):
+        return None, remarks
+    return declarations, remarks

@@ -299,5 +299,6 @@ TARGET = Target(
     emit,
     refuse,
     next_step="`dafny verify {}` proves it",
+    of_loop=True,
     names=_names,
 )

@@ -71,6 +71,8 @@ class Target:
     """Whether `Options.one_file` puts all rules into one file."""
     of_bindings: bool = False
     """Whether it is made of the bindings alone, and reads no requirement."""
+    of_loop: bool = False
+    """Whether it reads `[interceptor]` and `[assume]` of the bindings."""
     together: bool = False
     """Whether all rules always become one monitor; `per_rule` is False then."""
     next_step: str = ""

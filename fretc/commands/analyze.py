@@ -101,7 +101,7 @@ def analyze(
     from fretc.analysis.text_output import lines
     from fretish.printer import sentence as printed
 
-    project, first = project_of(files, requirements, bindings)
+    project, first = project_of(files, requirements, bindings, ("environment",))
     rules = in_force(project, component)
     assumed, remarks = assumptions(rules, project.declarations)
     say_briefly(remarks, first)

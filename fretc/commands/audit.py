@@ -14,6 +14,7 @@ import click
 from fretc.commands.audit_logs import selected, time_limits
 from fretc.commands.audit_progress import audit_in_memory, audit_into
 from fretc.commands.notify import notify, words
+from fretc.commands.opening import OF_AUDITS
 from fretc.commands.summary import summarize
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import (
@@ -236,7 +237,7 @@ def audit(
         stop(files)
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
     protect([target.path, *([Path(parquet)] if parquet else [])], inputs)
-    project = load(files, bindings or beside(requirements, "bindings.toml"))
+    project = load(files, bindings or beside(requirements, "bindings.toml"), reads=OF_AUDITS)
     say_briefly(project.diagnostics, requirements)
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):

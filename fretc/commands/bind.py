@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import list_mistaken
+from fretc.commands.opening import OF_AUDITS, list_mistaken
 from fretc.terminal.options import (
     OF_LOGS,
     PATH,
@@ -105,7 +105,7 @@ def _project(requirements: str, bindings: str | None, replaced: str | None = Non
         if is_given("requirements"):
             stop(files)
         files = []
-    project = load(files, bindings or beside(requirements, "bindings.toml"))
+    project = load(files, bindings or beside(requirements, "bindings.toml"), reads=OF_AUDITS)
     relevant = [d for d in project.diagnostics if replaced is None or not _is_in(d, replaced)]
     if has_errors(relevant):
         fail_at_the_end()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import plan_of
+from fretc.commands.opening import OF_AUDITS, plan_of
 from fretc.terminal.options import (
     OF_LOGS,
     PATH,
@@ -175,5 +175,5 @@ def planned_project(requirements: str, bindings: str | None) -> tuple[Project, P
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-    project = load(files, bindings or beside(requirements, "bindings.toml"))
+    project = load(files, bindings or beside(requirements, "bindings.toml"), reads=OF_AUDITS)
     return project, plan_of(project, requirements)

@@ -123,7 +123,7 @@ def _typed(sentence: str, folder: str, bindings: str | None) -> list[Formalized]
     from fretish.diagnostics.source import Source
     from fretish.documents import Requirement
 
-    project = load([], bindings or beside(folder, BINDINGS))
+    project = load([], bindings or beside(folder, BINDINGS), reads=())
     requirement = Requirement("sentence", Source("<sentence>", sentence.strip()).span())
     rule, remarks = formalize(requirement, project.declarations)
     say([*project.diagnostics, *remarks])
@@ -144,7 +144,7 @@ def _rules(what: str, folder: str, bindings: str | None, *, is_file: bool) -> li
     paths = listed([what]) if is_file else requirement_files(folder)
     if isinstance(paths, Diagnostic):
         stop(_unknown_code(what) or paths)
-    project = load(paths, bindings)
+    project = load(paths, bindings, reads=())
     ids = [requirement.id for requirement in project.requirements]
     matches = ids if is_file else [id for id in ids if id.casefold() == what.casefold()]
     if not matches:

@@ -88,7 +88,8 @@ def compile_(
     paths = listed(files)
     if isinstance(paths, Diagnostic):
         stop(paths)
-    project = load(paths, bindings)
+    of_loop = any(TARGETS[kind].of_loop for kind in kinds)
+    project = load(paths, bindings, reads=("interceptor", "assume") if of_loop else ())
     undecided = _undecided(project.sound.rules)
     say([*project.diagnostics, *project.answered(undecided)])
     if form == "json" and set(kinds) <= {"ltl"} and not has_errors(project.general):

@@ -14,14 +14,18 @@ from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from compiler.project.folder import Project
     from fretc.audit.plan import Plan
 
 
+OF_AUDITS = ("map", "run")
+"""The shared tables of the bindings that whatever judges logs reads."""
+
+
 def project_of(
-    files: Sequence[str], requirements: str, bindings: str | None
+    files: Sequence[str], requirements: str, bindings: str | None, reads: Collection[str]
 ) -> tuple[Project, str]:
     """The sound part of a project, and where it is.
 
@@ -29,6 +33,7 @@ def project_of(
         files: `.fret` files and folders of such; empty: those of `requirements`.
         requirements: a folder, or one file.
         bindings: their file; None: the one beside the first of them, if any.
+        reads: the shared tables of the bindings that the command reads.
     """
     from compiler.project.folder import load
     from compiler.project.paths import listed, requirement_files
@@ -37,7 +42,7 @@ def project_of(
     paths = listed(files) if files else requirement_files(requirements)
     if isinstance(paths, Diagnostic):
         stop(paths)
-    project = load(paths, bindings)
+    project = load(paths, bindings, reads=reads)
     say_briefly(project.diagnostics, first)
     return sound_part(project), first
 

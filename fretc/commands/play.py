@@ -80,12 +80,16 @@ def play(
     from fretc.play.starts import of_examples
     from fretc.play.versions import Versions, side_by_side, versions
 
-    project, _ = project_of(files, requirements, bindings)
+    project, _ = project_of(files, requirements, bindings, ("environment",))
     now, refusals = _side(project)
     known = now.rules
     if not known:
         stop(*refusals)
-    earlier = project_of((against,), requirements, bindings)[0] if against is not None else None
+    earlier = (
+        project_of((against,), requirements, bindings, ("environment",))[0]
+        if against is not None
+        else None
+    )
     changes = versions(now, _side(earlier)[0], _SECONDS) if earlier else Versions()
     shown = [*side_by_side(changes, known)]
     clashing = [*clashes(shown)]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import project_of
+from fretc.commands.opening import OF_AUDITS, project_of
 from fretc.terminal.options import (
     PATH,
     SECONDS,
@@ -144,7 +144,7 @@ def test(
     from fretc.commands import test_against, test_staging
     from fretc.commands.analyze import in_force
 
-    project, first = project_of(files, requirements, bindings)
+    project, first = project_of(files, requirements, bindings, ("environment", *OF_AUDITS))
     rules = in_force(project, component)
     if show is not None:
         _check_shown(show, [rule.id for rule in rules])

@@ -232,7 +232,7 @@ def _half_an_agent(agent: str | None) -> Diagnostic:
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> Project:
     """The sound part of the project, which has a rule at least; else the command stops."""
-    project, _ = project_of(files, requirements, bindings)
+    project, _ = project_of(files, requirements, bindings, ("interceptor", "assume"))
     if not project.rules:
         stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
     return project

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from fretc.commands.opening import plan_of
+from fretc.commands.opening import OF_AUDITS, plan_of
 from fretc.terminal.group import Grouped
 from fretc.terminal.options import PATH, bindings_option, extras, path_option, requirements_option
 from fretc.terminal.output import (
@@ -160,7 +160,7 @@ def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Se
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-    project = load(files, bindings or beside(requirements, "bindings.toml"))
+    project = load(files, bindings or beside(requirements, "bindings.toml"), reads=OF_AUDITS)
     plan = plan_of(project, requirements)
     if plan.declarations.clock.patience is None:
         stop(_needs_lateness(plan))

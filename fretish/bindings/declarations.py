@@ -309,7 +309,10 @@ class LabelSource:
 
 
 Part = tuple[str, str]
-"""`("signal", "vx")`, `("proposition", "near")` or `("clock", "")`."""
+"""`("signal", "vx")`, `("proposition", "near")`, `("clock", "")`, `("map", "")`."""
+SHARED = ("interceptor", "assume", "environment", "map", "run")
+"""Tables that belong to no single requirement, and that some commands alone read: `[interceptor]`,
+`[assume]`, `[[assume.requirement]]`, `[map]` and `[run.label]`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -335,8 +338,8 @@ class Declarations:
     interceptor: Interception | None = None
     assumed: Assumed | None = None
     mistakes: Mapping[Part, tuple[Diagnostic, ...]] = field(default_factory=dict)
-    """Each signal and proposition that is declared and cannot be used, and why; the mistakes of a
-    signal are those of the propositions that read it, too."""
+    """Each signal, proposition and shared table that is declared and cannot be used, and why; the
+    mistakes of a signal are those of the propositions that read it, too."""
     map: Map | None = None
     labels: Mapping[str, tuple[LabelSource, ...]] = field(default_factory=dict)
     """`[run.label]`: each label of runs, with its sources; the first that says something counts."""

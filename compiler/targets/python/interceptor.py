@@ -220,4 +220,5 @@ TARGET = Target(
     remarks=remarks,
     per_rule=False,
     of_bindings=True,
+    of_loop=True,
 )

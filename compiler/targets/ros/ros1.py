@@ -77,5 +77,6 @@ TARGET = Target(
     refuse_project=shared.refuse_project,
     per_rule=False,
     together=True,
+    of_loop=True,
     next_step="its folder belongs into the `src` of a catkin workspace; its README.md says more",
 )

@@ -116,5 +116,6 @@ TARGET = Target(
     refuse_project=shared.refuse_project,
     per_rule=False,
     together=True,
+    of_loop=True,
     next_step="`colcon build` builds it, in the `src` of a workspace",
 )

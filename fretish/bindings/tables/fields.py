@@ -27,7 +27,7 @@ class Notes:
     diagnostics: list[Diagnostic] = field(default_factory=list)
     defaults: list[Default] = field(default_factory=list)
     mistakes: dict[Part, tuple[Diagnostic, ...]] = field(default_factory=dict)
-    """Of each signal and proposition that has any."""
+    """Of each signal, proposition and shared table that has any."""
     malformed: set[str] = field(default_factory=set)
     """Kinds of tables that are none, and have a diagnostic."""
 

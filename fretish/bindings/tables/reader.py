@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
-from fretish.bindings.declarations import Assumed, Declarations, Proposition, Signal
+from fretish.bindings.declarations import Assumed, Declarations, Part, Proposition, Signal
 from fretish.bindings.tables.clock import ClockTable
 from fretish.bindings.tables.coordinates import MapTable
 from fretish.bindings.tables.fields import Fields, Notes
@@ -21,6 +21,7 @@ from fretish.reading.toml_text import Tables, read
 
 _TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
            "fret")  # fmt: skip
+S = TypeVar("S")
 T = TypeVar("T", Signal, Proposition)
 
 
@@ -29,8 +30,8 @@ def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic
 
     Returns:
         The declarations, and all that there is to say. A mistake in the table of a signal or a
-        proposition is among the `mistakes` of the declarations; with any other error there are
-        none.
+        proposition, or in a shared table, is among the `mistakes` of the declarations; with any
+        other error there are none.
     """
     found = within(len(source.text), source.span(0, 0), lambda: _read(source))
     return (None, (found,)) if isinstance(found, Diagnostic) else found
@@ -54,7 +55,7 @@ class _Reader(Fields):
 
     @property
     def is_usable(self) -> bool:
-        """Whether every error is in the table of a signal or a proposition."""
+        """Whether every error is in the table of a signal or a proposition, or a shared one."""
         return sum(each.is_error for each in self.notes.diagnostics) == self.errors_of_parts
 
     def declarations(self) -> Declarations:
@@ -73,14 +74,27 @@ class _Reader(Fields):
             propositions,
             variables,
             tuple(each for each in notes.defaults if each.part not in notes.mistakes),
-            loop.interceptor(),
-            self._assumed(loop),
+            self._shared("interceptor", loop.interceptor),
+            self._shared("assume", lambda: self._assumed(loop)),
             notes.mistakes,
-            MapTable(tables, notes, of_signals.known).map(),
-            Labels(tables, notes).labels(),
+            self._shared("map", MapTable(tables, notes, of_signals.known).map),
+            self._shared("run", Labels(tables, notes).labels),
             VariableTables(tables, notes).kept(),
-            loop.sentences(),
+            self._shared("environment", loop.sentences),
         )
+
+    def _shared(self, kind: str, read: Callable[[], S]) -> S:
+        """A shared table; `mistakes` holds its own, and then nothing may rest on it."""
+        before = len(self.notes.diagnostics)
+        table = read()
+        self._keep((kind, ""), before)
+        return table
+
+    def _keep(self, part: Part, before: int) -> None:
+        """The errors among the diagnostics since `before` are those of a part."""
+        own = [each for each in self.notes.diagnostics[before:] if each.is_error]
+        self.errors_of_parts += len(own)
+        self.notes.keep(part, own)
 
     def _parts(self, kind: str, read: Callable[[str, Mapping[str, Any]], T | None]) -> dict[str, T]:
         """The parts without a mistake; `mistakes` holds those of the others."""
@@ -88,9 +102,7 @@ class _Reader(Fields):
         for name, table in self._tables(kind).items():
             before = len(self.notes.diagnostics)
             part = read(name, table)
-            own = [each for each in self.notes.diagnostics[before:] if each.is_error]
-            self.errors_of_parts += len(own)
-            self.notes.keep((kind, name), own)
+            self._keep((kind, name), before)
             if (kind, name) not in self.notes.mistakes:
                 assert part is not None, name
                 parts[name] = part

@@ -57,7 +57,9 @@ NO_DURATION = "`heartbeat` must be a duration above 0"
 
 def mistakes(text: str) -> list[str]:
     found, wrong = read_bindings(Source("b.toml", text))
-    assert found is None
+    assert found is not None
+    assert found.mistakes.keys() <= {("interceptor", ""), ("assume", ""), ("environment", "")}
+    assert {*wrong} == {each for some in found.mistakes.values() for each in some}
     return [f"{d.code.number} {d.span.line if d.span else 0}: {d.message}" for d in wrong]
 
 
