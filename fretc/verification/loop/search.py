@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import assert_never
 
 from compiler.logic import formula as f
@@ -134,8 +135,12 @@ def new_drive(case: Case) -> Drive:
     return Drive(machine, case.channel)
 
 
+@lru_cache(maxsize=8)
 def watched(text: str, requirement: str) -> Watched:
-    """A monitor of the requirement; only a text in the layout of fretc is executed."""
+    """A monitor of the requirement; only a text in the layout of fretc is executed.
+
+    A question is asked of several channels, with the same texts.
+    """
     reason = strange(text)
     if reason is not None:
         raise NotALoopError(f"of the monitor: {reason}")

@@ -54,7 +54,6 @@ def published(project: str, constants: Mapping[str, int] | None = None) -> list[
     return sorted(found, key=lambda each: each.id)
 
 
-@pytest.mark.slow
 def test_the_finite_state_machine_has_three_components_and_five_conflicts() -> None:
     named = roles(FSM_INPUTS, ("pullup", "STATE", "SENSTATE"))
     found = analyze(published("FSM", FSM_CONSTANTS), named)
@@ -152,7 +151,6 @@ def _renamed(sentence: str, other: dict[str, str]) -> str:
     )
 
 
-@pytest.mark.slow
 def test_a_further_requirement_never_helps() -> None:
     for seed in range(60):
         (more, *rest) = drawn(("more", seed), most=4)
@@ -160,7 +158,6 @@ def test_a_further_requirement_never_helps() -> None:
             assert analyzed(*rest, more).verdict is UNREALIZABLE
 
 
-@pytest.mark.slow
 def test_a_conjunction_may_be_split() -> None:
     for seed in range(20):
         rest = drawn(("split", seed), most=2)
@@ -188,6 +185,7 @@ def test_scaled_durations_give_the_same_answers(scale: int) -> None:
     assert conflicts(analyzed(answered[0], held, after)) == [("R3",), ("R1", "R2")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ticks", [10, 1_000_000])
 def test_a_million_ticks_are_answered_as_ten_are(ticks: int) -> None:
     """The trigger comes at the first tick at the earliest, and the hold is over `held` later."""

@@ -153,7 +153,6 @@ def test_pairs_clash_where_spot_s_automata_part() -> None:
     assert clashes > 1
 
 
-@pytest.mark.slow
 def test_long_counts_are_compared_bit_by_bit() -> None:
     """One after the other, these two counters would take a hundred times as long."""
     setting = staged(
@@ -187,7 +186,6 @@ def test_a_scope_that_never_is_is_told_with_what_excludes_it() -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.slow
 def test_leaps_over_many_ticks_change_no_finding(monkeypatch: pytest.MonkeyPatch) -> None:
     for seed in range(SETS):
         sentences = (terse if seed % 2 else drawn)(("leaps", seed), most=3)

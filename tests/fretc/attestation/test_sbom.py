@@ -38,7 +38,6 @@ def test_it_names_each_library_that_is_needed_with_its_version_and_no_tool_of_de
     assert by_name["markupsafe"] in listed[by_name["jinja2"]]
 
 
-@pytest.mark.slow
 def test_the_closure_is_closed_and_reached_from_the_root() -> None:
     needs = closure()
     assert all(set(needed) <= needs.keys() for needed in needs.values())

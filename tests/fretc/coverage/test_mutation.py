@@ -9,6 +9,7 @@ from itertools import product
 
 import jsonschema  # type: ignore[import-untyped]
 import numpy as np
+import pytest
 
 from compiler.files.templating import template_root
 from compiler.targets.python import monitor as target
@@ -75,6 +76,7 @@ def seen(found: Judgement) -> tuple[object, ...]:
     return found.verdict, [*outcome.violations], [*outcome.unknown]
 
 
+@pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_all_mutants_in_one_monitor_are_judged_as_each_by_its_own(sentence: str) -> None:
     of = suspects(rule(sentence))

@@ -121,6 +121,7 @@ def test_an_id_that_is_taken_gets_a_mark() -> None:
     assert [pair.old.id for pair in found.pairs] == ["A before'"]
 
 
+@pytest.mark.slow
 def test_a_trace_that_no_page_takes_is_a_note() -> None:
     (pair,) = of({"A": WITHIN.format(2_500)}, {"A": WITHIN.format(2_600)}).pairs
     assert pair.start is None

@@ -60,14 +60,12 @@ def test_a_full_standard_error_leaves_the_exit_status_alone(folder: Path) -> Non
     assert in_shell(folder, "audit none.mcap", "{} 2>/dev/full").returncode == 2
 
 
-@pytest.mark.slow
 def test_a_full_standard_output_is_told(folder: Path) -> None:
     done = in_shell(folder, "r1.fret", "{} >/dev/full")
     assert done.returncode == 2
     assert "F905 `standard output` cannot be written: No space left on device" in done.stderr
 
 
-@pytest.mark.slow
 def test_a_closed_standard_output_costs_nothing_but_the_output(folder: Path) -> None:
     assert in_shell(folder, "r1.fret --emit ajpf", "{} >&-").returncode == 0
     assert (folder / "build/r1.psl").is_file()

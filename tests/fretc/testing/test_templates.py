@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from itertools import product
 
+import pytest
+
 from compiler.formalization import reference
 from compiler.formalization.formalized import Formalized
 from compiler.formalization.letters import atoms_of, meanings
@@ -48,6 +50,7 @@ def accept_the_same(one: Formalized, other: Formalized) -> bool:
     return True
 
 
+@pytest.mark.slow
 @each("template", TRIED)
 def test_all_is_met_or_impossible_and_killed_or_equivalent(template: Template) -> None:
     subject = rule("R1", template.sentence)

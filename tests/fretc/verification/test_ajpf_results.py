@@ -101,7 +101,6 @@ def test_what_is_not_as_expected_shows_nothing(
     assert outcome(only(ran)) == expected
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     some(["SIF.gwen", "SIF.psl", "SIF_mutant.gwen", "Env.java", "SIF.ail", "R1.jpf", "run.py"], 3),
@@ -134,7 +133,6 @@ def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
     assert result.detail.startswith("it was refuted; SIF.gwen is not made like that")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -214,7 +212,6 @@ def test_a_file_that_is_no_result_is_refused(tmp_path: Path, text: str, what: st
     assert what in result.message
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -253,7 +250,6 @@ def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: 
     assert merged([red], []) == (red,)
 
 
-@pytest.mark.slow
 def test_a_weaker_property_does_not_show_the_requirement(ran: Mcapl) -> None:
     formalized = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
     for artifact in emit([formalized], Options(weaken=True)):

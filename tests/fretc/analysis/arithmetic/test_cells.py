@@ -239,6 +239,7 @@ def test_a_long_play_has_numbers_as_a_short_one_has(ticks: int) -> None:
     assert not t + 1 < v <= 31
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sum_", "answer"),
     some([("<= 20", REALIZABLE), ("< 20", UNREALIZABLE), ("!= 7", UNREALIZABLE)], 2),

@@ -53,6 +53,7 @@ def test_a_bound_is_reached_step_by_step() -> None:
         assert conflicts(found) == ([] if answer is Verdict.REALIZABLE else [("R1", "R2")])
 
 
+@pytest.mark.slow
 def test_a_play_with_numbers_of_before_has_each_of_its_ticks(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

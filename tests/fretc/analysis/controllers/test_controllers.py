@@ -88,7 +88,6 @@ def test_no_run_of_an_automaton_breaks_a_requirement(given: bool) -> None:
     assert shown > count / 4
 
 
-@pytest.mark.slow
 def test_the_program_does_as_the_automaton_and_breaks_nothing() -> None:
     for number, (setting, _, found) in enumerate(machines(60 if FULL else 30, given=False)):
         choose = random.Random(number)

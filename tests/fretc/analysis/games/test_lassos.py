@@ -51,6 +51,7 @@ def test_a_goal_is_reached_just_where_the_rate_lets_it(
         assert run == Impossible(bound + 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sentences", "verdict"),
     [

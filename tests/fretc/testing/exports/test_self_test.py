@@ -86,7 +86,6 @@ def test_it_compiles_without_a_library(cc: tuple[str, ...], tmp_path: Path) -> N
     assert all(re.search(r"_(init|step)", each) for each in unknown), unknown
 
 
-@pytest.mark.slow
 def test_its_main_tells_by_its_status(tmp_path: Path) -> None:
     written(tmp_path, Form.C, OTHERS[0])
     path = built(tmp_path, "gcc", "-std=c99", "-DFRETC_SELF_TEST_MAIN", main="")

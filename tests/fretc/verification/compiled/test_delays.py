@@ -72,6 +72,7 @@ def test_both_ways_prove_what_fretc_writes(tongue: Tongue, checker: Checker, sen
     assert all("the same" in detail for detail in details)
 
 
+@pytest.mark.slow
 def test_a_line_of_another_kind_proves_nothing(tongue: Tongue, checker: Checker) -> None:
     """A library whose lines are no such lines is compared with all of their bits."""
     one = rule(RINGED[0], "R1")

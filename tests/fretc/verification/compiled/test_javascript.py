@@ -31,7 +31,6 @@ def test_a_counter_without_end_has_too_many_states(tmp_path: Path) -> None:
 
 
 @needs_node
-@pytest.mark.slow
 def test_values_of_other_types_are_told_apart(tmp_path: Path) -> None:
     """What is no truth value counts as one in conditions; as a signal it does not."""
     one = rule("whenever p the sw shall eventually satisfy q")

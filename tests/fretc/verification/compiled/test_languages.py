@@ -103,6 +103,7 @@ def test_what_takes_too_long_is_not_proved(tongue: Tongue) -> None:
     assert found.outcome.detail.startswith("out of time")
 
 
+@pytest.mark.slow
 def test_too_many_states_are_not_proved(tongue: Tongue, checker: Checker) -> None:
     one = rule("whenever p the sw shall within 100 ticks satisfy q")
     checked, executable = checker.prepared(tongue.given(one), one)
@@ -110,6 +111,7 @@ def test_too_many_states_are_not_proved(tongue: Tongue, checker: Checker) -> Non
     assert outcome.result is Result.NOT_CHECKED
 
 
+@pytest.mark.slow
 def test_comments_and_layout_are_free(tongue: Tongue, checker: Checker) -> None:
     one = rule(WITHIN)
     monitor = tongue.given(one)
@@ -167,6 +169,7 @@ def test_a_fault_comes_to_what_is_written_beside_it(
         assert checker.kind(edited(tongue.given(one), old, new), one) == expected, (old, new)
 
 
+@pytest.mark.slow
 def test_what_may_do_more_is_not_run(tongue: Tongue, edits: Edits) -> None:
     one = rule(WITHIN)
     assert [each for each in edits.further if is_formed(tongue, one, each)] == []

@@ -455,7 +455,6 @@ def test_velocities_that_somebody_looks_into_stay_floats(body: str) -> None:
     assert crosshair._with_whole_velocities(KEEPING) == KEEPING.replace("float = 0.0", "int = 0")
 
 
-@pytest.mark.slow
 @needs_crosshair
 def test_crosshair_confirms_a_step_of_the_interceptor() -> None:
     """The others take their time; all of them are looked at by the command."""

@@ -175,7 +175,6 @@ def _there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     builtins.min, builtins.max = kept
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", TEXTS)
 def test_the_loop_does_not_take_it(name: str) -> None:
     taken = True
@@ -248,7 +247,6 @@ def test_a_helper_with_a_name_of_its_own_changes_nothing() -> None:
     assert all_proved(with_helper("asks"))
 
 
-@pytest.mark.slow
 @each("name", sorted({*set().union(*map(bound_by_node, NODES)), *dir(builtins)} - {"OPTIONS"}))
 def test_a_core_binds_no_name_that_its_node_binds_or_calls(name: str) -> None:
     """The node below would have it mean something else while it flies, or would call the core's."""
@@ -449,7 +447,6 @@ def test_what_is_not_of_the_language_is_refused_and_not_executed(
         assert isinstance(core(text), str), inner
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("outside", OUTSIDE)
 def test_each_expression_is_outside_by_itself(outside: str) -> None:
     assert isinstance(head(sub(SCAN, f"    return ({outside}), None\n")), str)
@@ -467,7 +464,6 @@ def _never(*_: object) -> None:
     raise AssertionError("it was executed")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("place", PLACES[1:])
 def test_the_places_themselves_are_of_the_language(place: str) -> None:
     assert isinstance(head(sub(SCAN, f"    return ({place.format('0')}), None\n")), Head)

@@ -336,7 +336,6 @@ def test_what_a_sentence_lacks_is_false() -> None:
     assert letters == {(False,): (False,) * 4, (True,): (False, False, True, False)}
 
 
-@pytest.mark.slow
 @given(sentences)
 def test_letters_have_the_values_of_the_expressions(sentence: s.Sentence) -> None:
     timing = sentence.timing

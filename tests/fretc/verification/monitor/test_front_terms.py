@@ -94,6 +94,7 @@ def test_what_fretc_writes_is_proved() -> None:
     assert verified(right, text).result is SAME
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("old", "new", "expected"), FAULTS)
 def test_a_fault_comes_to_what_is_written_beside_it(old: str, new: str, expected: Result) -> None:
     outcome = with_fault(old, new)

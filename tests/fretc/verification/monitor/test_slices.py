@@ -30,7 +30,6 @@ def check(place: int, text: str, sentences: tuple[str, ...] = SENTENCES) -> Outc
     return verified(rules[place], text, others=rules)
 
 
-@pytest.mark.slow
 def test_each_requirement_of_a_file_with_many_propositions_is_proved() -> None:
     text = emitted(*MANY)
     assert all(check(i, text, MANY).result is Result.PROVED for i in (0, 4, 8))
@@ -39,6 +38,7 @@ def test_each_requirement_of_a_file_with_many_propositions_is_proved() -> None:
 WIDE = tuple(f"the sw shall always satisfy a{i} | b{i}" for i in range(40))
 
 
+@pytest.mark.slow
 def test_a_requirement_of_a_file_is_proved_where_a_step_takes_a_mapping() -> None:
     text = emitted(*WIDE)
     step = "self._step(self._row(propositions))\n"

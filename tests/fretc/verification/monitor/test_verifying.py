@@ -110,7 +110,6 @@ def test_long_bounds_are_proved_as_they_are(sentence: str) -> None:
     assert ticks > 4 * bound, "the columns are compared on traces that reach the bound"
 
 
-@pytest.mark.slow
 def test_each_requirement_of_one_text_is_proved() -> None:
     sentences = (WITHIN, FOR, "in m mode the sw shall before s satisfy q")
     text = emitted(*sentences)
@@ -288,7 +287,6 @@ def test_another_run_time_is_not_checked(old: str, new: str) -> None:
     assert reason(check(WITHIN, text)).startswith((RUNTIME, LAYOUT))
 
 
-@pytest.mark.slow
 def test_a_run_time_in_a_string_is_none() -> None:
     """What is executed is another one, where every verdict is pending."""
     text = emitted(WITHIN)
