@@ -22,6 +22,7 @@ from fretc.report.forms.junit import junit
 from fretc.report.forms.markdown import markdown
 from fretc.report.forms.sarif import sarif
 from fretc.report.make import ReportBuild
+from tests.effort import FULL
 from tests.fretc.report import junit_schema
 from tests.fretc.report.cases import R1, moment, project, report_of, requirement, result
 from tests.json_schemas import validate
@@ -35,7 +36,7 @@ CHANGED = {"bindings": {"bindings": "0" * 64}, "sentence": {"sentence": "0" * 64
 
 _BRIEFLY = settings(
     deadline=None,
-    max_examples=25,
+    max_examples=200 if FULL else 8,
     phases=(Phase.generate,),
     suppress_health_check=[HealthCheck.too_slow],
 )

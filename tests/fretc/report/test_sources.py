@@ -27,6 +27,7 @@ from fretc.report.page.selection import DETAILED, selection
 from fretc.report.sections import details as reading
 from fretc.report.sections.details import Details
 from fretish.diagnostics.diagnostic import Diagnostic
+from tests.effort import FULL, some
 from tests.fretc.report import cases
 from tests.fretc.report.test_any_evidence import TEXTS, audits
 
@@ -34,7 +35,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:Generating overly large repr")
 
 _BRIEFLY = settings(
     deadline=None,
-    max_examples=8,
+    max_examples=50 if FULL else 4,
     phases=(Phase.generate,),
     suppress_health_check=[HealthCheck.too_slow],
 )
@@ -50,7 +51,10 @@ def known(folder: Path) -> Project:
     return cases.project(folder, *TEXTS)
 
 
-@pytest.fixture(scope="module", params=[JSON, STORE])
+FORMS = [JSON, STORE]
+
+
+@pytest.fixture(scope="module", params=FORMS)
 def audited(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Evidence of 3 requirements in 20 runs, half of them violated, in either form."""
     folder = tmp_path_factory.mktemp("audited")
@@ -153,6 +157,8 @@ def test_a_page_reads_those_results_in_full_that_it_shows(audited: Path) -> None
 # The JSON form -----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("audited", some(FORMS, 2), indirect=True)
 def test_the_json_form_in_pieces_is_that_in_one(audited: Path) -> None:
     report, details = whole(make(project(audited.parent, 3), str(audited)))
     anchors = [view.anchor for view in report.requirements]
@@ -176,6 +182,8 @@ def test_the_json_form_in_pieces_is_that_in_one(audited: Path) -> None:
     assert "".join(json_pieces(report, details)) == f"{to_json(asdict(full))}\n"
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("audited", some(FORMS, 2, 1), indirect=True)
 def test_how_much_is_read_at_once_changes_nothing(
     audited: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from compiler.project.folder import Project
 from fretc.report.front.speech import days, duration
+from tests.effort import FULL
 from tests.fretc.report.cases import as_json, project, report_of, requirement, result
 
 ALWAYS = "the robot shall always satisfy stopped"
@@ -61,7 +62,9 @@ def lines(page: Mapping[str, Any], name: str) -> dict[str, list[str]]:
         max_size=8,
     )
 )
-@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=200 if FULL else 8, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 def test_each_requirement_in_force_is_shown_violated_or_not_shown_for_a_cause(
     cells: list[tuple[str, str, dict[str, Any]]], known: Project, folder: Path
 ) -> None:

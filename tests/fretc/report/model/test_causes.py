@@ -20,6 +20,7 @@ from fretc.logs.signals.traces import Trace, trace
 from fretc.report.model.causes import causes, falsity, in_words
 from fretish import expressions as e
 from fretish import syntax as s
+from tests.effort import FULL
 from tests.fretc.audit.results import SHA
 from tests.fretc.report.cases import project, requirement
 
@@ -177,7 +178,7 @@ gaps = st.lists(
 
 @pytest.mark.slow
 @given(signals(), gaps)
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=200 if FULL else 8)
 def test_the_words_agree_with_what_the_monitor_saw(
     known: Project, of: dict[str, list[tuple[int, float]]], lost: list[tuple[int, int]]
 ) -> None:

@@ -17,6 +17,7 @@ from fretc.report.make import make
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, accepted, text
 from fretish.diagnostics.diagnostic import Diagnostic
+from tests.effort import some
 from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
@@ -136,8 +137,9 @@ def test_of_many_runs_the_violated_ones_come_first_and_the_rest_is_counted(tmp_p
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [1440, 390])
+@pytest.mark.parametrize(
+    ("width", "scheme"), some([(390, "dark"), (1440, "dark"), (390, "light"), (1440, "light")], 3)
+)
 def test_the_section_fits_and_is_accessible(
     browser: Browser, page: Path, width: int, scheme: Any
 ) -> None:

@@ -3,12 +3,14 @@
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 
 import pytest
 
 from compiler.project.folder import whole
 from fretc.audit.evidence.briefs import Briefs
+from fretc.audit.evidence.reader import Evidence
 from fretc.audit.store.anywhere import read as read_evidence
 from fretc.report.traceability.chain import Node, chains
 from fretc.report.traceability.comparison import Difference, differences
@@ -177,9 +179,19 @@ def locked() -> Lock:
     return lock
 
 
+@lru_cache(maxsize=4)
+def _evidence(files: tuple[tuple[str, bytes], ...]) -> Evidence | Diagnostic:
+    """What a store says; it is read once as long as its files stay the same."""
+    return read_evidence(EVIDENCE)
+
+
+def _bytes_of(folder: str) -> tuple[tuple[str, bytes], ...]:
+    return tuple((str(p), p.read_bytes()) for p in sorted(Path(folder).rglob("*")) if p.is_file())
+
+
 def compared(lock: Lock | None = None) -> dict[str, Difference]:
     """Each requirement that is not as it was."""
-    project, evidence = whole("requirements"), read_evidence(EVIDENCE)
+    project, evidence = whole("requirements"), _evidence(_bytes_of(EVIDENCE))
     assert not isinstance(project, Diagnostic)
     assert not isinstance(evidence, Diagnostic)
     base = lock or locked()
