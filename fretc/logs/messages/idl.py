@@ -29,9 +29,12 @@ _INCLUDE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
 _NAME = re.compile(r"[A-Za-z]\w*(/[A-Za-z]\w*)*", re.ASCII)
 _TEXT = r'"(?:\\.|[^"\\])*"'
 _UNUSED = re.compile(
-    rf"(?P<text>{_TEXT})|/\*.*?\*/|//[^\n]*|@\s*[\w:]+(?:\s*\((?:{_TEXT}|[^()\"])*\))?", re.DOTALL
+    rf"(?P<text>{_TEXT}|'(?:\\.|[^'\\])')|/\*.*?\*/|//[^\n]*"
+    rf"|@\s*[\w:]+(?:\s*\((?:{_TEXT}|[^()\"])*\))?|(?P<open>(?:\"|/\*).*)",
+    re.DOTALL,
 )
-"""Comments and annotations; texts are matched too, for what looks like one may stand in them."""
+"""Comments and annotations; texts are matched too, for what looks like one may stand in them, and
+what has no end, for it would be looked for from each quote anew."""
 _COMPUTED = re.compile(r"[(+*/%&|^~]|<<|-\s*-")
 """What bounds that are computed have in them; no message of ROS has any."""
 _NESTED = re.compile(r"\bsequence\s*<(\s*sequence\b|[^;]*\[)")
@@ -128,13 +131,19 @@ def _bare(section: str) -> str:
     Raises:
         DefinitionError: the parser would take very long for it, or take it for something else.
     """
-    bare = _UNUSED.sub(lambda match: match["text"] or " ", section).strip()
+    bare = _UNUSED.sub(_kept, section).strip()
     outside = re.sub(_TEXT, "", bare)
     if _COMPUTED.search(outside):
         raise DefinitionError("the definition computes its bounds")
     if _NESTED.search(outside):
         raise DefinitionError("the definition holds arrays of arrays")
     return bare
+
+
+def _kept(match: re.Match[str]) -> str:
+    if match["open"]:
+        raise DefinitionError("a text or a comment has no end")
+    return match["text"] or " "
 
 
 def _decoder_kind(kind: Any) -> Any:

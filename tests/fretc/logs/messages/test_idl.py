@@ -183,6 +183,17 @@ def test_a_definition_that_is_none_is_an_error_and_never_a_fault(
     assert {f.code for f in findings} <= {Code.UNKNOWN_ENCODING, Code.BAD_MESSAGE}
 
 
+@pytest.mark.parametrize(
+    "opened", ['"' + '\\"' * 9, "/* /*", '@a("x', "const char q = '\\\"'; \" "]
+)
+def test_what_has_no_end_is_looked_for_once(opened: str) -> None:
+    """From each quote anew, a definition of 100 kB takes many seconds."""
+    with pytest.raises(DefinitionError, match="has no end"):
+        types("a/msg/B", opened)
+    with pytest.raises(DefinitionError, match="has no end"):
+        types("a/msg/B", f"{MIXED} {opened}")
+
+
 def test_a_constant_is_never_run_as_a_program(tmp_path: Path) -> None:
     mark = tmp_path / "ran"
     evil = f'"); open({str(mark)!r}, "w"); ("'
