@@ -5,7 +5,6 @@ The only module that imports mujoco.
 
 import math
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,6 +29,9 @@ class Robot:
     """
 
     def __init__(self, scene: Scene, lidar: Lidar, seed: int, walker: Barrel | None = None) -> None:
+        import mujoco  # here: it takes half a second, and few who read scenarios have a robot
+
+        self._physics = mujoco
         self._model = mujoco.MjModel.from_xml_string(_mjcf(scene, walker))
         self._data = mujoco.MjData(self._model)
         self._data.qpos[:] = scene.start.x, scene.start.y, scene.start.yaw
@@ -64,8 +66,8 @@ class Robot:
             yaw = float(self._data.qpos[2])
             forward = command.forward
             self._data.ctrl[:] = forward * math.cos(yaw), forward * math.sin(yaw), command.turn
-            mujoco.mj_step(self._model, self._data)
-        mujoco.mj_forward(self._model, self._data)  # Distances need the new positions.
+            self._physics.mj_step(self._model, self._data)
+        self._physics.mj_forward(self._model, self._data)  # Distances need the new positions.
 
     def scan(self) -> NDArray[np.float32]:
         """One scan, noise included: shape (beams,), as `Lidar.report` gives it."""
@@ -76,7 +78,9 @@ class Robot:
         """True metres between chassis and nearest obstacle, at most 1; negative when in contact."""
         model, data, chassis = self._model, self._data, self._chassis
         distances = (
-            float(mujoco.mj_geomDistance(model, data, chassis, obstacle, _SEARCH_RADIUS, None))
+            float(
+                self._physics.mj_geomDistance(model, data, chassis, obstacle, _SEARCH_RADIUS, None)
+            )
             for obstacle in self._obstacles
         )
         return min(distances, default=_SEARCH_RADIUS)
@@ -91,7 +95,8 @@ class Robot:
         angles = self._lidar.angles + pose.yaw
         directions = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(beams)])
         distances = np.empty(beams)
-        mujoco.mj_multiRay(  # By keyword: releases differ in the order and number of arguments.
+        # By keyword: releases differ in the order and number of arguments.
+        self._physics.mj_multiRay(
             m=self._model,
             d=self._data,
             pnt=np.array([pose.x, pose.y, _LIDAR_HEIGHT]),

@@ -34,11 +34,15 @@ LOGS = [f"{number:02}.mcap" for number in range(12 if FULL else 6)]
 LONG = 300
 """Seconds, of the clock: whoever waits so long for what is on its way waits in vain."""
 
-with warnings.catch_warnings():
-    warnings.simplefilter("ignore")
-    from distributed import LocalCluster
-
 pytestmark = pytest.mark.filterwarnings("ignore")  # Dask's own
+
+
+def local_cluster(**options: Any) -> Any:
+    """Dask takes half a second to import; no worker that collects this waits for it."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        from distributed import LocalCluster
+    return LocalCluster(**options)
 
 
 @pytest.fixture(autouse=True)
@@ -49,7 +53,7 @@ def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
-    with LocalCluster(
+    with local_cluster(
         n_workers=2, threads_per_worker=2, dashboard_address="127.0.0.1:0", silence_logs=60
     ) as workers:
         yield workers
@@ -217,7 +221,7 @@ def test_a_scheduler_that_is_not_there_is_told(
 
 def test_a_scheduler_without_workers_is_told(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fleet, "PATIENCE", 1)
-    with LocalCluster(n_workers=0, dashboard_address="127.0.0.1:0", silence_logs=60) as empty:
+    with local_cluster(n_workers=0, dashboard_address="127.0.0.1:0", silence_logs=60) as empty:
         run = fretc(
             "audit", *LOGS, "--engine", empty.scheduler_address.replace("tcp", "dask")
         )  # fmt: skip

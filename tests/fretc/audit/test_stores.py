@@ -9,7 +9,6 @@ from pathlib import Path
 import boto3  # type: ignore[import-untyped]
 import fsspec
 import pytest
-from moto.server import ThreadedMotoServer
 
 from fretc.audit.log_paths import logs
 from fretc.audit.selection.dates import is_older
@@ -26,6 +25,8 @@ Put = Callable[..., None]
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[str]:
+    from moto.server import ThreadedMotoServer  # half a second
+
     running = ThreadedMotoServer("127.0.0.1", 0, verbose=False)
     running.start()
     host, port = running.get_host_and_port()

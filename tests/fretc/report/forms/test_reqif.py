@@ -1,17 +1,18 @@
 """The report as ReqIF, read back by other readers: a ReqIF library, the schema, and our own."""
 
+from __future__ import annotations
+
 import json
 import re
 import unicodedata
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import pytest
 import reqif
-import xmlschema
 from hypothesis import given
 from hypothesis import strategies as st
 from reqif.parser import ReqIFParser
@@ -31,6 +32,9 @@ from tests.fretc.report.cases import (
     result,
     violation,
 )
+
+if TYPE_CHECKING:
+    from xmlschema import XMLSchema
 
 TEXT = '<script>alert(1)</script> & "quotes" \'\u202eturned\u200f\n\n]]> {x} \\u <!-- é ✔\ta'
 TEXTS = (
@@ -55,8 +59,10 @@ IDS = ("HAZ-1", "HAZ-2", "HAZ-3", "R1", "R2", "R3", "R4", "R_5.a-b")
 
 
 @pytest.fixture(scope="module")
-def schema() -> xmlschema.XMLSchema:
+def schema() -> XMLSchema:
     """OMG's, as the library carries it."""
+    import xmlschema  # a quarter of a second
+
     return xmlschema.XMLSchema(Path(reqif.__file__).parent / "reqif_schema/reqif.xsd")
 
 
@@ -136,12 +142,12 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Report:
 
 
 @pytest.mark.slow
-def test_it_fits_the_schema(exported: Callable[[], str], schema: xmlschema.XMLSchema) -> None:
+def test_it_fits_the_schema(exported: Callable[[], str], schema: XMLSchema) -> None:
     schema.validate(exported())
 
 
 def test_the_schema_notices_what_does_not_fit(
-    exported: Callable[[], str], schema: xmlschema.XMLSchema
+    exported: Callable[[], str], schema: XMLSchema
 ) -> None:
     text = exported()
     for right, wrong in (
@@ -284,7 +290,7 @@ def test_the_same_report_gives_the_same_bytes(
 
 
 def test_a_project_without_hazards_and_runs_fits_the_schema(
-    fretc: Fretc, schema: xmlschema.XMLSchema
+    fretc: Fretc, schema: XMLSchema
 ) -> None:
     project(Path("requirements"), hazards=None, bindings=None)
     fretc("report", "--reqif", "out.reqif")
@@ -295,13 +301,11 @@ def test_a_project_without_hazards_and_runs_fits_the_schema(
     assert "Runs" not in content.objects["R1"]
 
 
-def test_a_project_of_nothing_fits_the_schema(small: Report, schema: xmlschema.XMLSchema) -> None:
+def test_a_project_of_nothing_fits_the_schema(small: Report, schema: XMLSchema) -> None:
     schema.validate(form(replace(small, hazards=(), matrix=(), requirements=())))
 
 
-def test_requirements_that_share_an_id_are_two_objects(
-    tmp_path: Path, schema: xmlschema.XMLSchema
-) -> None:
+def test_requirements_that_share_an_id_are_two_objects(tmp_path: Path, schema: XMLSchema) -> None:
     same = requirement("R1", "the robot shall never satisfy near")
     report = report_of(project(tmp_path, same, same), tmp_path).report
     assert report is not None
@@ -327,7 +331,7 @@ def held(text: str) -> str:
 
 @pytest.mark.slow
 @given(text=st.text(LETTERS, min_size=1))
-def test_any_text_comes_back(small: Report, schema: xmlschema.XMLSchema, text: str) -> None:
+def test_any_text_comes_back(small: Report, schema: XMLSchema, text: str) -> None:
     hazard = HazardView(f"{text}.", text, f".{text}.", "", "")
     exported = form(replace(small, hazards=(hazard,), project=text))
     schema.validate(exported)
