@@ -79,6 +79,7 @@ def counted(_: str) -> str:
 MAKERS = {"coverage": seen, "mutants": noticed, "count": counted}
 
 
+@pytest.mark.slow
 def test_the_examples_are_what_is_printed(request: pytest.FixtureRequest) -> None:
     is_current("coverage.md", MAKERS, request)
 

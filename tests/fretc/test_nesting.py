@@ -52,6 +52,7 @@ def fretc(
     return runner(monkeypatch, capsys)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("shape", "command"), some(product(SHAPES, ["check", "explain", "json"]), 2)
 )

@@ -88,6 +88,7 @@ def test_an_accepted_question_without_an_answer_is_visible(fretc: Fretc) -> None
     assert json_["together"] == {"R3": ["not checked"]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "because"),
     [

@@ -47,6 +47,7 @@ def audited(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
     return fretc
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_store_is_to_a_command_what_a_file_is(audited: Fretc, command: str) -> None:
     file, store, slash = (said(audited, command, path) for path in (FILE, STORE, f"{STORE}/"))

@@ -142,6 +142,7 @@ class Counted:
         return getattr(self._of, name)
 
 
+@pytest.mark.slow
 def test_a_page_reads_those_results_in_full_that_it_shows(audited: Path) -> None:
     build = make(project(audited.parent, 3), str(audited))
     report, details = whole(build)

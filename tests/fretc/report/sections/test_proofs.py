@@ -182,6 +182,7 @@ def test_a_proof_of_the_monitor_of_all_requirements_stands(
         assert len(view["suspicions"]) == doubts, view["suspicions"]
 
 
+@pytest.mark.slow
 @each("kind", ["monitor", "c", "rust", "js"])
 @each("part", [("R1", "R2"), ("R1", "R3"), ("R2", "R1"), ("R1",)])
 def test_a_proof_of_the_monitor_of_some_requirements_stands(

@@ -349,6 +349,7 @@ def test_a_lock_without_texts_is_read_and_says_that_it_does_not_know(reviewed: F
     assert "R1" not in compared()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new"),
     [
