@@ -322,7 +322,7 @@ def test_a_bad_option_is_explained_without_a_traceback(fretc: Fretc) -> None:
 def test_an_unexpected_fault_of_our_own_is_told_as_such(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    def broken(*_: object) -> None:
+    def broken(*_: object, **__: object) -> None:
         raise ZeroDivisionError("by purpose")
 
     monkeypatch.setattr("compiler.project.folder.load", broken)
