@@ -63,8 +63,13 @@ def emitted(*sentences: str, clock: Clock | None = None) -> str:
 
 
 def monitor(*sentences: str) -> Monitor:
-    """The monitor that their text makes."""
-    return load("monitor.py", emitted(*sentences))
+    """A new monitor of the class that their text makes."""
+    return _kind(*sentences)()
+
+
+@lru_cache(maxsize=512)
+def _kind(*sentences: str) -> type[Monitor]:
+    return type(load("monitor.py", emitted(*sentences)))
 
 
 def steps(machine: Monitor, columns: Mapping[str, Sequence[Truth]], place: int = 0) -> list[Step]:

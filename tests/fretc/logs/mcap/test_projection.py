@@ -156,7 +156,9 @@ UNSET = [image(1000 * S, 0), float_of(1, 1000 * S + 10**8, 0.0, 0)]
 
 
 @pytest.mark.slow
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=2000 if FULL else 8, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @example([Piece(UNSET, crc=False, declares=False)], "publish_time", 1, 1, 1)
 @given(
     pieces(),

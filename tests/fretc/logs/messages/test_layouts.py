@@ -3,7 +3,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
@@ -11,6 +11,7 @@ from fretc.logs.mcap.container import Stream
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.messages.decoding import decoder, shape
 from fretc.logs.messages.layouts import LayoutError, Layouts, Shape
+from tests.effort import FULL
 from tests.fretc.logs.kinds import Encoder, Kind, Part, kinds, message, official
 
 BOTH = pytest.mark.parametrize("ros1", [False, True])
@@ -43,6 +44,7 @@ def read(encoder: Encoder, payloads: list[bytes]) -> int:
 @pytest.mark.slow
 @BOTH
 @given(data=st.data(), seed=st.integers(0, 2**32))
+@settings(max_examples=2000 if FULL else 12)
 def test_every_number_is_what_the_official_decoder_reads(
     data: st.DataObject, seed: int, *, ros1: bool
 ) -> None:
@@ -56,6 +58,7 @@ def test_every_number_is_what_the_official_decoder_reads(
 @pytest.mark.slow
 @BOTH
 @given(data=st.data(), seed=st.integers(0, 2**32))
+@settings(max_examples=2000 if FULL else 10)
 def test_a_damaged_payload_is_read_as_the_official_decoder_does_or_left_to_it(
     data: st.DataObject, seed: int, *, ros1: bool
 ) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import example, given
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from fretc.logs.messages.vectorized import nearest, samples, siblings
@@ -13,6 +13,7 @@ from fretc.logs.signals.samples import widest
 from fretc.logs.signals.signals import nearest as nearest_of_one
 from fretc.logs.signals.signals import sample
 from fretish.bindings.declarations import Signal
+from tests.effort import FULL
 from tests.fretc.logs.logs import declare
 
 NAN, INF = float("nan"), float("inf")
@@ -202,6 +203,7 @@ WHOLE = st.one_of(
     "valid", ["", "x > 9007199254740993", "x != 9007199254740993", "abs(x) < 9"]
 )
 @given(st.lists(st.lists(WHOLE, min_size=3, max_size=3), min_size=1, max_size=4))
+@settings(max_examples=2000 if FULL else 10)
 def test_whole_numbers_of_64_bits_are_read_alike_at_once_and_one_by_one(
     fields: str, valid: str, rows: list[list[int]]
 ) -> None:

@@ -30,6 +30,7 @@ from fretc.logs.storage.log_names import is_url, name_of
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import install
 from fretish.diagnostics.rendering import render
+from tests.effort import some
 from tests.fretc.logs.logs import NONE, TWELVE, S, Sent, X, damaged, number, values, write
 
 ROOT = Path(__file__).parents[4]
@@ -90,13 +91,14 @@ def test_a_log_from_standard_input_is_the_log(tmp_path: Path, kind: str) -> None
 
 
 @pytest.mark.slow
-def test_nothing_of_standard_input_stays_behind(tmp_path: Path) -> None:
+@pytest.mark.parametrize("content", some(["half", "whole", "foreign"], 3))
+def test_nothing_of_standard_input_stays_behind(tmp_path: Path, content: str) -> None:
     data = write(tmp_path / "log.mcap", TWELVE).read_bytes()
     place = tmp_path / "temporary"
     place.mkdir()
-    for content in (data, data[: len(data) // 2], b"no log"):
-        with piped(content) as stdin:
-            info(stdin, TMPDIR=str(place))
+    contents = {"half": data[: len(data) // 2], "whole": data, "foreign": b"no log"}
+    with piped(contents[content]) as stdin:
+        info(stdin, TMPDIR=str(place))
     assert list(place.iterdir()) == []
 
 
