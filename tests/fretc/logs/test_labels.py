@@ -210,7 +210,8 @@ def test_the_bindings_say_where_labels_come_from() -> None:
 )
 def test_a_source_that_is_none_is_refused_at_its_place(line: str, place: str) -> None:
     declared, (said,) = bound(f"[run.label]\n{line}\n")
-    assert declared is None
+    assert declared is not None
+    assert declared.mistakes.keys() == {("run", "")}, "nothing that reads labels goes on"
     assert said.startswith("F551 ")
     number = X_TEXT.count("\n") + 2
     assert f"bindings.toml:{number}:" in said

@@ -81,7 +81,8 @@ def test_a_coordinate_is_read_as_its_signal_is_and_else_in_metres() -> None:
 def test_a_mistake_in_the_map_has_its_place() -> None:
     wrong = BINDINGS + '[map]\nx = "/mode.data"\nz = 1\n'
     declarations, diagnostics = read_bindings(Source("bindings.toml", wrong))
-    assert declarations is None
+    assert declarations is not None
+    assert declarations.mistakes.keys() == {("map", "")}, "nothing that reads the map goes on"
     places = [(d.code.number, d.span.line if d.span else 0, d.message) for d in diagnostics]
     assert places == [
         ("F302", 13, "`z` is no field of [map]"),
