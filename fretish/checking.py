@@ -7,7 +7,7 @@ from typing import assert_never
 
 from fretish import expressions as e
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
-from fretish.diagnostics.mends import Mend
+from fretish.diagnostics.fixes import Fix
 from fretish.diagnostics.source import Span
 from fretish.expressions import depth
 from fretish.keywords import UNUSED
@@ -169,7 +169,7 @@ def _takes_truth(name: str, arg: e.Expression, *, last: bool) -> bool:
 
 def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:
     wanted, actual = ("truth value", "number") if boolean else ("number", "truth value")
-    mend = _at_least(span) if boolean and span is not None else None
+    fix = _at_least(span) if boolean and span is not None else None
     words = (
         "compare a number: `x > 3`"
         if boolean
@@ -179,17 +179,17 @@ def _wrong_kind(boolean: bool, span: Span | None) -> Diagnostic:
         Code.WRONG_KIND,
         f"a {wanted} is needed here, and this is a {actual}",
         span,
-        help=f"`=>` is an implication: {mend.help}" if mend is not None else words,
-        mend=mend,
+        help=f"`=>` is an implication: {fix.help}" if fix is not None else words,
+        fix=fix,
     )
 
 
-def _at_least(number: Span) -> Mend | None:
+def _at_least(number: Span) -> Fix | None:
     """`>=` for the `=>` before a number; `x => 3` is an implication."""
     text = number.source.text[: number.start].rstrip()
     if not text.endswith("=>") or text.endswith("<=>"):
         return None
-    return Mend(Span(number.source, len(text) - 2, len(text)), ">=")
+    return Fix(Span(number.source, len(text) - 2, len(text)), ">=")
 
 
 LOOK_BACK = frozenset("preBool persisted occurred prevOcc FTP".split())
@@ -210,20 +210,20 @@ def temporal_predicates(sentence: Sentence) -> Iterator[Diagnostic]:
 
 def _not_formalized(id: str, span: Span | None) -> Diagnostic:
     if id in NUMBERS_BACK:
-        consequence, mend = (
+        consequence, fix = (
             "it stays in the formulas as it is",
             "a monitor keeps the number of the tick before; an audit needs a proposition",
         )
     elif id in LOOK_BACK:
         consequence = "PT says what it means, and in FT it stays a proposition"
-        mend = "read PT, or check with a monitor"
+        fix = "read PT, or check with a monitor"
     else:
         consequence = "FT says what it means, and in PT it stays a proposition"
-        mend = "read FT; a monitor cannot look ahead"
+        fix = "read FT; a monitor cannot look ahead"
     return Diagnostic(
         Code.PREDICATE_NOT_FORMALIZED,
         f"`{id}` looks {'ahead' if id in LOOK_AHEAD else 'back'}: {consequence}",
         span,
-        help=mend,
+        help=fix,
         severity=Severity.WARNING,
     )

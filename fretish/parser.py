@@ -22,7 +22,7 @@ from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import check_depth, check_names, check_response_kinds, check_value
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.mends import Mended
+from fretish.diagnostics.fixes import FixedText
 from fretish.diagnostics.source import Span
 from fretish.mistakes.operators import unknown_character
 from fretish.mistakes.unexpected import Lexeme, Unexpected
@@ -80,10 +80,10 @@ def mistakes(text: Span) -> tuple[Diagnostic, ...]:
     """What keeps a text from being a sentence, in the order of the text.
 
     Behind a mistake of the grammar reading goes on where it is sure how: with the text that its
-    mend gives, or with the sentence that begins there. A mend that leads no further is not sure.
+    fix gives, or with the sentence that begins there. A fix that leads no further is not safe.
     """
     found: list[Diagnostic] = []
-    read = Mended(text)
+    read = FixedText(text)
     while len(found) < MISTAKES:
         here = read.span
         words = _words(here)
@@ -93,10 +93,10 @@ def mistakes(text: Span) -> tuple[Diagnostic, ...]:
         tree = words if isinstance(words, Diagnostic) else _built(words, here)
         wrong = _around(tree, here) if isinstance(tree, Diagnostic) else [*_against(tree)]
         found.extend(_moved(each, read) for each in wrong)
-        mend = found[-1].mend if isinstance(tree, Diagnostic) else None
-        if len(text.text) > _LONG or mend is None or not mend.sure or read.touches(mend.span):
+        fix = found[-1].fix if isinstance(tree, Diagnostic) else None
+        if len(text.text) > _LONG or fix is None or not fix.is_safe or read.touches(fix.span):
             break
-        read = read.with_mend(mend)
+        read = read.with_fix(fix)
     return tuple(sorted(found[:MISTAKES], key=_at))
 
 
@@ -153,11 +153,11 @@ def _around(wrong: Diagnostic, text: Span) -> list[Diagnostic]:
     return [*before, *mistakes(second), wrong]
 
 
-def _moved(wrong: Diagnostic, read: Mended) -> Diagnostic:
-    """A diagnostic of the mended text, with its places in the original one."""
+def _moved(wrong: Diagnostic, read: FixedText) -> Diagnostic:
+    """A diagnostic of the fixed text, with its places in the original one."""
     assert wrong.span is not None
-    mend = wrong.mend and replace(wrong.mend, span=read.place(wrong.mend.span))
-    return replace(wrong, span=read.place(wrong.span), mend=mend)
+    fix = wrong.fix and replace(wrong.fix, span=read.place(wrong.fix.span))
+    return replace(wrong, span=read.place(wrong.span), fix=fix)
 
 
 def _at(wrong: Diagnostic) -> int:
@@ -166,11 +166,9 @@ def _at(wrong: Diagnostic) -> int:
 
 
 def _unsure(wrong: Diagnostic) -> Diagnostic:
-    assert wrong.mend is not None
-    mend = replace(wrong.mend, sure=False)
-    return replace(
-        wrong, mend=mend, help=mend.help if wrong.help == wrong.mend.help else wrong.help
-    )
+    assert wrong.fix is not None
+    fix = replace(wrong.fix, is_safe=False)
+    return replace(wrong, fix=fix, help=fix.help if wrong.help == wrong.fix.help else wrong.help)
 
 
 class _MistakeError(Exception):

@@ -68,5 +68,5 @@ def _edge(condition: s.Condition | None) -> Iterator[Diagnostic]:
     )
 
 
-def _warning(code: Code, message: str, span: Span | None, mend: str) -> Diagnostic:
-    return Diagnostic(code, message, span, help=mend, severity=Severity.WARNING)
+def _warning(code: Code, message: str, span: Span | None, fix: str) -> Diagnostic:
+    return Diagnostic(code, message, span, help=fix, severity=Severity.WARNING)

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from fretish.checking import key_word_as_name
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
-from fretish.diagnostics.mends import Mend, left_out
+from fretish.diagnostics.fixes import Fix, left_out
 from fretish.diagnostics.source import Span
 from fretish.keywords import KEYWORDS
 from fretish.mistakes.operators import (
@@ -117,18 +117,18 @@ def bad_duration(span: Span, unit: str, whole: Span) -> Diagnostic:
             span,
             help="count a larger unit",
         )
-    mend = _whole(span.text, unit, whole)
+    fix = _whole(span.text, unit, whole)
     words = "count a smaller unit, in whole numbers: 500 milliseconds, not 0.5 seconds"
     return Diagnostic(
         Code.BAD_DURATION,
         f"a duration counts whole units, and `{span.text}` is no whole number",
         span,
-        help=mend.help if mend is not None else words,
-        mend=mend,
+        help=fix.help if fix is not None else words,
+        fix=fix,
     )
 
 
-def _whole(digits: str, unit: str, whole: Span) -> Mend | None:
+def _whole(digits: str, unit: str, whole: Span) -> Fix | None:
     """The same duration in the largest unit of which it is a whole number; None: there is none."""
     size = _MICROSECONDS.get(unit)
     try:
@@ -138,7 +138,7 @@ def _whole(digits: str, unit: str, whole: Span) -> Mend | None:
     for name, other in reversed(_MICROSECONDS.items()) if size else ():
         count = length / other
         if count.denominator == 1 and count < 10**15:
-            return Mend(whole, f"{count} {name}", sure=True)
+            return Fix(whole, f"{count} {name}", is_safe=True)
     return None
 
 
@@ -161,13 +161,13 @@ def _unit(u: Unexpected) -> Diagnostic | None:
     words = "write ticks, microseconds, milliseconds, seconds, minutes or hours: `within 3 seconds`"
     if u.lexeme.kind != "ID":
         return Diagnostic(Code.BAD_DURATION, "a duration needs a unit", u.lexeme.span, help=words)
-    mend = _unit_mend(u.lexeme.span)
+    fix = _unit_fix(u.lexeme.span)
     return Diagnostic(
         Code.BAD_DURATION,
         f"a duration needs a unit, and `{u.lexeme.word}` is none",
         u.lexeme.span,
-        help=mend.help if mend is not None else words,
-        mend=mend,
+        help=fix.help if fix is not None else words,
+        fix=fix,
     )
 
 
@@ -180,13 +180,13 @@ def _measured(u: Unexpected) -> Diagnostic | None:
     return unknown_unit(u.lexeme.word, u.lexeme.span)
 
 
-def _unit_mend(span: Span) -> Mend | None:
+def _unit_fix(span: Span) -> Fix | None:
     word = span.text.lower()
     if word in _UNIT_NAMES:
-        return Mend(span, _UNIT_NAMES[word], sure=True)
+        return Fix(span, _UNIT_NAMES[word], is_safe=True)
     plurals = [known for known in KEYWORDS if known.endswith("s")]
     near = "ticks" if word in _TICK_NAMES else suggestion(word, plurals, cutoff=0.72)
-    return Mend(span, near) if near is not None else None
+    return Fix(span, near) if near is not None else None
 
 
 def _number(u: Unexpected) -> Diagnostic | None:
@@ -219,7 +219,7 @@ def _superfluous(u: Unexpected) -> Diagnostic | None:
         return None
     if u.lexeme.kind == "MODE" and not re.search(r"\bwhile\b", u.read.text, re.IGNORECASE):
         return None
-    return not_fretish(reasons[u.lexeme.kind], u.lexeme.span, left_out(u.lexeme.span, sure=True))
+    return not_fretish(reasons[u.lexeme.kind], u.lexeme.span, left_out(u.lexeme.span, is_safe=True))
 
 
 def _globally(u: Unexpected) -> Diagnostic | None:
@@ -231,7 +231,7 @@ def _globally(u: Unexpected) -> Diagnostic | None:
     return not_fretish(
         f"FRETish has no word for the scope `{u.before.word}`",
         u.before.span,
-        left_out(u.before.span.to(u.lexeme.span) if comma else u.before.span, sure=True),
+        left_out(u.before.span.to(u.lexeme.span) if comma else u.before.span, is_safe=True),
         "leave it out: without a scope a requirement is enforced everywhere",
     )
 
@@ -253,13 +253,13 @@ def _shall(u: Unexpected) -> Diagnostic | None:
     word = u.lexeme.word.lower()
     if not u.wants("SHALL") or word not in (*_SHALL, *_WEAKER):
         return None
-    mend = Mend(u.lexeme.span, "shall", sure=word in _SHALL)
+    fix = Fix(u.lexeme.span, "shall", is_safe=word in _SHALL)
     return Diagnostic(
         Code.MISSPELT,
         f"a requirement says `shall`, not `{u.lexeme.word}`",
         u.lexeme.span,
-        help=mend.help,
-        mend=mend,
+        help=fix.help,
+        fix=fix,
     )
 
 
@@ -269,13 +269,13 @@ def _missing_shall(u: Unexpected) -> Diagnostic | None:
         return None
     if u.lexeme.kind not in ("SATISFY", *TIMINGS) or re.search(r"\bshall\b", u.rest.text, re.I):
         return None
-    mend = Mend(u.lexeme.span.part(0, 0), "shall ", sure=u.lexeme.kind == "SATISFY")
+    fix = Fix(u.lexeme.span.part(0, 0), "shall ", is_safe=u.lexeme.kind == "SATISFY")
     return Diagnostic(
         Code.NOT_FRETISH,
         f"`shall` is missing before `{u.lexeme.word}`",
         u.lexeme.span,
         help=f"write `shall {u.lexeme.word}`",
-        mend=mend,
+        fix=fix,
     )
 
 
@@ -286,8 +286,8 @@ def _component(u: Unexpected) -> Diagnostic | None:
     if not re.match(r"[\w.%]+\s+shall\b", u.rest.text, re.IGNORECASE):
         return None
     both = u.before.span.to(u.lexeme.span)
-    mend = Mend(both, f"{u.before.word}_{u.lexeme.word}")
-    return not_fretish("a component is one name", both, mend)
+    fix = Fix(both, f"{u.before.word}_{u.lexeme.word}")
+    return not_fretish("a component is one name", both, fix)
 
 
 def _misspelt(u: Unexpected) -> Diagnostic | None:
@@ -298,13 +298,13 @@ def _misspelt(u: Unexpected) -> Diagnostic | None:
     for suspect in suspects:
         near = suggestion(suspect.word, KEYWORDS, cutoff=0.72)
         if suspect.kind == "ID" and near is not None:
-            mend = Mend(suspect.span, near)
+            fix = Fix(suspect.span, near)
             return Diagnostic(
                 Code.MISSPELT,
                 f"`{suspect.word}` is no word of FRETish here",
                 suspect.span,
-                help=mend.help,
-                mend=mend,
+                help=fix.help,
+                fix=fix,
             )
     return None
 
@@ -319,7 +319,7 @@ def _missing_satisfy(u: Unexpected) -> Diagnostic | None:
         f"missing `satisfy` before `{response.text}`",
         response,
         help=f"write `satisfy {response.text}`",
-        mend=Mend(response.part(0, 0), "satisfy ", sure=not two_words),
+        fix=Fix(response.part(0, 0), "satisfy ", is_safe=not two_words),
     )
 
 

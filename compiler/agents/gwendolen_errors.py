@@ -22,9 +22,9 @@ class TrapError(Exception):
         self.diagnostic = diagnostic
 
 
-def misread(message: str, span: Span, mend: str) -> TrapError:
+def misread(message: str, span: Span, fix: str) -> TrapError:
     """F610, to be raised."""
-    return TrapError(Diagnostic(Code.BAD_AGENT, message, span, mend))
+    return TrapError(Diagnostic(Code.BAD_AGENT, message, span, fix))
 
 
 def beyond(feature: str, span: Span) -> TrapError:
@@ -93,8 +93,8 @@ def _mistake(source: Source, at: int) -> Diagnostic | None:
     if rest.startswith("/*"):
         return Diagnostic(Code.BAD_AGENT, "the comment has no end", place, "close it with `*/`")
     if rest.startswith("-") and _NAME_SECTION.search(source.text[:at]):
-        mend = "an agent's name has letters, digits and `_` only"
-        return Diagnostic(Code.BAD_AGENT, "a `-` stands in the agent's name", place, mend)
+        fix = "an agent's name has letters, digits and `_` only"
+        return Diagnostic(Code.BAD_AGENT, "a `-` stands in the agent's name", place, fix)
     heading = _HEADING.match(rest)
     if heading is None or heading[0] in _ALL_HEADINGS:
         return None

@@ -80,9 +80,9 @@ class MisreadError(Exception):
         self.diagnostic = diagnostic
 
 
-def misread(message: str, span: Span, mend: str) -> MisreadError:
+def misread(message: str, span: Span, fix: str) -> MisreadError:
     """F603, to be raised."""
-    return MisreadError(Diagnostic(Code.BAD_PROPERTY, message, span, mend))
+    return MisreadError(Diagnostic(Code.BAD_PROPERTY, message, span, fix))
 
 
 class JoinedText:
@@ -122,9 +122,9 @@ def formula(text: JoinedText) -> tuple[f.Formula, tuple[Span, ...]]:
     tree = reader.formula()
     if reader.tokens:
         tail = reader.tokens[0]
-        mend = _DROPPED.get(tail.text, "a property ends with its formula")
+        fix = _DROPPED.get(tail.text, "a property ends with its formula")
         word = tail.text
-        raise misread(f"AJPF drops `{word}` and all that follows it in silence", tail.span, mend)
+        raise misread(f"AJPF drops `{word}` and all that follows it in silence", tail.span, fix)
     return tree, tuple(reader.strings)
 
 
@@ -175,10 +175,10 @@ class _Reader:
     def need(self, sign: str) -> None:
         if not self.take(sign):
             place = f"before `{self.next.text}`" if self.tokens else "at the end"
-            mend = _DROPPED.get(self.next.text, "")
+            fix = _DROPPED.get(self.next.text, "")
             effect = "AJPF supplies it, or drops what stands there, in silence"
             raise misread(
-                f"`{sign}` is missing {place}", self.next.span, f"{effect}{'; ' * bool(mend)}{mend}"
+                f"`{sign}` is missing {place}", self.next.span, f"{effect}{'; ' * bool(fix)}{fix}"
             )
 
     # Operators
@@ -252,10 +252,10 @@ class _Reader:
     def _no_formula(self, token: _Token) -> MisreadError:
         if token.kind == "end":
             return misread("a formula is missing", token.span, "write it behind the operator")
-        mend = _DROPPED.get(token.text, "an atom is `B(agent,belief)`")
+        fix = _DROPPED.get(token.text, "an atom is `B(agent,belief)`")
         if token.text[0] in "URAE" and token.text[1:] in MODALITIES:
-            mend = f"put a space between: `{token.text[0]} {token.text[1:]}`"
-        return misread(f"`{token.text}` cannot begin a formula", token.span, mend)
+            fix = f"put a space between: `{token.text[0]} {token.text[1:]}`"
+        return misread(f"`{token.text}` cannot begin a formula", token.span, fix)
 
     # Atoms
 

@@ -52,7 +52,7 @@ class Unfit:
 
     field: str
     what: str
-    mend: str
+    fix: str
 
 
 def attribution(table: Mapping[str, Any]) -> Attribution | Unfit:
@@ -61,12 +61,12 @@ def attribution(table: Mapping[str, Any]) -> Attribution | Unfit:
         if not isinstance(value, str) or not value.strip():
             return Unfit(name, "must be a text", f'write `{name} = "..."`, or leave it out')
         if not value.isprintable() or len(value) > LONGEST:
-            mend = f"manifests take up to {LONGEST} printable characters"
-            return Unfit(name, "must be one line of text", mend)
+            fix = f"manifests take up to {LONGEST} printable characters"
+            return Unfit(name, "must be one line of text", fix)
         if f'"{value.strip()}"' in EXAMPLE:
             return Unfit(name, "still is the example", "put your own in its place")
     email = table.get("email")
     if email is not None and _EMAIL.fullmatch(email.strip()) is None:
-        mend = "write one such as `ada@robots.org`: manifests take no other form"
-        return Unfit("email", "must be one e-mail address", mend)
+        fix = "write one such as `ada@robots.org`: manifests take no other form"
+        return Unfit("email", "must be one e-mail address", fix)
     return Attribution(**{name: value.strip() for name, value in table.items()})

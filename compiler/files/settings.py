@@ -134,8 +134,8 @@ def _settings(empty: Settings, table: Any) -> Settings | Diagnostic:
             return unknown_key(Code.BAD_SETTINGS, key, _FIELDS, span, where)
     parents, accept = table.get("parents", []), table.get("accept", {})
     if not isinstance(parents, list) or not all(isinstance(path, str) for path in parents):
-        mend = 'write `parents = ["build/hazards/json/index.json"]`'
-        return _bad_settings(empty, "`parents` must be a list of paths", mend, "parents")
+        fix = 'write `parents = ["build/hazards/json/index.json"]`'
+        return _bad_settings(empty, "`parents` must be a list of paths", fix, "parents")
     if not isinstance(accept, dict):
         return _bad_settings(empty, "`accept` must be a table", f"write {_ACCEPT}", "accept")
     for code, reason in accept.items():
@@ -162,14 +162,14 @@ def _project_table(empty: Settings, table: Any) -> Attribution | Diagnostic:
     found = attribution(table)
     if isinstance(found, Unfit):
         message = f"`{found.field}` {found.what}"
-        return _bad_settings(empty, message, found.mend, "project", found.field)
+        return _bad_settings(empty, message, found.fix, "project", found.field)
     return found
 
 
 _ACCEPT = '`F631 = "the reason"`, or `F315 = { "/battery" = "the reason" }`, under `[accept]`'
 
 
-def _bad_settings(settings: Settings, message: str, mend: str, *path: str) -> Diagnostic:
+def _bad_settings(settings: Settings, message: str, fix: str, *path: str) -> Diagnostic:
     assert settings.tables is not None
     place = settings.tables.place(*settings.table, *path)
-    return Diagnostic(Code.BAD_SETTINGS, message, place, help=mend)
+    return Diagnostic(Code.BAD_SETTINGS, message, place, help=fix)

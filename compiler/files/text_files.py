@@ -143,7 +143,7 @@ def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | Non
         return Diagnostic(
             Code.NOT_WRITTEN,
             f"`{path}` cannot be written: {error.strerror or error}",
-            help="name another place, or mend this one",
+            help="name another place, or fix this one",
         )
     finally:
         for temporary, _ in waiting:

@@ -81,28 +81,26 @@ def _acceptance(
     code = _CODES.get(number)
     if code is None:
         near = suggestion(number, _CODES)
-        mend = (
-            f"did you mean `{near}`?" if near else "write the number that the warning begins with"
-        )
-        return _bad(f"`{number}` is no code of fretc", place, mend)
+        fix = f"did you mean `{near}`?" if near else "write the number that the warning begins with"
+        return _bad(f"`{number}` is no code of fretc", place, fix)
     about = explanation(code).accept
     if not about:
-        mend = f"mend what it is about: `fretc explain {number}` says how"
-        return _bad(f"{number} cannot be accepted: {code.summary}", place, mend)
+        fix = f"fix what it is about: `fretc explain {number}` says how"
+        return _bad(f"{number} cannot be accepted: {code.summary}", place, fix)
     where, example = ACCEPTANCES[about]
     line = example.format(number).removeprefix("[accept]\n")
-    mend = f"write `{line}` in {where}{'' if about == REQUIREMENT else ', under `[accept]`'}"
+    fix = f"write `{line}` in {where}{'' if about == REQUIREMENT else ', under `[accept]`'}"
     if requirement is not None and about != REQUIREMENT:
-        return _bad(f"{number} is not about one requirement", place, mend)
+        return _bad(f"{number} is not about one requirement", place, fix)
     if subject and about not in (TOPIC, HAZARD):
-        return _bad(f"{number} is not about a topic or a hazard", place, mend)
+        return _bad(f"{number} is not about a topic or a hazard", place, fix)
     if not reason.strip():
         return _bad(f"{number} is accepted without a reason", place, "write why it may stand")
     return Acceptance(code, reason.strip(), place, requirement, subject)
 
 
-def _bad(message: str, place: Span, mend: str) -> Diagnostic:
-    return Diagnostic(Code.BAD_ACCEPTANCE, message, place, help=mend)
+def _bad(message: str, place: Span, fix: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_ACCEPTANCE, message, place, help=fix)
 
 
 _ByCode = Mapping[tuple[Code, str], Sequence[Acceptance]]

@@ -50,9 +50,9 @@ def unknown_parents(
         )
 
 
-def _unknown(requirement: Requirement, message: str, mend: str) -> Diagnostic:
+def _unknown(requirement: Requirement, message: str, fix: str) -> Diagnostic:
     place = requirement.place("parents")
-    return Diagnostic(Code.UNKNOWN_PARENT, message, place, mend, Severity.WARNING)
+    return Diagnostic(Code.UNKNOWN_PARENT, message, place, fix, Severity.WARNING)
 
 
 def circles(requirements: Sequence[Requirement]) -> Iterator[Diagnostic]:

@@ -166,7 +166,7 @@ def _written(paths: Sequence[str]) -> list[Requirement]:
 
 
 _MOST_BROKEN_HEADERS = 100
-"""Below so many mistaken headers sentences are read, too: a file of thousands is none to mend."""
+"""Below so many mistaken headers sentences are read, too: a file of thousands is none to fix."""
 
 
 def _formalized(

@@ -544,17 +544,17 @@ def _failed(why: str, source: Source, at: int = 0) -> Import:
     return Import((), (_bad(why, source, "give it an export of FRET (JSON), or a CSV", at),))
 
 
-def _bad(why: str, source: Source, mend: str, at: int = 0) -> Diagnostic:
+def _bad(why: str, source: Source, fix: str, at: int = 0) -> Diagnostic:
     return Diagnostic(
         Code.BAD_EXPORT,
         f"`{source.name}` cannot be imported: {why}",
         source.span(at, min(at + 1, len(source.text))),
-        help=mend,
+        help=fix,
     )
 
 
-def _warning(code: Code, message: str, source: Source, mend: str) -> Diagnostic:
-    return Diagnostic(code, message, Source(source.name, "").span(), mend, Severity.WARNING)
+def _warning(code: Code, message: str, source: Source, fix: str) -> Diagnostic:
+    return Diagnostic(code, message, Source(source.name, "").span(), fix, Severity.WARNING)
 
 
 def _skipped(why: str, source: Source) -> Diagnostic:

@@ -39,8 +39,8 @@ def hazards(path: str) -> tuple[dict[str, Hazard], tuple[Diagnostic, ...]]:
 
 
 def _mistakes(tables: Tables, id: str, fields: Any) -> list[Diagnostic]:
-    def wrong(message: str, mend: str, *path: str) -> Diagnostic:
-        return Diagnostic(Code.BAD_HAZARDS, message, tables.place(*path), help=mend)
+    def wrong(message: str, fix: str, *path: str) -> Diagnostic:
+        return Diagnostic(Code.BAD_HAZARDS, message, tables.place(*path), help=fix)
 
     if not isinstance(fields, dict):
         return [wrong(f"`{id}` is no hazard", f'write `[{id}]`, then `title = "..."`', id)]

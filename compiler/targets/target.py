@@ -94,13 +94,13 @@ def identifier(rule: Formalized) -> str:
     return f"r{plain}" if plain[:1].isdigit() else plain
 
 
-def not_expressible(target: str, rule: Formalized, what: str, mend: str) -> Diagnostic:
+def not_expressible(target: str, rule: Formalized, what: str, fix: str) -> Diagnostic:
     """F601: the target's language has no words for a part of the rule."""
     return Diagnostic(
         Code.NOT_EXPRESSIBLE,
         f"{target} cannot express {what} of {rule.id}",
         rule.requirement.wording,
-        help=mend,
+        help=fix,
     )
 
 

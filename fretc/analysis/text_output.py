@@ -95,10 +95,10 @@ def _conflict(
         yield f"    {row}", None
     if conflict.loop is not None:
         yield f"    and from tick {conflict.loop} on the same again, for ever", None
-    mending = [each for each in analysis.repairs if each.conflict == ids]
-    if mending:
+    fixing = [each for each in analysis.repairs if each.conflict == ids]
+    if fixing:
         yield "  any of these would settle it (proved by the same game):", None
-    for repair in mending:
+    for repair in fixing:
         yield from _repair(repair)
 
 

@@ -97,8 +97,8 @@ def _bad_choice(integrity: str, confidence: float, jobs: int) -> Diagnostic | No
     return None
 
 
-def _bad(what: str, mend: str) -> Diagnostic:
-    return Diagnostic(Code.BAD_USAGE, what, help=mend)
+def _bad(what: str, fix: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_USAGE, what, help=fix)
 
 
 def _nothing() -> Diagnostic:

@@ -81,5 +81,5 @@ def _named(what: str, choice: Iterable[str], names: tuple[str, ...]) -> tuple[st
     return chosen
 
 
-def _bad(what: str, mend: str) -> Diagnostic:
-    return Diagnostic(Code.BAD_USAGE, what, help=mend)
+def _bad(what: str, fix: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_USAGE, what, help=fix)

@@ -148,8 +148,8 @@ def _is_for_us(namespaces: str) -> bool:
 
 
 def _wrong(line: Span, what: str) -> Diagnostic:
-    mend = "write `name@example.org ssh-ed25519 AAAA...`, as ssh-keygen(1) says of ALLOWED SIGNERS"
-    return Diagnostic(Code.BAD_SIGNERS, what, line, help=mend)
+    fix = "write `name@example.org ssh-ed25519 AAAA...`, as ssh-keygen(1) says of ALLOWED SIGNERS"
+    return Diagnostic(Code.BAD_SIGNERS, what, line, help=fix)
 
 
 def _unused(line: Span, why: str) -> Diagnostic:

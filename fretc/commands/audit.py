@@ -345,9 +345,9 @@ def _samples(target: Target, *, rehash: bool) -> Kept | None:
     return Kept(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
 
 
-def _no_place_for_columns(why: str, mend: str) -> Diagnostic:
+def _no_place_for_columns(why: str, fix: str) -> Diagnostic:
     message = f"`--keep-columns` keeps samples beside the evidence of this machine, and {why}"
-    return Diagnostic(Code.BAD_USAGE, message, help=mend)
+    return Diagnostic(Code.BAD_USAGE, message, help=fix)
 
 
 def _engine(

@@ -47,7 +47,9 @@ if TYPE_CHECKING:
     help="Ask whether all requirements can be kept together, too; what `fretc analyze` has written "
     "counts as long as it is about these.",
 )
-@click.option("--fix", is_flag=True, help="Write the mends that are sure, then check.")
+@click.option(
+    "--fix", is_flag=True, help="Apply the safe fixes to the requirement files, then check."
+)
 @format_option()
 def check(
     folder: str | None,
@@ -68,7 +70,7 @@ def check(
     methods that can give no result; links that are missing; what has changed since its review,
     or since its audit; what was reviewed and is claimed no more; waivers that cover nothing.
     Warnings that are accepted are listed with their reasons.
-    `--fix` mends what can mean one thing only (`should`, `and`, `=<`) and names each mend.
+    `--fix` fixes what can mean one thing only (`should`, `and`, `=<`) and names each fix.
     Exit status: 0 no warning but accepted ones, 3 warnings, 2 mistakes.
     """
     from compiler.files.dates import today
@@ -89,7 +91,7 @@ def check(
 
     (requirements,) = places([folder] if folder is not None else [], requirements)
     if fix:
-        _mend(requirements)
+        _fix(requirements)
     project = whole(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
         stop(project)
@@ -155,17 +157,17 @@ def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnosti
         yield from remarks(analysis, rules)
 
 
-def _mend(folder: str) -> None:
-    """Write what can be mended for sure, all files or none, and name each mend."""
-    from compiler.project.mending import mended
+def _fix(folder: str) -> None:
+    """Apply the safe fixes, to all files or to none, and list each."""
+    from compiler.project.fixes import fixed
     from compiler.project.paths import requirement_files
 
     paths = requirement_files(folder)
-    files = () if isinstance(paths, Diagnostic) else mended(paths)
+    files = () if isinstance(paths, Diagnostic) else fixed(paths)
     deliver({Path(file.path): file.text for file in files})
-    for mend in (mend for file in files for mend in file.mends):
-        place = f"{mend.span.source.name}:{mend.span.line}:{mend.span.column}"
-        say_line(visible(f"mended {place}: {mend.change}"))
+    for fix in (fix for file in files for fix in file.fixes):
+        place = f"{fix.span.source.name}:{fix.span.line}:{fix.span.column}"
+        say_line(visible(f"fixed {place}: {fix.change}"))
     if files:
         say_line("")
 

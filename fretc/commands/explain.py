@@ -58,8 +58,8 @@ def explain(
     else:
         rules = _rules(what, requirements, bindings, is_file=is_file)
     if picture is not None and len(rules) > 1:
-        mend = f"name one of them: `fretc explain {quote(rules[0].id)}`"
-        stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=mend))
+        fix = f"name one of them: `fretc explain {quote(rules[0].id)}`"
+        stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=fix))
     _explain_rules(rules, form, picture)
 
 

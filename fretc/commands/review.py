@@ -263,8 +263,8 @@ def _chosen(
     for id in ids:
         if id not in known:
             near = suggestion(id, known)
-            mend = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
-            stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=mend))
+            fix = f"did you mean `{near}`?" if near else f"there are {', '.join(known)}"
+            stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=fix))
     return [chain for chain in chains if not ids or chain.requirement in ids]
 
 

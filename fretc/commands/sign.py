@@ -151,10 +151,8 @@ def _signable(path: str, key: str, reviewer: str | None, verification: str | Non
     if reviewer is not None and suffix not in (".lock", ".toml"):
         stop(_usage(f"`{path}` is by no reviewer", "leave `--reviewer` out"))
     if suffix not in (".lock", ".toml", ".json", *_REPORTS):
-        mend = (
-            "name evidence (`.json`, or a store), a lock (`.lock`), waivers (`.toml`) or a report"
-        )
-        stop(_usage(f"`{path}` is nothing that fretc signs", mend))
+        fix = "name evidence (`.json`, or a store), a lock (`.lock`), waivers (`.toml`) or a report"
+        stop(_usage(f"`{path}` is nothing that fretc signs", fix))
     match suffix:
         case ".lock":
             return _lock(path, key, reviewer)
@@ -169,8 +167,8 @@ def _signable(path: str, key: str, reviewer: str | None, verification: str | Non
 _REPORTS = (".html", ".md", ".csv", ".xml", ".sarif", ".reqif", ".yaml")
 
 
-def _usage(what: str, mend: str) -> Diagnostic:
-    return Diagnostic(Code.BAD_USAGE, what, help=mend)
+def _usage(what: str, fix: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_USAGE, what, help=fix)
 
 
 def _json(path: str, verification: str | None) -> Signable:

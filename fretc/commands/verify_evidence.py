@@ -210,8 +210,8 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     folders = [name for name in named if not is_url(name)]
     for folder in folders:
         if not Path(folder).is_dir():
-            mend = "name the folder that the logs are in"
-            stop(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=mend))
+            fix = "name the folder that the logs are in"
+            stop(Diagnostic(Code.NO_SUCH_FILE, f"there is no folder `{folder}`", help=fix))
     places: dict[str, str] = {}
     for folder in folders:
         places = {**located(runs, folder), **places}
@@ -219,13 +219,13 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
         places = {**located(runs, None), **places}
     policy = Places(named, offline)
     refusals = {run: why for run, place in places.items() if (why := policy.refusal(place))}
-    mend = "name its folder, or the beginning of its URL, with `--logs`, if you trust it"
+    fix = "name its folder, or the beginning of its URL, with `--logs`, if you trust it"
     say(
         [
             Diagnostic(
                 Code.FOREIGN_PLACE,
                 f"`{name_of(places[run])}` is not opened: {why}",
-                help=mend,
+                help=fix,
                 severity=Severity.WARNING,
             )
             for run, why in refusals.items()
@@ -247,8 +247,8 @@ def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
     for name in ids:
         if name not in claims:
             near = suggestion(name, claims)
-            mend = f"did you mean `{near}`?" if near else f"there are {', '.join(claims)}"
-            stop(Diagnostic(Code.BAD_USAGE, f"no requirement `{name}` is in force", help=mend))
+            fix = f"did you mean `{near}`?" if near else f"there are {', '.join(claims)}"
+            stop(Diagnostic(Code.BAD_USAGE, f"no requirement `{name}` is in force", help=fix))
     return Scope(ids, _lock(requirements), part=True)
 
 

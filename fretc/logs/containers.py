@@ -80,7 +80,7 @@ def _bag(
 
 
 def _reindexed(file: str, span: Gap | None) -> Iterator[tuple[Damage, Gap | None]]:
-    """What a bag has lost that was mended by `rosbag reindex`."""
+    """What a bag has lost that was fixed by `rosbag reindex`."""
     backup = unclosed_backup(file)
     if backup is not None and span is not None:
         what = (

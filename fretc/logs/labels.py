@@ -117,7 +117,7 @@ def _none(name: str, sources: Sequence[LabelSource], *, is_given: bool) -> Diagn
     return Diagnostic(
         Code.NO_LABEL,
         f"a run has no label `{name}`: {where} {what}",
-        help=f"say it with `--label {name}=...`, or mend its sources in `[run.label]`",
+        help=f"say it with `--label {name}=...`, or fix its sources in `[run.label]`",
         severity=Severity.WARNING,
     )
 

@@ -179,7 +179,7 @@ def no_topic(topic: str, topics: Collection[str], span: Span | None) -> Diagnost
 
 def no_field(signal: Signal, error: FieldError) -> Diagnostic:
     """The message does not hold the number that the signal asks for."""
-    return Diagnostic(Code.NO_FIELD, f"in `{signal.path.topic}` {error}", signal.span, error.mend)
+    return Diagnostic(Code.NO_FIELD, f"in `{signal.path.topic}` {error}", signal.span, error.fix)
 
 
 def never_stated(signal: Signal, paths: Collection[str]) -> Diagnostic:
@@ -203,7 +203,7 @@ def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
     missing = [word for word in signal.values if word not in known]
     if not missing:
         message = f"two values of `{signal.name}` are one number of `{name}`"
-        mend = "take one out"
+        fix = "take one out"
     else:
         near = _constant(missing[0], known)
         listed = f"it names {', '.join(list(known)[:8])}{', ...' if len(known) > 8 else ''}"
@@ -211,13 +211,13 @@ def no_constant(signal: Signal, known: Mapping[str, int]) -> Diagnostic:
             f"`{name}` of `{signal.path.topic}` is a number, and the definition of its messages "
             f"has no constant `{missing[0]}`"
         )
-        mend = (
+        fix = (
             f"did you mean `{near}`?"
             if near
             else f"{listed if known else 'it names none'}; or write the number of each word: "
             f"`values = {{ {as_key(missing[0])} = 0 }}`"
         )
-    return Diagnostic(Code.UNKNOWN_WORD, message, signal.span, mend)
+    return Diagnostic(Code.UNKNOWN_WORD, message, signal.span, fix)
 
 
 def _constant(word: str, known: Mapping[str, int]) -> str | None:
@@ -232,17 +232,17 @@ def foreign_value(signal: Signal, foreign: Foreign, count: int, after: int) -> D
     near = suggestion(foreign.text, signal.values)
     is_number = re.fullmatch(r"-?[\d.]+", foreign.text) is not None
     if is_number and not signal.numbers:
-        mend = "give the number of each word: `values = { drive = 0 }`"
+        fix = "give the number of each word: `values = { drive = 0 }`"
     elif signal.numbers and not is_number:
-        mend = 'the field holds texts: `values = ["drive"]`'
+        fix = 'the field holds texts: `values = ["drive"]`'
     else:
-        mend = f"did you mean `{near}`?" if near else "add it, if it is one of them"
+        fix = f"did you mean `{near}`?" if near else "add it, if it is one of them"
     return Diagnostic(
         Code.FOREIGN_VALUE,
         f"{foreign.count} of {count} samples of `{signal.name}` are none of its values, the first "
         f"one `{foreign.text}` at {_seconds(after)}: they are unknown",
         signal.span,
-        f"its values are {listed(signal.values)}; {mend}",
+        f"its values are {listed(signal.values)}; {fix}",
         Severity.WARNING,
     )
 

@@ -201,5 +201,5 @@ def _misuse(why: str, id: str, place: Span) -> Diagnostic:
         Code.VARIABLE_TYPE,
         f"`{id}` {why}",
         place,
-        help=f"mend the sentence or the value, or the type of `[variable.{id}]`",
+        help=f"fix the sentence or the value, or the type of `[variable.{id}]`",
     )

@@ -216,8 +216,8 @@ class _Reading:
 
     # Mistakes
 
-    def _mistake(self, code: Code, message: str, span: Span | None, mend: str) -> _MistakeError:
-        return _MistakeError(Diagnostic(code, message, span or self.place, help=mend))
+    def _mistake(self, code: Code, message: str, span: Span | None, fix: str) -> _MistakeError:
+        return _MistakeError(Diagnostic(code, message, span or self.place, help=fix))
 
     def _no_number(self, what: str, signal: Signal | None, span: Span | None) -> _MistakeError:
         name, word = (signal.name, signal.values[0]) if signal else ("mode", "word")

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum, StrEnum
 
-from fretish.diagnostics.mends import Mend
+from fretish.diagnostics.fixes import Fix
 from fretish.diagnostics.source import Span
 
 
@@ -278,7 +278,7 @@ class Diagnostic:
     """The topic or the hazard that a warning is about, by which it can be accepted."""
     accepted: str = ""
     """The reason for which the project accepts a warning; it stays one, and is shown."""
-    mend: Mend | None = None
+    fix: Fix | None = None
     """What `help` says, where that is another text in the place of a span."""
 
     @property

@@ -1,6 +1,6 @@
-"""What a code means, why it matters, and how to mend it: data in `fretish/codes/*.toml`.
+"""What a code means, why it matters, and how to fix it: data in `fretish/codes/*.toml`.
 
-An example is a text that gives the code (`wrong`) and the same one mended. It is a requirement file
+An example is a text that gives the code (`wrong`) and the same one fixed. It is a requirement file
 (`kind = "fret"`, the default; `declared` are the bindings beside it) or a bindings file.
 """
 
@@ -20,19 +20,19 @@ class Explanation:
     """The cause of a code, its remedy, and an example."""
 
     cause: str
-    mend: str
+    fix: str
     kind: str = "fret"
     """`fret` or `bindings`: which file the example is."""
     wrong: str = ""
     """Empty where there is no example."""
-    mended: str = ""
+    fixed: str = ""
     declared: str = ""
     """The bindings that the example stands beside."""
     accept: str = ""
     """What a warning of the code is about, and so how it is accepted: a key of `ACCEPTANCES`.
 
     Empty where it cannot be: an error, and a warning that a verdict may be wrong, unknown, or about
-    something else, have to be mended; a change since a review has to be reviewed.
+    something else, have to be fixed; a change since a review has to be reviewed.
     """
 
 
@@ -72,7 +72,7 @@ def text(code: Code) -> str:
     if explanation is None:
         return blocks[0]
     blocks.append(_block(_wrapped(explanation.cause)))
-    blocks.append(_block(_wrapped(f"To mend it: {explanation.mend}")))
+    blocks.append(_block(_wrapped(f"To fix it: {explanation.fix}")))
     if explanation.accept:
         place, example = ACCEPTANCES[explanation.accept]
         blocks.append(_example(f"to accept it, in {place}", example.format(code.number)))
@@ -80,7 +80,7 @@ def text(code: Code) -> str:
         blocks.append(_example("bindings.toml", explanation.declared))
     if explanation.wrong:
         blocks.append(_example("wrong", explanation.wrong))
-        blocks.append(_example("mended", explanation.mended))
+        blocks.append(_example("fixed", explanation.fixed))
     return "\n".join(blocks)
 
 
@@ -107,7 +107,7 @@ def _example(name: str, example: str) -> str:
 
 
 def as_record(code: Code) -> dict[str, Any]:
-    """`{code, summary, cause, mend, example}`; null where there is none."""
+    """`{code, summary, cause, fix, example}`; null where there is none."""
     explanation = explanations().get(code.number)
     example = None
     if explanation is not None and explanation.wrong:
@@ -115,14 +115,14 @@ def as_record(code: Code) -> dict[str, Any]:
             "file": explanation.kind,
             "bindings": explanation.declared or None,
             "wrong": explanation.wrong.strip("\n"),
-            "mended": explanation.mended.strip("\n"),
+            "fixed": explanation.fixed.strip("\n"),
         }
     return {
-        "schema": "fretc-code-1",
+        "schema": "fretc-code-2",
         "code": code.number,
         "summary": code.summary,
         "cause": explanation.cause if explanation else None,
-        "mend": explanation.mend if explanation else None,
+        "fix": explanation.fix if explanation else None,
         "accept": (explanation.accept or None) if explanation else None,
         "example": example,
     }

@@ -35,7 +35,7 @@ def plain(text: str, part: Part) -> str:
 
 
 def render(diagnostic: Diagnostic, paint: Paint = plain) -> str:
-    """Several lines: code and message, place, the line with a caret, and the mend."""
+    """Several lines: code and message, place, the line with a caret, and the fix."""
     if diagnostic.accepted:
         return _accepted(diagnostic, paint)
     part = Part(diagnostic.severity.value)
@@ -52,7 +52,7 @@ def render(diagnostic: Diagnostic, paint: Paint = plain) -> str:
 
 
 def _accepted(diagnostic: Diagnostic, paint: Paint) -> str:
-    """The reason in the place of the mend; nobody has to look at the line again."""
+    """The reason in the place of the fix; nobody has to look at the line again."""
     head = paint(f"{diagnostic.code.number} accepted:", Part.NOTE)
     lines = [f"{head} {visible(diagnostic.message)}"]
     if diagnostic.span is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.diagnostics.mends import Mend, left_out
+from fretish.diagnostics.fixes import Fix, left_out
 from fretish.diagnostics.source import Span
 from fretish.mistakes.precedence import one_way
 from fretish.mistakes.unexpected import STARTS_EXPRESSION, Lexeme, Unexpected, not_fretish
@@ -40,16 +40,16 @@ def unknown_character(text: Span, at: int) -> Diagnostic:
     """F101 for a character that no word of FRETish has."""
     span = text.part(at, at + 1)
     sign = _SIGNS.get(span.text)
-    mend: Mend | str = _HELP.get(span.text, "names are letters, digits, `_`, `.` and `%`")
+    fix: Fix | str = _HELP.get(span.text, "names are letters, digits, `_`, `.` and `%`")
     quoted = _QUOTES.match(text.source.text, span.start, text.end)
     if sign is not None:
-        mend = Mend(span, sign, sure=True)
+        fix = Fix(span, sign, is_safe=True)
     elif quoted is not None:
         name = quoted[1] or quoted[2]
-        mend = Mend(Span(text.source, quoted.start(), quoted.end()), f'"{name}"', sure=True)
+        fix = Fix(Span(text.source, quoted.start(), quoted.end()), f'"{name}"', is_safe=True)
     elif span.text == ";" and not text.text[at + 1 :].strip(" \t\r\n.;"):
-        mend = left_out(span, sure=True)
-    return not_fretish(f"`{span.text}` is no character of FRETish", span, mend)
+        fix = left_out(span, is_safe=True)
+    return not_fretish(f"`{span.text}` is no character of FRETish", span, fix)
 
 
 def other_language(u: Unexpected) -> Diagnostic | None:
@@ -58,13 +58,13 @@ def other_language(u: Unexpected) -> Diagnostic | None:
     if u.before is not None and u.before.word + u.lexeme.word in _PAIRS:
         span = u.before.span.to(u.lexeme.span)
         pair = u.before.word + u.lexeme.word
-        return _instead(span, _PAIRS[pair], sure=one_way(u.text, span, pair))
+        return _instead(span, _PAIRS[pair], is_safe=one_way(u.text, span, pair))
     if u.before is not None and not u.wants("ID", "SHALL"):
         return _join(u, u.lexeme)
     spelt = _WORDS.get(word)
     if spelt in (None, u.lexeme.word) or not u.wants("ID") or u.wants("SHALL", "WHENEVER"):
         return None
-    return _instead(u.lexeme.span, spelt, sure=word != "not" or not _more(u.rest))
+    return _instead(u.lexeme.span, spelt, is_safe=word != "not" or not _more(u.rest))
 
 
 _PART = re.compile(
@@ -95,7 +95,7 @@ def _join(u: Unexpected, lexeme: Lexeme) -> Diagnostic | None:
     """What joins two expressions in other languages, and in English."""
     word = lexeme.word.lower()
     if word in _JOINS:
-        return _instead(lexeme.span, _JOINS[word], sure=one_way(u.text, lexeme.span, word))
+        return _instead(lexeme.span, _JOINS[word], is_safe=one_way(u.text, lexeme.span, word))
     if word in _NEGATED:
         words = f"say it by the operators of FRETish: `{_NEGATED[word]}`"
         return not_fretish(f"FRETish has no `{lexeme.word}`", lexeme.span, words)
@@ -106,8 +106,8 @@ def _join(u: Unexpected, lexeme: Lexeme) -> Diagnostic | None:
     return None
 
 
-def _instead(span: Span, spelt: str, *, sure: bool = True) -> Diagnostic:
-    return not_fretish(f"`{span.text}` is no operator of FRETish", span, Mend(span, spelt, sure))
+def _instead(span: Span, spelt: str, *, is_safe: bool = True) -> Diagnostic:
+    return not_fretish(f"`{span.text}` is no operator of FRETish", span, Fix(span, spelt, is_safe))
 
 
 _UPWARD, _DOWNWARD = ("<", "<="), (">", ">=")
@@ -126,19 +126,19 @@ def chain(u: Unexpected) -> Diagnostic | None:
     if middle is None or not same:
         return not_fretish(message, u.lexeme.span, words)
     here = u.lexeme.span.part(0, 0)
-    mend = Mend(here, f"& {middle['middle']} ")  # not sure: a `!` before it is of the first alone
+    fix = Fix(here, f"& {middle['middle']} ")  # not safe: a `!` before it is of the first alone
     shown = f"{middle['op']} {middle['middle']} & {middle['middle']} {u.lexeme.word}"
-    return not_fretish(message, u.lexeme.span, mend, f"{words}: `... {shown} ...`")
+    return not_fretish(message, u.lexeme.span, fix, f"{words}: `... {shown} ...`")
 
 
 def number_form(u: Unexpected) -> Diagnostic | None:
     """`.5` and `007`."""
     if u.lexeme.kind == "_DOT" and u.wants("NUMBER"):
         words = "write a 0 before the point"
-        mend = Mend(u.lexeme.span.part(0, 0), "0", sure=True)
+        fix = Fix(u.lexeme.span.part(0, 0), "0", is_safe=True)
         number = u.rest.text[1:2].isdigit()
         message = "a number begins with a digit"
-        return not_fretish(message, u.lexeme.span, mend if number else words, words)
+        return not_fretish(message, u.lexeme.span, fix if number else words, words)
     if u.lexeme.kind != "NUMBER" or u.before is None or u.before.kind != "NUMBER":
         return None
     return not_fretish(
@@ -151,14 +151,14 @@ def number_form(u: Unexpected) -> Diagnostic | None:
 def parenthesis(u: Unexpected) -> Diagnostic | None:
     """One that is missing, or one too many; which of them is meant, only the author knows."""
     if u.lexeme.kind == "RPAR" and u.wants("$END", "SATISFY", "SHALL"):
-        mend = left_out(u.lexeme.span)
+        fix = left_out(u.lexeme.span)
         words = "leave it out, or write the `(` that it closes"
-        return not_fretish("there is no `(` for this `)`", u.lexeme.span, mend, words)
+        return not_fretish("there is no `(` for this `)`", u.lexeme.span, fix, words)
     if not u.lexeme.at_end or not u.wants("RPAR"):
         return None
     signs = re.sub(r'"[^"\n]*"', "", u.read.text)
     missing = signs.count("(") - signs.count(")")
-    mend = Mend(u.lexeme.span, ")" * missing)
+    fix = Fix(u.lexeme.span, ")" * missing)
     message = f"{missing} `(` {'is' if missing == 1 else 'are'} not closed"
-    words = f"write `{mend.text}` here, or where the part ends that is meant"
-    return not_fretish(message, u.lexeme.span, mend, words)
+    words = f"write `{fix.text}` here, or where the part ends that is meant"
+    return not_fretish(message, u.lexeme.span, fix, words)

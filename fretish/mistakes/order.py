@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.mends import Mend, left_out
+from fretish.diagnostics.fixes import Fix, left_out
 from fretish.diagnostics.source import Span
 from fretish.mistakes.operators import JOIN
 from fretish.mistakes.unexpected import Unexpected, not_fretish
@@ -75,7 +75,7 @@ def _timing_behind(u: Unexpected, satisfy: re.Match[str]) -> Diagnostic:
         return not_fretish(message, u.lexeme.span, _ONE)
     response = u.read.text[satisfy.end() :].strip()
     moved = Span(u.text.source, u.text.start + satisfy.start(), u.rest.end)
-    return not_fretish(message, u.lexeme.span, Mend(moved, f"{u.rest.text} satisfy {response}"))
+    return not_fretish(message, u.lexeme.span, Fix(moved, f"{u.rest.text} satisfy {response}"))
 
 
 _ONE = "a sentence has one timing: write a requirement for each"
@@ -97,10 +97,10 @@ def out_of_order(u: Unexpected) -> Diagnostic | None:
         words = "write it there: `shall with probability ... satisfy ...`"
         return not_fretish("the probability stands after `shall`", u.lexeme.span, words)
     if u.lexeme.kind == "PROBABILITY":
-        mend = Mend(u.lexeme.span.part(0, 0), "with ", sure=u.wants("WITH"))
+        fix = Fix(u.lexeme.span.part(0, 0), "with ", is_safe=u.wants("WITH"))
         words = "write `with probability ...`"
         message = "`with` is missing before `probability`"
-        return not_fretish(message, u.lexeme.span, mend if mend.sure else words, words)
+        return not_fretish(message, u.lexeme.span, fix if fix.is_safe else words, words)
     return None
 
 
@@ -119,9 +119,9 @@ def _timing_after_satisfy(u: Unexpected) -> Diagnostic:
     if _has_timing(u.text.source.text[u.text.start : start]):
         return not_fretish(message, u.lexeme.span, _ONE)
     end = u.lexeme.span.start + found.end()
-    sure = JOIN.search(u.rest.text) is None  # or the timing may be that of the first part alone
-    mend = Mend(Span(u.text.source, start, end), f"{found[0]} {u.before.word}", sure)
-    return not_fretish(message, u.lexeme.span, mend, f"write `{found[0]} satisfy ...`")
+    is_safe = JOIN.search(u.rest.text) is None  # or the timing may be that of the first part alone
+    fix = Fix(Span(u.text.source, start, end), f"{found[0]} {u.before.word}", is_safe)
+    return not_fretish(message, u.lexeme.span, fix, f"write `{found[0]} satisfy ...`")
 
 
 def timing(u: Unexpected) -> Diagnostic | None:
@@ -143,8 +143,8 @@ def _not(u: Unexpected) -> Diagnostic:
     """`shall not satisfy p`, `shall never not satisfy p`."""
     message = "`not` does not stand before `satisfy`"
     if u.before is not None and u.follows("ALWAYS", "NEVER"):
-        mend = Mend(u.before.span.to(u.lexeme.span), "never" if u.follows("ALWAYS") else "always")
-        return not_fretish(message, u.lexeme.span, mend)
+        fix = Fix(u.before.span.to(u.lexeme.span), "never" if u.follows("ALWAYS") else "always")
+        return not_fretish(message, u.lexeme.span, fix)
     words = "negate the response: `satisfy !(p)`"
     if u.follows("SHALL"):
         words = "write `shall never satisfy p`, or negate the response: `satisfy !(p)`"
@@ -166,7 +166,7 @@ def missing_part(u: Unexpected) -> Diagnostic | None:
         return None
     word, kind = u.before.word, u.before.kind
     if u.lexeme.word.lower() == word.lower() and word.isalpha():
-        leave = left_out(u.lexeme.span, sure=True)
+        leave = left_out(u.lexeme.span, is_safe=True)
         return not_fretish(f"`{word}` stands twice", u.lexeme.span, leave)
     part = next((part for part, kinds in _PARTS.items() if kind in kinds), "")
     begins = u.lexeme.kind in ("SATISFY", "SHALL") or _is_component(u.rest.text)
@@ -196,7 +196,7 @@ def article(u: Unexpected) -> Diagnostic | None:
         return None
     message, words = "an expression has no article", _words(u)
     if len(words) == 1:
-        return not_fretish(message, u.lexeme.span, left_out(u.lexeme.span, sure=True))
+        return not_fretish(message, u.lexeme.span, left_out(u.lexeme.span, is_safe=True))
     name = "_".join(word for word in words if word.lower() not in _SMALL)
     example = f"such as `{name}` for these words, " if name else ""
     return not_fretish(

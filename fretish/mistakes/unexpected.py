@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.diagnostics.mends import Mend
+from fretish.diagnostics.fixes import Fix
 from fretish.diagnostics.source import Span
 
 STARTS_EXPRESSION = frozenset({"ID", "QUOTED", "NUMBER", "TRUE", "FALSE", "_BANG", "LPAR", "MINUS"})
@@ -61,8 +61,8 @@ class Unexpected:
         return Span(self.text.source, start, max(start + len(kept), self.lexeme.span.end))
 
 
-def not_fretish(message: str, span: Span, mend: Mend | str, words: str | None = None) -> Diagnostic:
-    """F101, with words that say what to do, or with a mend: the words are its own if not given."""
-    if isinstance(mend, str):
-        return Diagnostic(Code.NOT_FRETISH, message, span, help=mend)
-    return Diagnostic(Code.NOT_FRETISH, message, span, help=words or mend.help, mend=mend)
+def not_fretish(message: str, span: Span, fix: Fix | str, words: str | None = None) -> Diagnostic:
+    """F101, with words that say what to do, or with a fix: the words are its own if not given."""
+    if isinstance(fix, str):
+        return Diagnostic(Code.NOT_FRETISH, message, span, help=fix)
+    return Diagnostic(Code.NOT_FRETISH, message, span, help=words or fix.help, fix=fix)

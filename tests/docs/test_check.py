@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler.project.mending import mended
+from compiler.project.fixes import fixed
 from fretish.diagnostics.source import Source
 from fretish.parser import MISTAKES, mistakes, parse
 from fretish.syntax import Sentence
@@ -29,12 +29,12 @@ def block(start: str) -> str:
 
 
 @each("row", ROWS)
-def test_the_mends_of_the_table_are_sure(
+def test_the_fixes_of_the_table_are_sure(
     row: tuple[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     written, meant = row
-    (file,) = mended([write("r.fret", written)])
+    (file,) = fixed([write("r.fret", written)])
     assert file.text == meant
     assert isinstance(parse(Source("r.fret", meant).span()), Sentence)
 
@@ -43,7 +43,7 @@ def test_the_mends_of_the_table_are_sure(
 def test_the_ones_that_are_not_sure_are_left_alone(text: str) -> None:
     found = mistakes(Source("r.fret", f"the sw shall satisfy {text}").span())
     assert found
-    assert not any(each.mend and each.mend.sure for each in found)
+    assert not any(each.fix and each.fix.is_safe for each in found)
 
 
 def test_the_messages_are_printed(fretc: Fretc) -> None:

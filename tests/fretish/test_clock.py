@@ -150,7 +150,7 @@ def test_nothing_is_rounded_to_0() -> None:
     assert wrong.message == "99 milliseconds is 0.99 ticks of 100 ms"
 
 
-def test_the_mend_does_not_propose_the_rounding_that_is_declared_already() -> None:
+def test_the_fix_does_not_propose_the_rounding_that_is_declared_already() -> None:
     wrong = ticks("within 99 milliseconds", CONSERVATIVE)
     assert isinstance(wrong, Diagnostic)
     assert wrong.help is not None

@@ -124,7 +124,7 @@ def test_an_unknown_field_without_a_near_one_is_told_what_there_is() -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "column", "caret", "mend"),
+    ("line", "column", "caret", "fix"),
     [
         ('status = "done"', 10, '"done"', "write one of draft, approved, retired"),
         ("title = 3", 9, "3", "write a text in quotes"),
@@ -145,7 +145,7 @@ def test_an_unknown_field_without_a_near_one_is_told_what_there_is() -> None:
     ],
 )
 def test_a_value_of_the_wrong_kind_is_told_at_the_value(
-    line: str, column: int, caret: str, mend: str
+    line: str, column: int, caret: str, fix: str
 ) -> None:
     (wrong,) = diagnostics_of(f"+++\n{line} # why\n+++\n{SENTENCE}\n")
     key = line.split(" ", 1)[0]
@@ -154,7 +154,7 @@ def test_a_value_of_the_wrong_kind_is_told_at_the_value(
         f"  --> r1.fret:2:{column}\n"
         f"   | {line} # why\n"
         f"   | {' ' * (column - 1)}{'^' * len(caret)}\n"
-        f"help: {mend}"
+        f"help: {fix}"
     )
 
 

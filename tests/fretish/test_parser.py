@@ -508,7 +508,7 @@ def test_a_missing_satisfy_is_put_in() -> None:
     )
 
 
-def test_a_misspelt_timing_is_mended() -> None:
+def test_a_misspelt_timing_is_fixed() -> None:
     assert message_of("whenever p the sw shall eventualy satisfy q") == (
         "F107 `eventualy` is no word of FRETish here\n"
         "  --> r.fret:1:25\n"
@@ -518,7 +518,7 @@ def test_a_misspelt_timing_is_mended() -> None:
     )
 
 
-def test_a_misspelt_condition_word_is_mended() -> None:
+def test_a_misspelt_condition_word_is_fixed() -> None:
     assert message_of("wen p the sw shall satisfy q") == (
         "F107 `wen` is no word of FRETish here\n"
         "  --> r.fret:1:1\n"
@@ -528,7 +528,7 @@ def test_a_misspelt_condition_word_is_mended() -> None:
     )
 
 
-def test_another_misspelt_condition_word_is_mended() -> None:
+def test_another_misspelt_condition_word_is_fixed() -> None:
     assert message_of("wenever p the sw shall satisfy q") == (
         "F107 `wenever` is no word of FRETish here\n"
         "  --> r.fret:1:1\n"
@@ -570,8 +570,8 @@ def test_a_fraction_of_a_unit_is_refused() -> None:
     )
 
 
-def test_the_mend_of_a_fraction_is_about_the_duration_that_was_written() -> None:
-    """`2500 milliseconds` would mend `2.5 seconds` only."""
+def test_the_fix_of_a_fraction_is_about_the_duration_that_was_written() -> None:
+    """`2500 milliseconds` would fix `2.5 seconds` only."""
     assert "2500" not in message_of("the sw shall for 0.5 hours satisfy q")
     assert "2500" not in message_of("the sw shall within -2 ticks satisfy q")
 

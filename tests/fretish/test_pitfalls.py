@@ -160,10 +160,10 @@ def test_a_sentence_may_have_several_surprises() -> None:
     assert codes("before m if p the sw shall within 0 ticks satisfy q") == ["F204", "F206", "F208"]
 
 
-def test_the_mend_of_an_edge_is_fretish() -> None:
+def test_the_fix_of_an_edge_is_fretish() -> None:
     for condition in ("p & (q | r)", "p -> q", "x > 3"):
         text = warnings_of(f"when {condition} the sw shall always satisfy q")
         for word in ("whenever", "upon"):
-            mend = f"{word} {condition}"
-            assert f"`{mend}`" in text
-            assert codes(f"{mend} the sw shall always satisfy q") == []
+            fix = f"{word} {condition}"
+            assert f"`{fix}`" in text
+            assert codes(f"{fix} the sw shall always satisfy q") == []

@@ -1,4 +1,4 @@
-"""All mistakes of a sentence, and the laws of their mends."""
+"""All mistakes of a sentence, and the laws of their fixes."""
 
 import json
 import random
@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.diagnostics.mends import applied
+from fretish.diagnostics.fixes import applied
 from fretish.diagnostics.source import Source
 from fretish.parser import MISTAKES, mistakes, parse
 from fretish.syntax import Sentence
@@ -38,16 +38,16 @@ def all_of(text: str) -> tuple[Diagnostic, ...]:
 
 
 def fixed(text: str) -> str:
-    """All sure mends of all rounds."""
+    """All safe fixes of all rounds."""
     for _ in range(100):
         found = all_of(text)
-        mends = sorted(
-            (d.mend for d in found if d.mend is not None and d.mend.sure),
-            key=lambda mend: (mend.span.start, mend.span.end),
+        fixes = sorted(
+            (d.fix for d in found if d.fix is not None and d.fix.is_safe),
+            key=lambda fix: (fix.span.start, fix.span.end),
         )
-        if not mends:
+        if not fixes:
             return text
-        text = applied(Source("r.fret", text).span(), mends)
+        text = applied(Source("r.fret", text).span(), fixes)
     raise AssertionError(text)
 
 
@@ -82,8 +82,8 @@ def test_of_a_very_long_text_the_first_is_told() -> None:
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_mistakes_of_any_text_have_a_place_an_order_and_mends_that_lead_on(seed: int) -> None:
-    """Each sure mend takes away its own mistake, and brings no other one."""
+def test_mistakes_of_any_text_have_a_place_an_order_and_fixes_that_lead_on(seed: int) -> None:
+    """Each safe fix takes away its own mistake, and brings no other one."""
     for text in sentences(150, seed=seed):
         source = Source("fuzz.fret", text)
         found = mistakes(source.span())
@@ -93,20 +93,24 @@ def test_mistakes_of_any_text_have_a_place_an_order_and_mends_that_lead_on(seed:
         assert len(places) == len(found), text
         assert all(0 <= s.start <= s.end <= len(text) and s.source == source for s in places)
         assert [s.start for s in places] == sorted(s.start for s in places), text
-        sure = [d.mend for d in found if d.mend is not None and d.mend.sure]
+        sure = [d.fix for d in found if d.fix is not None and d.fix.is_safe]
         if sure and len(found) < MISTAKES:
-            mended = applied(source.span(), sorted(sure, key=lambda m: (m.span.start, m.span.end)))
-            assert len(mistakes(Source("fuzz.fret", mended).span())) <= len(found) - len(sure), text
+            corrected = applied(
+                source.span(), sorted(sure, key=lambda m: (m.span.start, m.span.end))
+            )
+            assert len(mistakes(Source("fuzz.fret", corrected).span())) <= len(found) - len(sure), (
+                text
+            )
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_a_mend_gives_back_the_sentence_that_was_meant(seed: int) -> None:
+def test_a_fix_gives_back_the_sentence_that_was_meant(seed: int) -> None:
     """Real sentences, as somebody would write them who is used to other languages.
 
-    What could be meant in two ways stays a mistake; it is never mended into another sentence.
+    What could be meant in two ways stays a mistake; it is never fixed into another sentence.
     """
     chance = random.Random(seed)
-    tried = mended = 0
+    tried = restored = 0
     for text in chance.sample(REAL, 150):
         meant = parse(Source("r.fret", text).span())
         if not isinstance(meant, Sentence) or '"' in text or "shall the" in text:
@@ -121,8 +125,8 @@ def test_a_mend_gives_back_the_sentence_that_was_meant(seed: int) -> None:
             tried += 1
             found = parse(Source("r.fret", fixed(foreign)).span())
             assert isinstance(found, Diagnostic) or found == meant, foreign
-            mended += found == meant
-    assert mended > max(30, tried - 10)
+            restored += found == meant
+    assert restored > max(30, tried - 10)
 
 
 @pytest.mark.parametrize("text", ["the sw shall satisfy p", "the sw must satisfy p and q or r"])

@@ -336,7 +336,7 @@ def mistake_of(text: str) -> Diagnostic:
         ),
     ],
 )
-def test_a_mistake_is_told_with_its_place_and_its_mend(text: str, message: str) -> None:
+def test_a_mistake_is_told_with_its_place_and_its_fix(text: str, message: str) -> None:
     assert render(mistake_of(text)) == message
 
 
@@ -364,7 +364,7 @@ def test_a_mistake_has_its_code_and_its_place(text: str, code: str, place: str) 
 
 
 @pytest.mark.parametrize(
-    ("response", "character", "mend"),
+    ("response", "character", "fix"),
     [
         ("a[3]", "[", 'quote a name with brackets: `"a[3]"`'),
         ("_p", "_", "a name begins with a letter"),
@@ -385,13 +385,13 @@ def test_a_mistake_has_its_code_and_its_place(text: str, code: str, place: str) 
         ("p\u00e9", "\u00e9", "names are letters, digits, `_`, `.` and `%`"),
     ],
 )
-def test_a_character_that_no_word_has_is_told(response: str, character: str, mend: str) -> None:
+def test_a_character_that_no_word_has_is_told(response: str, character: str, fix: str) -> None:
     found = mistake_of(f"the sw shall satisfy {response}")
     assert found.code.number == "F101"
     assert found.message == f"`{character}` is no character of FRETish"
     assert found.span is not None
     assert (found.span.text, found.span.start) == (character, 21 + response.index(character))
-    assert found.help == mend
+    assert found.help == fix
 
 
 @pytest.mark.parametrize(
@@ -410,7 +410,7 @@ def test_a_unit_of_other_tools_has_its_word_here(written: str, words: str) -> No
 
 
 @pytest.mark.parametrize(
-    ("text", "mended"),
+    ("text", "fixed"),
     [
         ("the sw shall within 3 ms satisfy p", "the sw shall within 3 milliseconds satisfy p"),
         ("in m & n the sw shall satisfy q", "while m & n the sw shall satisfy q"),
@@ -427,20 +427,20 @@ def test_a_unit_of_other_tools_has_its_word_here(written: str, words: str) -> No
         ("the sw shall satisfy a[3]", 'the sw shall satisfy "a[3]"'),
     ],
 )
-def test_what_the_mend_says_is_fretish(text: str, mended: str) -> None:
+def test_what_the_fix_says_is_fretish(text: str, fixed: str) -> None:
     assert mistake_of(text).is_error
-    assert isinstance(parse(Source("r.fret", mended).span()), Sentence)
+    assert isinstance(parse(Source("r.fret", fixed).span()), Sentence)
 
 
 @pytest.mark.parametrize("timing", ["within 3 seconds", "for 3 ticks"])
-def test_a_counting_timing_at_the_wrong_place_keeps_its_duration_in_the_mend(timing: str) -> None:
+def test_a_counting_timing_at_the_wrong_place_keeps_its_duration_in_the_fix(timing: str) -> None:
     """`within satisfy ...` would be no FRETish."""
     found = mistake_of(f"the sw shall satisfy {timing} q")
     assert found.message == "the timing stands before `satisfy`"
     assert f"{timing.split()[0]} satisfy" not in (found.help or "")
 
 
-def test_the_mend_of_a_negative_duration_is_not_a_smaller_unit() -> None:
+def test_the_fix_of_a_negative_duration_is_not_a_smaller_unit() -> None:
     assert "smaller" not in (mistake_of("the sw shall within -3 ticks satisfy q").help or "")
 
 

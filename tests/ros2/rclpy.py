@@ -392,8 +392,8 @@ class LifecycleNode(Node):
         except Exception:
             result = Return.ERROR
         if result is Return.ERROR:
-            mended = self.on_error(SimpleNamespace(label=self.state)) is Return.SUCCESS
-            self.state = "unconfigured" if mended else "finalized"
+            fixed = self.on_error(SimpleNamespace(label=self.state)) is Return.SUCCESS
+            self.state = "unconfigured" if fixed else "finalized"
         elif result is Return.SUCCESS:
             self.state = goal
         return result is Return.SUCCESS

@@ -142,22 +142,22 @@ def _refused_timing(rule: Formalized, options: Options) -> Diagnostic | None:
     for expression in conditions(rule.sentence):
         for name in (*calls(expression), *(n.id for n in names_of(expression))):
             if name in LOOK_BACK | LOOK_AHEAD:
-                mend = (
+                fix = (
                     "it has no past, and counts no steps ahead: make it a proposition, and bind it"
                 )
-                return _not(rule, f"`{name}`", mend)
+                return _not(rule, f"`{name}`", fix)
     timing = rule.sentence.timing
     if not _counts_states(timing) or weakened(rule, options):
         return None
-    mend = f"AJPF has no next, no past and no time; {_MONITOR}"
+    fix = f"AJPF has no next, no past and no time; {_MONITOR}"
     if _can_be_weakened(rule):
-        mend = (
+        fix = (
             "AJPF has no next, no past and no time; state the requirement with `eventually`, "
             f"let the file say less with `--weaken`, or {_MONITOR}"
         )
     elif options.weaken:
-        mend = f"no weaker form of it says anything of use: {_MONITOR}"
-    return _not(rule, f"the timing `{printing_of(timing)}`", mend)
+        fix = f"no weaker form of it says anything of use: {_MONITOR}"
+    return _not(rule, f"the timing `{printing_of(timing)}`", fix)
 
 
 def _counts_states(timing: s.Timing) -> bool:
@@ -181,8 +181,8 @@ def _refused_name(rule: Formalized) -> Diagnostic | None:
     }
     for atom in rule.propositions:
         if atom in spoken and atom not in compared:
-            mend = "give it a name of its own that begins with a small letter, and bind that"
-            return _not(rule, f"the proposition `{atom}`", mend)
+            fix = "give it a name of its own that begins with a small letter, and bind that"
+            return _not(rule, f"the proposition `{atom}`", fix)
     return None
 
 
@@ -201,13 +201,13 @@ def _refused_form(rule: Formalized, formula: f.Formula | None) -> Diagnostic | N
         return long
     levels = _levels(_text(formula, rule))
     if levels > _MOST_LEVELS:
-        mend = "give parts of the expressions names of their own"
-        return _not(rule, f"{levels} parentheses within each other", mend)
+        fix = "give parts of the expressions names of their own"
+        return _not(rule, f"{levels} parentheses within each other", fix)
     return None
 
 
-def _not(rule: Formalized, part: str, mend: str) -> Diagnostic:
-    return not_expressible("AJPF", rule, part, mend)
+def _not(rule: Formalized, part: str, fix: str) -> Diagnostic:
+    return not_expressible("AJPF", rule, part, fix)
 
 
 def _levels(text: str) -> int:
@@ -299,9 +299,9 @@ def remark(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
     )
 
 
-def _warning(rule: Formalized, code: Code, message: str, mend: str) -> Diagnostic:
+def _warning(rule: Formalized, code: Code, message: str, fix: str) -> Diagnostic:
     place = rule.sentence.timing_span or rule.requirement.wording
-    return Diagnostic(code, message, place, mend, Severity.WARNING)
+    return Diagnostic(code, message, place, fix, Severity.WARNING)
 
 
 @deep

@@ -77,11 +77,11 @@ def sif(rule: Formalized, guarded: bool = True) -> Sif | Diagnostic:
     sentence = rule.sentence
     comparison = next(iter(comparison_names(rule)), None)
     if comparison is not None:
-        mend = "give it a name of its own, and bind that; `--emit ajpf` writes the property alone"
-        return not_expressible(_TARGET, rule, f"`{comparison}`", mend)
+        fix = "give it a name of its own, and bind that; `--emit ajpf` writes the property alone"
+        return not_expressible(_TARGET, rule, f"`{comparison}`", fix)
     if sentence.condition is None:
-        mend = "an agent reacts to an event: state what triggers it, `whenever ...`"
-        return not_expressible(_TARGET, rule, "a sentence without a condition", mend)
+        fix = "an agent reacts to an event: state what triggers it, `whenever ...`"
+        return not_expressible(_TARGET, rule, "a sentence without a condition", fix)
     terms = _terms(rule, sentence.condition.expression)
     if isinstance(terms, Diagnostic):
         return terms
@@ -119,11 +119,11 @@ def _terms(rule: Formalized, condition: e.Expression) -> tuple[Term, ...] | Diag
         literals = [_literal(x) for x in (part.args if isinstance(part, e.And) else (part,))]
         term = tuple(literal for literal in literals if literal is not None)
         if len(term) < len(literals):
-            mend = "write it as `a`, `a & b` or `(a & !b) | c`, or give its parts names"
-            return not_expressible(_TARGET, rule, "the shape of the condition", mend)
+            fix = "write it as `a`, `a & b` or `(a & !b) | c`, or give its parts names"
+            return not_expressible(_TARGET, rule, "the shape of the condition", fix)
         if not any(positive for _, positive in term):
-            mend = "an absence at the start raises no event: name the opposite, and bind that"
-            return not_expressible(_TARGET, rule, "a condition that only negates", mend)
+            fix = "an absence at the start raises no event: name the opposite, and bind that"
+            return not_expressible(_TARGET, rule, "a condition that only negates", fix)
         terms.append(term)
     return tuple(terms)
 
@@ -149,8 +149,8 @@ def _responses(rule: Formalized) -> tuple[str, ...] | Diagnostic:
     ids = [part.id for part in parts if isinstance(part, e.Name)]
     if len(ids) == len(parts):
         return tuple(dict.fromkeys(ids))
-    mend = "an agent does things: state what is to be so, as `a` or `a & b`"
-    return not_expressible(_TARGET, rule, "the shape of the response", mend)
+    fix = "an agent does things: state what is to be so, as `a` or `a & b`"
+    return not_expressible(_TARGET, rule, "the shape of the response", fix)
 
 
 def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
@@ -170,20 +170,20 @@ def _wrong_name(
 ) -> Diagnostic | None:
     for name in percepts:
         if name in responses:
-            mend = "an environment that shows the response verifies any agent: use two names"
-            return not_expressible(_TARGET, rule, f"`{name}` as trigger and response", mend)
+            fix = "an environment that shows the response verifies any agent: use two names"
+            return not_expressible(_TARGET, rule, f"`{name}` as trigger and response", fix)
         if _modality(rule, name) is not Modality.BELIEF:
-            mend = 'the environment shows it: leave its `modality`, or make it "B"'
-            return not_expressible(_TARGET, rule, f"the trigger `{name}`, not a belief,", mend)
+            fix = 'the environment shows it: leave its `modality`, or make it "B"'
+            return not_expressible(_TARGET, rule, f"the trigger `{name}`, not a belief,", fix)
     for name in responses:
         if _modality(rule, name) not in (Modality.BELIEF, Modality.DONE):
-            mend = 'an agent brings about a belief ("B") or does an action ("D")'
-            return not_expressible(_TARGET, rule, f"the response `{name}`, neither,", mend)
+            fix = 'an agent brings about a belief ("B") or does an action ("D")'
+            return not_expressible(_TARGET, rule, f"the response `{name}`, neither,", fix)
         done = _modality(rule, name) is Modality.DONE
         action = _spelt(rule)[name] if done else _action(rule, name)
         if action in AJPF_ACTIONS:
-            mend = "MCAPL has an action or a word of that name: use another"
-            return not_expressible(_TARGET, rule, f"the action `{action}`", mend)
+            fix = "MCAPL has an action or a word of that name: use another"
+            return not_expressible(_TARGET, rule, f"the action `{action}`", fix)
     return None
 
 

@@ -44,13 +44,13 @@ def too_large(rule: Formalized, language: str) -> Diagnostic | None:
     """F601 where a counter or a ring is beyond what a controller can keep."""
     cells = rail(program({rule.id: rule.watch}), {rule.id: "r"}).cells
     if any(isinstance(cell, Counter) and cell.most >= 2**31 for cell in cells):
-        what, mend = "a bound of 2^31 ticks or more", "counters have 32 bits: choose a longer tick"
+        what, fix = "a bound of 2^31 ticks or more", "counters have 32 bits: choose a longer tick"
     elif any(isinstance(cell, Ring) and cell.length > _MOST_BITS for cell in cells):
         what = f"a demand about one time more than {_MOST_BITS} ticks ago"
-        mend = "it would keep more than a mebibyte: choose a longer tick"
+        fix = "it would keep more than a mebibyte: choose a longer tick"
     else:
         return None
-    return not_expressible(f"a monitor in {language}", rule, what, mend)
+    return not_expressible(f"a monitor in {language}", rule, what, fix)
 
 
 def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:

@@ -59,8 +59,8 @@ def remarks(options: Options) -> tuple[Diagnostic, ...]:
     return (*latched, *_unwatched(node), *_short_hold(declared, node))
 
 
-def _warning(code: Code, message: str, node: Interception, mend: str) -> Diagnostic:
-    return Diagnostic(code, message, node.span, mend, Severity.WARNING)
+def _warning(code: Code, message: str, node: Interception, fix: str) -> Diagnostic:
+    return Diagnostic(code, message, node.span, fix, Severity.WARNING)
 
 
 def _latching(node: Interception) -> Diagnostic:

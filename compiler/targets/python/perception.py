@@ -28,12 +28,12 @@ def refuse(rule: Formalized) -> Diagnostic | None:
     reason = next(_reasons(rule), None)
     if reason is None:
         return None
-    what, mend = reason
+    what, fix = reason
     return Diagnostic(
         Code.NOT_EXPRESSIBLE,
         f"a live node cannot judge {rule.id}: {what}",
         rule.requirement.wording,
-        help=mend,
+        help=fix,
     )
 
 

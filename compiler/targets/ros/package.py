@@ -122,8 +122,8 @@ def _unsubscribable(rule: Formalized) -> Iterator[Diagnostic]:
         others = [_kind(each) for each in declared if each.path.topic == topic]
         if _TYPE.fullmatch(kind) is None:
             what = f"is of `{kind}`, which is no type of ROS" if kind else "has no type"
-            mend = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
-            yield _refusal(rule, f"`{signal.name}` {what}", place, mend)
+            fix = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
+            yield _refusal(rule, f"`{signal.name}` {what}", place, fix)
         elif any(other not in ("", kind) for other in others):
             what = f"{topic} is of `{kind}`, and of another type for another signal"
             yield _refusal(rule, what, place, "give all signals the type of their topic")
@@ -136,9 +136,9 @@ def _kind(signal: Signal) -> str:
     return short_type(signal.type or "")
 
 
-def _refusal(rule: Formalized, what: str, place: Span, mend: str) -> Diagnostic:
+def _refusal(rule: Formalized, what: str, place: Span, fix: str) -> Diagnostic:
     message = f"no node of ROS can judge {rule.id}: {what}"
-    return Diagnostic(Code.NOT_EXPRESSIBLE, message, place, help=mend)
+    return Diagnostic(Code.NOT_EXPRESSIBLE, message, place, help=fix)
 
 
 def refuse_project(options: Options) -> Diagnostic | None:

@@ -200,12 +200,12 @@ def coverage(
     """
     if not declarations.clock.declared or not declarations.propositions:
         what = "clock" if not declarations.clock.declared else "proposition"
-        mend = "[clock]" if what == "clock" else "[proposition.NAME]"
+        fix = "[clock]" if what == "clock" else "[proposition.NAME]"
         return Diagnostic(
             Code.NOTHING_TO_DO,
             f"`{declarations.source.name}` declares no {what}",
             declarations.source.span(0, 0),
-            help=f"add `{mend}`; `fretc bind --from LOG` drafts it",
+            help=f"add `{fix}`; `fretc bind --from LOG` drafts it",
         )
     look = partial(_log_coverage, declarations=declarations, plan=plan)
     logs = tuple(dict.fromkeys(logs))

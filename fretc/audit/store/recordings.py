@@ -263,7 +263,7 @@ def _plain(finding: Diagnostic, declarations: Declarations) -> dict[str, Any] | 
         place = next((signal.name for signal in signals if signal.span == span), None)
         if place is None:
             return None
-    if replace(finding, mend=None, accepted="") != finding:
+    if replace(finding, fix=None, accepted="") != finding:
         return None
     return {
         "code": finding.code.number,

@@ -41,12 +41,12 @@ RANGE_MIN = "range_min"
 class FieldError(ValueError):
     """The message does not hold the number that the signal asks for.
 
-    The text names what is missing; `mend` says what is there instead.
+    The text names what is missing; `fix` says what is there instead.
     """
 
-    def __init__(self, message: str, mend: str | None = None) -> None:
+    def __init__(self, message: str, fix: str | None = None) -> None:
         super().__init__(message)
-        self.mend = mend
+        self.fix = fix
 
 
 class UnstatedError(Exception):

@@ -78,8 +78,8 @@ def is_backup(path: str) -> bool:
     root, name = os.path.split(path)
     if not _BACKUP.fullmatch(name):
         return False
-    mended = (name.replace(".orig.bag", ".bag"), name.replace(".bag.orig.active", ".bag"))
-    originals = {*mended, f"{mended[1]}.active"} - {name}
+    fixed = (name.replace(".orig.bag", ".bag"), name.replace(".bag.orig.active", ".bag"))
+    originals = {*fixed, f"{fixed[1]}.active"} - {name}
     return any(os.path.exists(os.path.join(root, each)) for each in originals)
 
 

@@ -79,7 +79,7 @@ def bad_bag(why: str, place: Span, *, indexed: bool) -> Diagnostic:
         Code.UNREADABLE_LOG,
         f"the bag cannot be read: {why}",
         place,
-        "mend it first: `rosbag reindex`, which loses the chunk that was being written (keep the "
+        "fix it first: `rosbag reindex`, which loses the chunk that was being written (keep the "
         "`.orig` file beside it, and audits say so); or copy it again from where it was recorded"
         if indexed
         else "copy it again from where it was recorded",
@@ -187,9 +187,9 @@ def not_a_file(place: Span) -> Diagnostic:
 def unreadable(error: OSError, place: Span) -> Diagnostic:
     """The system, or the server, does not let it be read."""
     reason = error.strerror or str(error)
-    mend = "check its permissions"
+    fix = "check its permissions"
     if "://" in place.source.name:
-        mend = "check the address, the network, and whether your credentials reach it"
+        fix = "check the address, the network, and whether your credentials reach it"
     elif error.errno == errno.ENOSPC:
-        mend = "make room in the folder for temporary files, or name another one in `TMPDIR`"
-    return Diagnostic(Code.UNREADABLE, f"it cannot be read: {reason}", place, mend)
+        fix = "make room in the folder for temporary files, or name another one in `TMPDIR`"
+    return Diagnostic(Code.UNREADABLE, f"it cannot be read: {reason}", place, fix)

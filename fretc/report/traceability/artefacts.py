@@ -110,8 +110,8 @@ def _of_joint(file: str, rules: Sequence[Formalized]) -> str:
 def _of_target(target: Target, rule: Formalized) -> tuple[Product, ...]:
     refusal = target.refuse(rule)
     if refusal is not None:
-        mend = f"; {refusal.help}" if refusal.help else ""
-        text = f"{refusal.code.number} {refusal.message}{mend}"
+        fix = f"; {refusal.help}" if refusal.help else ""
+        text = f"{refusal.code.number} {refusal.message}{fix}"
         return (Product(target.name, "", "", text),)
     return tuple(
         Product(target.name, str(artifact.path), sha256(artifact.text), "")

@@ -171,7 +171,7 @@ def unnamed_violations(chosen: Sequence[Chain], refuted: Collection[str]) -> tup
         Diagnostic(
             Code.UNREVIEWED_VIOLATION,
             f"{id} is {verdicts}",
-            help="mend it, or accept it as it is: add `--accept-violations`",
+            help="fix it, or accept it as it is: add `--accept-violations`",
         )
         for id, verdicts in violations.items()
     )

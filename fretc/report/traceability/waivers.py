@@ -99,8 +99,8 @@ def _mistakes(
         return
     if ids is not None and id not in ids:
         near = suggestion(id, ids)
-        mend = f"did you mean `{near}`?" if near else "name a requirement of the project"
-        yield _wrong(tables, f"{id} is waived, and is not among the requirements", mend, id)
+        fix = f"did you mean `{near}`?" if near else "name a requirement of the project"
+        yield _wrong(tables, f"{id} is waived, and is not among the requirements", fix, id)
     for key in fields:
         if key not in _FIELDS:
             yield unknown_key(Code.BAD_WAIVER, key, _FIELDS, tables.place(id, key), f"[{id}]")
@@ -113,19 +113,19 @@ def _mistakes(
                 tables, f"the waiver of {id} needs `{name}`", f'add `{name} = "..."`', id, name
             )
         elif name in ("granted", "expires") and not is_date(value):
-            mend = f'write it as `"{date(2026, 11, 22).isoformat()}"`'
-            yield _wrong(tables, f"`{value}` is no date", mend, id, name)
+            fix = f'write it as `"{date(2026, 11, 22).isoformat()}"`'
+            yield _wrong(tables, f"`{value}` is no date", fix, id, name)
 
 
 def _no_verdict(tables: Tables, id: str, value: object) -> Diagnostic:
     """A waiver without a verdict would cover whatever comes later."""
     listed = ", ".join(f"`{word}`" for word in VERDICTS)
     if value is None:
-        what, mend = f"the waiver of {id} does not say which verdict it covers", 'add `verdict = "'
-        return _wrong(tables, what, f'{mend}no data"`; it may be {listed}', id, "reason")
+        what, fix = f"the waiver of {id} does not say which verdict it covers", 'add `verdict = "'
+        return _wrong(tables, what, f'{fix}no data"`; it may be {listed}', id, "reason")
     near = suggestion(str(value), VERDICTS)
-    mend = f"did you mean `{near}`?" if near else f"it may be {listed}"
-    return _wrong(tables, f"`{value}` is no verdict that can be waived", mend, id, "verdict")
+    fix = f"did you mean `{near}`?" if near else f"it may be {listed}"
+    return _wrong(tables, f"`{value}` is no verdict that can be waived", fix, id, "verdict")
 
 
 def idle_waiver(waiver: Waiver, verdict: str) -> Diagnostic:
@@ -140,8 +140,8 @@ def idle_waiver(waiver: Waiver, verdict: str) -> Diagnostic:
     )
 
 
-def _wrong(tables: Tables, what: str, mend: str, *path: str) -> Diagnostic:
-    return Diagnostic(Code.BAD_WAIVER, what, tables.value(*path), help=mend)
+def _wrong(tables: Tables, what: str, fix: str, *path: str) -> Diagnostic:
+    return Diagnostic(Code.BAD_WAIVER, what, tables.value(*path), help=fix)
 
 
 def _ended(tables: Tables, waiver: Waiver) -> Diagnostic:

@@ -341,11 +341,11 @@ def _no_websockets(why: str) -> Diagnostic:
     )
 
 
-def _server_not_reached(name: str, why: str, mend: str | None) -> Diagnostic:
+def _server_not_reached(name: str, why: str, fix: str | None) -> Diagnostic:
     return Diagnostic(
         Code.ROBOT_NOT_REACHED,
         f"{name} cannot be watched: {why}",
-        help=mend or "start the server on the robot (`ros2 run foxglove_bridge foxglove_bridge`)",
+        help=fix or "start the server on the robot (`ros2 run foxglove_bridge foxglove_bridge`)",
     )
 
 

@@ -70,13 +70,13 @@ class ClockTable(Fields):
         text = table.get("phase", "0 ns")
         phase = units.nanoseconds(text) if isinstance(text, str) else None
         if period is None and "phase" in table:
-            message, mend = "a clock that ticks by message has no `phase`", "take it out"
+            message, fix = "a clock that ticks by message has no `phase`", "take it out"
         elif phase is None or (period is not None and not 0 <= phase < period):
             message = "`phase` must be a duration from 0 on, and less than a tick"
-            mend = 'half a tick of 100 ms is `phase = "50 ms"`'
+            fix = 'half a tick of 100 ms is `phase = "50 ms"`'
         else:
             return phase
-        self._say(Code.BAD_PHASE, message, self.tables.value("clock", "phase"), mend)
+        self._say(Code.BAD_PHASE, message, self.tables.value("clock", "phase"), fix)
         return 0
 
     def _lateness(self, table: Mapping[str, Any]) -> int | None:

@@ -45,8 +45,8 @@ class Fields:
         self.tables = tables
         self.notes = notes
 
-    def _say(self, code: Code, message: str, span: Span, mend: str | None = None) -> None:
-        self.notes.diagnostics.append(Diagnostic(code, message, span, mend))
+    def _say(self, code: Code, message: str, span: Span, fix: str | None = None) -> None:
+        self.notes.diagnostics.append(Diagnostic(code, message, span, fix))
 
     def _check_keys(
         self, table: Mapping[str, Any], keys: tuple[str, ...], where: str, *at: str

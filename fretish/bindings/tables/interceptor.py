@@ -114,12 +114,12 @@ class Loop(Fields):
         )
         return None
 
-    def _absent(self, table: str, key: str, mend: str) -> None:
+    def _absent(self, table: str, key: str, fix: str) -> None:
         self._say(
             Code.BAD_BINDING_FIELD,
             f"`[{table}]` has no `{key}`",
             self.tables.place(table),
-            f"add `{key} = {mend}`",
+            f"add `{key} = {fix}`",
         )
 
     def _duration(

@@ -46,8 +46,8 @@ class Labels(Fields):
             return ()
         return tuple(each for each in sources if isinstance(each, LabelSource))
 
-    def _bad_label(self, message: str, at: tuple[str, ...], mend: str | None = None) -> None:
-        self._say(Code.BAD_LABEL, message, self.tables.value(*at), mend)
+    def _bad_label(self, message: str, at: tuple[str, ...], fix: str | None = None) -> None:
+        self._say(Code.BAD_LABEL, message, self.tables.value(*at), fix)
 
 
 def is_label(name: str) -> bool:

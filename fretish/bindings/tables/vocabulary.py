@@ -54,16 +54,16 @@ class Vocabulary(Fields):
             or '"' in word
             or not 0 < len(word) <= _LONGEST_WORD
         ):
-            message, mend = (
+            message, fix = (
                 f"a word must be a text of 1 to {_LONGEST_WORD} characters on one line, without "
                 "a double quote",
                 'write such as `values = ["drive", "docking"]`',
             )
         elif word in before:
-            message, mend = f"`{word}` stands twice in `values`", "take one out"
+            message, fix = f"`{word}` stands twice in `values`", "take one out"
         else:
             return
-        self._say(Code.BAD_BINDING_FIELD, message, self._last_in(at, word), mend)
+        self._say(Code.BAD_BINDING_FIELD, message, self._last_in(at, word), fix)
 
     def _check_numbers(self, written: Mapping[str, Any], at: tuple[str, ...]) -> None:
         words: dict[int, str] = {}

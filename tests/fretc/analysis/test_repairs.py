@@ -20,10 +20,10 @@ ONE_AT_A_TIME = (
 
 
 def suggested(*sentences: str) -> list[tuple[str | None, tuple[str, ...]]]:
-    return [(each.requirement, each.sentences) for each in mended(*sentences).repairs]
+    return [(each.requirement, each.sentences) for each in fixed(*sentences).repairs]
 
 
-def mended(*sentences: str, assumed: Sequence[str] = ()) -> Analysis:
+def fixed(*sentences: str, assumed: Sequence[str] = ()) -> Analysis:
     return analyzed(*sentences, assumed=assumed, repairs=True)
 
 
@@ -52,7 +52,7 @@ def test_the_least_change_of_each_bound_is_suggested(within: int, hold: int) -> 
     longer = {"R1": (soon(ticks(hold + 1)),)}
     shorter = {"R2": (off(ticks(within - 1)),)} if within else {}
     assert found == longer | shorter
-    for repair in mended(*sentences).repairs:
+    for repair in fixed(*sentences).repairs:
         assert synthesized(*changed(sentences, repair)), repair
 
 
@@ -72,7 +72,7 @@ def ticks(number: int) -> str:
 
 
 @pytest.mark.parametrize(
-    ("unit", "milliseconds", "mending"),
+    ("unit", "milliseconds", "fixing"),
     [
         ("100 milliseconds", 50, "150 milliseconds"),
         ("1 second", 500, "1500 milliseconds"),
@@ -81,7 +81,7 @@ def ticks(number: int) -> str:
     ],
 )
 def test_a_bound_stays_in_its_unit_or_in_one_that_is_exact(
-    unit: str, milliseconds: int, mending: str
+    unit: str, milliseconds: int, fixing: str
 ) -> None:
     clock = Clock(milliseconds * 10**6)
     given = [
@@ -89,7 +89,7 @@ def test_a_bound_stays_in_its_unit_or_in_one_that_is_exact(
         timed(f"the sw shall for {unit} satisfy !x", "R2", clock),
     ]
     repairs = {each.requirement: each.sentences for each in analyze(given, ROLES).repairs}
-    assert repairs["R1"] == (f"upon a the sw shall within {mending} satisfy x",)
+    assert repairs["R1"] == (f"upon a the sw shall within {fixing} satisfy x",)
 
 
 def test_no_assumption_takes_a_trigger_away() -> None:
@@ -98,14 +98,14 @@ def test_no_assumption_takes_a_trigger_away() -> None:
 
 
 def test_what_settles_one_conflict_of_several_says_so() -> None:
-    found = mended(*ONE_AT_A_TIME, "the sw shall never satisfy x")
+    found = fixed(*ONE_AT_A_TIME, "the sw shall never satisfy x")
     assert found.verdict is Verdict.UNREALIZABLE
     assert all(not each.settles for each in found.repairs)
     assert found.repairs
 
 
 def test_assumptions_that_are_there_stay() -> None:
-    found = mended(
+    found = fixed(
         *ONE_AT_A_TIME, assumed=["whenever b the operator shall for 2 ticks satisfy !a"]
     ).repairs
     assert [(each.requirement, each.sentences) for each in found] == [
@@ -128,7 +128,7 @@ def test_spot_proves_each_suggestion() -> None:
     shown = 0
     for seed in range(150):
         sentences = terse(("repair", seed))
-        for repair in mended(*sentences).repairs:
+        for repair in fixed(*sentences).repairs:
             if any("preBool" in each for each in repair.sentences):
                 continue
             assert synthesized(*changed(sentences, repair)), (sentences, repair)

@@ -239,7 +239,7 @@ def test_a_method_of_ones_own_is_no_mistake(good: Fretc, method: str) -> None:
     assert good("check").status == 0
 
 
-# Mends -----------------------------------------------------------------------------------------
+# Fixes -----------------------------------------------------------------------------------------
 
 
 def test_fix_writes_what_is_sure_says_so_and_checks_again(good: Fretc) -> None:
@@ -252,25 +252,25 @@ def test_fix_writes_what_is_sure_says_so_and_checks_again(good: Fretc) -> None:
         0,
         "",
         "wrote requirements/r1.fret\n"
-        "mended requirements/r1.fret:10:25: wrote `shall` for `should`\n"
-        "mended requirements/r1.fret:10:39: wrote `300 milliseconds` for `0.3 seconds`\n"
+        "fixed requirements/r1.fret:10:25: wrote `shall` for `should`\n"
+        "fixed requirements/r1.fret:10:39: wrote `300 milliseconds` for `0.3 seconds`\n"
         "\n"
         "1 requirement: 0 mistakes, 0 warnings\n",
     )
 
 
-@pytest.mark.parametrize("mend", ["shall near", "shall alwyas satisfy near", "shall satisfy (near"])
-def test_fix_leaves_alone_what_is_not_sure(good: Fretc, mend: str) -> None:
-    edited("r1.fret", "shall within 300 milliseconds satisfy stopped", f"{mend} until stopped or p")
+@pytest.mark.parametrize("fix", ["shall near", "shall alwyas satisfy near", "shall satisfy (near"])
+def test_fix_leaves_alone_what_is_not_sure(good: Fretc, fix: str) -> None:
+    edited("r1.fret", "shall within 300 milliseconds satisfy stopped", f"{fix} until stopped or p")
     text = Path("requirements/r1.fret").read_text()
     run = good("check", "--fix")
     assert run.status == 2
     left = Path("requirements/r1.fret").read_text()
     assert left in (text, text.replace("shall near", "shall satisfy near"))
-    assert good("check", "--fix").err.count("mended") == 0
+    assert good("check", "--fix").err.count("fixed") == 0
 
 
-def test_fix_touches_no_file_that_has_nothing_to_mend(good: Fretc) -> None:
+def test_fix_touches_no_file_that_has_nothing_to_fix(good: Fretc) -> None:
     text = (GOOD + "+++\nid = 'R2'\n+++\n\"the robot should and must\"\n").replace("\n", "\r\n")
     write("requirements/r1.fret", text)
     before = Path("requirements/r1.fret").stat()

@@ -52,7 +52,7 @@ def test_a_sentence_is_explained_as_it_is_typed(fretc: Fretc) -> None:
     assert record["id"] == "sentence"
 
 
-def test_a_sentence_with_a_mistake_has_a_place_and_a_mend(fretc: Fretc) -> None:
+def test_a_sentence_with_a_mistake_has_a_place_and_a_fix(fretc: Fretc) -> None:
     run = fretc("explain", "the robot should satisfy speed <= 1.5")
     assert (run.status, run.out) == (2, "")
     assert run.err.splitlines()[1] == "  --> <sentence>:1:11"
@@ -260,16 +260,16 @@ def test_a_code_is_explained(fretc: Fretc) -> None:
         "from\n"
         "  the response.\n"
         "\n"
-        "  To mend it: Write `satisfy` before the response.\n"
+        "  To fix it: Write `satisfy` before the response.\n"
         "\n"
         "  wrong:\n"
         "    the robot shall always upright\n"
         "\n"
-        "  mended:\n"
+        "  fixed:\n"
         "    the robot shall always satisfy upright\n"
     )
     told = json.loads(fretc("explain", "F104", "--format", "json").out)
-    assert told["example"]["mended"] == "the robot shall always satisfy upright"
+    assert told["example"]["fixed"] == "the robot shall always satisfy upright"
 
 
 def test_no_text_can_hide_another_one(fretc: Fretc) -> None:

@@ -249,7 +249,7 @@ def test_a_violation_is_accepted_by_name_only(fretc: Fretc, folder: Path) -> Non
     assert (run.status, run.out) == (2, "")
     assert run.err == (
         "F529 R1 is violated in b.mcap, c.mcap; satisfied in 1 run\n"
-        "help: mend it, or accept it as it is: add `--accept-violations`\n"
+        "help: fix it, or accept it as it is: add `--accept-violations`\n"
     )
     assert not (folder / "fretc.lock").exists()
     run = fretc("lock", *BY, *ON, "--accept-violations")

@@ -14,7 +14,7 @@ from fretish.diagnostics.explanations import Explanation, as_record, explanation
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests.each import each
-from tests.mending import toml_in
+from tests.fixes import toml_in
 
 EXAMPLES = {number: each for number, each in explanations().items() if each.wrong}
 
@@ -48,10 +48,10 @@ def test_every_code_is_explained_and_nothing_else() -> None:
 
 
 @pytest.mark.parametrize("number", EXAMPLES)
-def test_an_example_gives_its_code_and_the_mended_one_gives_none(number: str) -> None:
+def test_an_example_gives_its_code_and_the_fixed_one_gives_none(number: str) -> None:
     example = EXAMPLES[number]
     assert number in codes_of(example.kind, example.declared, example.wrong)
-    assert not codes_of(example.kind, example.declared, example.mended)
+    assert not codes_of(example.kind, example.declared, example.fixed)
 
 
 @pytest.mark.parametrize("number", EXAMPLES)
@@ -66,7 +66,7 @@ def test_the_toml_that_an_example_is_told_to_write_parses(number: str) -> None:
 def test_an_explanation_is_short_and_made_of_sentences(code: Code) -> None:
     explained = explanation(code)
     assert explained == explanations()[code.number]
-    for part in (explained.cause, explained.mend):
+    for part in (explained.cause, explained.fix):
         assert part == " ".join(part.split())
         assert part[-1] in ".?"
     assert all(len(line) <= 100 for line in text(code).splitlines())
@@ -82,7 +82,7 @@ def test_the_text_of_a_code() -> None:
         "so it\n"
         "  protects nobody while the system runs.\n"
         "\n"
-        "  To mend it: State a bound.\n"
+        "  To fix it: State a bound.\n"
         "\n"
         "  to accept it, in the header of the requirement:\n"
         '    accept = { F203 = "the reason" }\n'
@@ -90,7 +90,7 @@ def test_the_text_of_a_code() -> None:
         "  wrong:\n"
         "    whenever too_close the robot shall eventually satisfy stopped\n"
         "\n"
-        "  mended:\n"
+        "  fixed:\n"
         "    whenever too_close the robot shall within 2 ticks satisfy stopped\n"
     )
 

@@ -1,4 +1,4 @@
-"""Operators of other languages; a mend is sure only where it cannot change what is meant."""
+"""Operators of other languages; a fix is safe only where it cannot change what is meant."""
 
 import pytest
 
@@ -14,7 +14,7 @@ def mistake_of(response: str) -> Diagnostic:
 
 
 @pytest.mark.parametrize(
-    ("response", "written", "mend"),
+    ("response", "written", "fix"),
     [
         ("p and q", "and", "&"),
         ("p OR q", "OR", "|"),
@@ -33,10 +33,10 @@ def mistake_of(response: str) -> Diagnostic:
         ("x > .5", "", "0"),
     ],
 )
-def test_what_has_one_meaning_is_mended_for_sure(response: str, written: str, mend: str) -> None:
-    found = mistake_of(response).mend
+def test_what_has_one_meaning_is_fixed_for_sure(response: str, written: str, fix: str) -> None:
+    found = mistake_of(response).fix
     assert found is not None
-    assert (found.span.text, found.text, found.sure) == (written, mend, True)
+    assert (found.span.text, found.text, found.is_safe) == (written, fix, True)
 
 
 @pytest.mark.parametrize(
@@ -71,7 +71,7 @@ def test_what_could_mean_two_things_is_never_sure(response: str) -> None:
     assert isinstance(found, Diagnostic)
     quoted = response.startswith("'p'")  # the pair is sure; the lonely one behind it is not
     assert found.help
-    assert found.mend is None or found.mend.sure is quoted
+    assert found.fix is None or found.fix.is_safe is quoted
 
 
 @pytest.mark.parametrize(
@@ -87,31 +87,31 @@ def test_what_could_mean_two_things_is_never_sure(response: str) -> None:
     ],
 )
 def test_what_binds_in_one_way_only_is_sure(response: str) -> None:
-    found = mistake_of(response).mend
+    found = mistake_of(response).fix
     assert found is not None
-    assert found.sure
+    assert found.is_safe
 
 
 def test_another_part_of_the_sentence_has_no_say_in_what_binds() -> None:
     found = parse(Source("r.fret", "when p | q the sw shall satisfy r and s").span())
     assert isinstance(found, Diagnostic)
-    assert found.mend is not None
-    assert found.mend.sure
+    assert found.fix is not None
+    assert found.fix.is_safe
 
 
 @pytest.mark.parametrize(
-    ("condition", "mend"),
+    ("condition", "fix"),
     [("p and q", "&"), ("p or q", "|"), ("p implies q", "->"), ("p and x > 3 & q", "&")],
 )
-def test_a_word_that_joins_expressions_of_a_condition(condition: str, mend: str) -> None:
+def test_a_word_that_joins_expressions_of_a_condition(condition: str, fix: str) -> None:
     found = parse(Source("r.fret", f"whenever {condition} the sw shall satisfy r").span())
     assert isinstance(found, Diagnostic)
-    assert found.mend is not None
-    assert (found.mend.text, found.mend.sure) == (mend, True)
+    assert found.fix is not None
+    assert (found.fix.text, found.fix.is_safe) == (fix, True)
 
 
 def test_an_implication_of_a_number_is_asked_whether_it_is_a_comparison() -> None:
     found = mistake_of("x => 3")
-    assert found.mend is not None
-    assert (found.mend.span.text, found.mend.text) == ("=>", ">=")
+    assert found.fix is not None
+    assert (found.fix.span.text, found.fix.text) == ("=>", ">=")
     assert found.help == "`=>` is an implication: did you mean `>=`?"

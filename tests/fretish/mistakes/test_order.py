@@ -1,9 +1,9 @@
-"""Parts at a wrong place, missing, or there twice: what is said, and what the mend makes of it."""
+"""Parts at a wrong place, missing, or there twice: what is said, and what the fix makes of it."""
 
 import pytest
 
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.diagnostics.mends import applied
+from fretish.diagnostics.fixes import applied
 from fretish.diagnostics.source import Source
 from fretish.parser import parse
 from fretish.syntax import Sentence
@@ -16,7 +16,7 @@ def mistake_of(text: str) -> Diagnostic:
 
 
 @pytest.mark.parametrize(
-    ("text", "message", "mended"),
+    ("text", "message", "fixed"),
     [
         ("satisfy p until q", "the timing stands before `satisfy`", "until q satisfy p"),
         ("satisfy p before q.", "the timing stands before `satisfy`", "before q satisfy p."),
@@ -40,14 +40,14 @@ def mistake_of(text: str) -> Diagnostic:
         ("satisfy ((p", "2 `(` are not closed", "satisfy ((p))"),
     ],
 )
-def test_a_mend_puts_the_part_where_it_belongs(text: str, message: str, mended: str) -> None:
+def test_a_fix_puts_the_part_where_it_belongs(text: str, message: str, fixed: str) -> None:
     found = mistake_of(f"the sw shall {text}")
     assert found.message == message
-    assert found.mend is not None
+    assert found.fix is not None
     assert found.span is not None
     whole = found.span.source.span()
-    assert applied(whole, [found.mend]) == f"the sw shall {mended}"
-    assert isinstance(parse(Source("r.fret", f"the sw shall {mended}").span()), Sentence)
+    assert applied(whole, [found.fix]) == f"the sw shall {fixed}"
+    assert isinstance(parse(Source("r.fret", f"the sw shall {fixed}").span()), Sentence)
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,7 @@ def test_a_mend_puts_the_part_where_it_belongs(text: str, message: str, mended: 
         ("sw may satisfy q", "may", "a requirement says `shall`", "did you mean `shall`?"),
     ],
 )
-def test_what_has_no_sure_mend_is_told_in_its_own_words(
+def test_what_has_no_safe_fix_is_told_in_its_own_words(
     text: str, at: str, message: str, words: str
 ) -> None:
     found = mistake_of(text)

@@ -451,7 +451,7 @@ def test_a_name_that_ajpf_cannot_read_is_another_one_there(sentence: str, functo
 
 
 @pytest.mark.parametrize(
-    ("sentence", "what", "mend"),
+    ("sentence", "what", "fix"),
     [
         (
             LATE.replace("2 seconds", "3 ticks"),
@@ -476,10 +476,10 @@ def test_a_name_that_ajpf_cannot_read_is_another_one_there(sentence: str, functo
         ),
     ],
 )
-def test_a_refusal_names_the_part_and_the_way_out(sentence: str, what: str, mend: str) -> None:
+def test_a_refusal_names_the_part_and_the_way_out(sentence: str, what: str, fix: str) -> None:
     text = refused(sentence)
     assert text.startswith(f"F601 AJPF cannot express {what} of R1\n  --> r.fret:1:1\n")
-    assert text.endswith(f"\nhelp: {mend}")
+    assert text.endswith(f"\nhelp: {fix}")
 
 
 def test_nesting_has_an_end() -> None:

@@ -88,10 +88,10 @@ def records(kind: Any, *without: str, held: bool) -> st.SearchStrategy[Any]:
     needed = {f.encode_name: values(f.type, held=held) for f in parts if f.required}
     others = {f.encode_name: values(f.type, held=held) for f in parts if not f.required}
     found = st.fixed_dictionaries(needed, optional=others)
-    return found.map(lambda value: _mended(value, kind.cls.__name__))
+    return found.map(lambda value: _fixed(value, kind.cls.__name__))
 
 
-def _mended(value: dict[str, Any], name: str) -> dict[str, Any]:
+def _fixed(value: dict[str, Any], name: str) -> dict[str, Any]:
     """Times in their order, as many as values; a probability for a bound."""
     if name == "Estimated":
         return value | {"bound": "0.99"}

@@ -187,7 +187,7 @@ def test_what_is_no_number_is_told(path: str, message: str, help_: str | None) -
     )
     with pytest.raises(FieldError) as error:
         sample(signal("", path), sent)
-    assert (str(error.value), error.value.mend) == (message, help_)
+    assert (str(error.value), error.value.fix) == (message, help_)
 
 
 @pytest.mark.parametrize("valid", ["x < 1 for 200 ms", "x < limit"])

@@ -139,7 +139,7 @@ def test_a_number_is_the_constant_of_its_definition(
 
 
 @pytest.mark.parametrize(
-    ("values", "message", "mend"),
+    ("values", "message", "fix"),
     [
         ('["docking"]', "has no constant `docking`", "did you mean `DOCKING`?"),
         ('["DOKING"]', "has no constant `DOKING`", "did you mean `DOCKING`?"),
@@ -150,14 +150,14 @@ def test_a_number_is_the_constant_of_its_definition(
         ),
     ],
 )
-def test_a_constant_is_named_exactly(tmp_path: Path, values: str, message: str, mend: str) -> None:
+def test_a_constant_is_named_exactly(tmp_path: Path, values: str, message: str, fix: str) -> None:
     log = write(tmp_path / "l.mcap", numbers("cdr", [0, 4]), definitions={"a/msg/M": MSG.encode()})
     word = values[1:-1].replace('"', "'")
     recording = recorded(log, declare(declared(values=values, expr=f"mode = {word}")))
     (finding,) = recording.findings
     assert finding.is_error
     assert finding.message.endswith(message)
-    assert finding.help == mend
+    assert finding.help == fix
     assert len(recording.samples["mode"].times) == 0
 
 

@@ -202,7 +202,7 @@ def test_a_run_of_which_nothing_is_left_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("mode", ["FILE", "message"])
-def test_a_run_that_rosbag2_compressed_is_refused_with_the_mend(tmp_path: Path, mode: str) -> None:
+def test_a_run_that_rosbag2_compressed_is_refused_with_the_fix(tmp_path: Path, mode: str) -> None:
     path = run(tmp_path)
     describe(path, PARTS, compression_mode=mode)
     diagnostic = refused(path)

@@ -82,7 +82,7 @@ def test_what_a_waiver_may_cover_is_what_does_not_show_a_requirement() -> None:
     assert set(VERDICTS) == {word for word in verdicts.VERDICTS if word not in passing}
 
 
-def test_an_older_waiver_is_reported_with_its_mend() -> None:
+def test_an_older_waiver_is_reported_with_its_fix() -> None:
     _, (mistake,) = read(
         write("waivers.toml", GOOD.replace('verdict = "no data"\n', "")), ["R1"], ""
     )

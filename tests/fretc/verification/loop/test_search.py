@@ -33,7 +33,7 @@ def trace(outcome: Outcome) -> list[str]:
     return [f"{row} {action}" for row, action in zip(rows, outcome.trace.actions, strict=True)]
 
 
-# The loops of the paper and their mends -------------------------------------------------------
+# The loops of the paper and their fixes -------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_without_a_bound_only_what_is_sent_once_is_lost() -> None:
     assert results == {"level": "proved", "edge": "counterexample"}
 
 
-def test_a_heartbeat_mends_what_is_lost_on_change_only() -> None:
+def test_a_heartbeat_repairs_what_is_lost_on_change_only() -> None:
     """Two messages may be lost, three ticks apart: after six ticks the third one is heard."""
     lossy = Channel(1, lost=2, edge=True, heartbeat=3)
     results = {n: search(case(WITHIN.format(n), TIMER, lossy)) for n in (6, 7)}

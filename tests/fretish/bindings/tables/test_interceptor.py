@@ -186,7 +186,7 @@ def test_a_table_must_be_one() -> None:
     ]
 
 
-def test_a_mistake_is_told_with_its_mend() -> None:
+def test_a_mistake_is_told_with_its_fix() -> None:
     _, (wrong,) = read_bindings(Source("b.toml", GOOD.replace('"stopped"\nl', '"stoped"\nl')))
     assert render(wrong) == (
         "F309 `stands` names `stoped`, which is no bound proposition\n"

@@ -1,41 +1,41 @@
-"""A mended text, and what each of its places was before."""
+"""A fixed text, and what each of its places was before."""
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from fretish.diagnostics.diagnostic import suggestion
-from fretish.diagnostics.mends import Mend, Mended, applied
+from fretish.diagnostics.fixes import Fix, FixedText, applied
 from fretish.diagnostics.source import Source, Span
 
 SOURCE = Source("r.fret", "0123456789abcdefghij")
 
 
 @st.composite
-def mended(draw: st.DrawFn) -> Mended:
+def fixed(draw: st.DrawFn) -> FixedText:
     cuts = sorted(draw(st.lists(st.integers(3, 18), max_size=8, unique=True)))
     texts = draw(st.lists(st.text("XYZ", max_size=4), min_size=8, max_size=8))
     pairs = zip(cuts[::2], cuts[1::2], texts, strict=False)
-    mends = [Mend(Span(SOURCE, start, end), text) for start, end, text in pairs]
-    found = Mended(SOURCE.span(2, 20))
-    for mend in reversed(mends):
-        found = found.with_mend(mend)
+    fixes = [Fix(Span(SOURCE, start, end), text) for start, end, text in pairs]
+    found = FixedText(SOURCE.span(2, 20))
+    for fix in reversed(fixes):
+        found = found.with_fix(fix)
     return found
 
 
-@given(mended())
-def test_what_no_mend_touches_is_where_it_was(text: Mended) -> None:
+@given(fixed())
+def test_what_no_fix_touches_is_where_it_was(text: FixedText) -> None:
     read = text.span
-    assert read.text == applied(text.original, text.mends)
+    assert read.text == applied(text.original, text.fixes)
     for at, character in enumerate(read.text):
         place = text.place(read.part(at, at + 1))
         if character in "XYZ":
-            assert any((m.span.start, m.span.end) == (place.start, place.end) for m in text.mends)
+            assert any((m.span.start, m.span.end) == (place.start, place.end) for m in text.fixes)
         else:
             assert place.text == character
 
 
-@given(mended(), st.data())
-def test_a_place_lies_within_the_original(text: Mended, data: st.DataObject) -> None:
+@given(fixed(), st.data())
+def test_a_place_lies_within_the_original(text: FixedText, data: st.DataObject) -> None:
     read = text.span
     start = data.draw(st.integers(0, read.end))
     place = text.place(read.part(start, data.draw(st.integers(start, read.end))))
@@ -43,15 +43,15 @@ def test_a_place_lies_within_the_original(text: Mended, data: st.DataObject) -> 
     assert place.source is SOURCE
 
 
-def test_a_mend_in_words() -> None:
+def test_a_fix_in_words() -> None:
     span = SOURCE.span(0, 3)
-    assert Mend(span, "a", sure=True).help == "write `a`"
-    assert Mend(span, "a").help == "did you mean `a`?"
-    assert Mend(span, "", sure=True).help == "leave `012` out"
-    assert Mend(span, "").help == "should `012` be left out?"
-    assert Mend(span, "a").change == "wrote `a` for `012`"
-    assert Mend(span, "").change == "left `012` out"
-    assert Mend(span.part(0, 0), "a ").change == "put `a` in"
+    assert Fix(span, "a", is_safe=True).help == "write `a`"
+    assert Fix(span, "a").help == "did you mean `a`?"
+    assert Fix(span, "", is_safe=True).help == "leave `012` out"
+    assert Fix(span, "").help == "should `012` be left out?"
+    assert Fix(span, "a").change == "wrote `a` for `012`"
+    assert Fix(span, "").change == "left `012` out"
+    assert Fix(span.part(0, 0), "a ").change == "put `a` in"
 
 
 @given(st.integers(0, 10**6), st.integers(0, 10**6))

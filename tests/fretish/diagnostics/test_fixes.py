@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.reading.toml_text import as_key
-from tests.mending import toml_in
+from tests.fixes import toml_in
 
 ROOT = Path(__file__).parents[3]
 MODULES = sorted(

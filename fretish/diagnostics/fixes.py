@@ -9,23 +9,25 @@ from fretish.diagnostics.source import Source, Span
 
 
 @dataclass(frozen=True, slots=True)
-class Mend:
+class Fix:
     """Another text in the place of a span."""
 
     span: Span
     """What is replaced; empty where something is put in."""
     text: str
     """Empty where the span is left out."""
-    sure: bool = False
+    is_safe: bool = False
     """Whether it can say nothing but what the author means: `fretc check --fix` applies it."""
 
     @property
     def help(self) -> str:
-        """The mend in words: an order where it is sure, a question where it is not."""
+        """The fix in words: an order where it is safe, a question where it is not."""
         text, replaced = _plain(self.text), _plain(self.span.text)
         if not text:
-            return f"leave `{replaced}` out" if self.sure else f"should `{replaced}` be left out?"
-        return f"write `{text}`" if self.sure else f"did you mean `{text}`?"
+            return (
+                f"leave `{replaced}` out" if self.is_safe else f"should `{replaced}` be left out?"
+            )
+        return f"write `{text}`" if self.is_safe else f"did you mean `{text}`?"
 
     @property
     def change(self) -> str:
@@ -42,67 +44,67 @@ def _plain(text: str) -> str:
 
 
 @dataclass(frozen=True, slots=True)
-class Mended:
-    """A part of a text with mends applied, and what each of its places was before."""
+class FixedText:
+    """A part of a text with fixes applied, and what each of its places was before."""
 
     original: Span
-    mends: tuple[Mend, ...] = ()
+    fixes: tuple[Fix, ...] = ()
     """In the order of the text; none overlaps another one."""
 
     @property
     def span(self) -> Span:
-        """The mended text, in a source of its own that has the same name."""
-        return Source(self.original.source.name, applied(self.original, self.mends)).span()
+        """The fixed text, in a source of its own that has the same name."""
+        return Source(self.original.source.name, applied(self.original, self.fixes)).span()
 
     def place(self, span: Span) -> Span:
-        """What a span of the mended text was in the original one."""
+        """What a span of the fixed text was in the original one."""
         last = max(span.start, span.end - 1)
         start, end = self._original(span.start)[0], self._original(last)[1]
         empty = span.start == span.end
         return Span(self.original.source, start, start if empty else max(start, end))
 
     def touches(self, span: Span) -> bool:
-        """Whether a span of the original text has a part in common with a mend."""
-        return any(m.span.start < span.end and span.start < m.span.end for m in self.mends)
+        """Whether a span of the original text has a part in common with a fix."""
+        return any(m.span.start < span.end and span.start < m.span.end for m in self.fixes)
 
-    def with_mend(self, mend: Mend) -> Mended:
+    def with_fix(self, fix: Fix) -> FixedText:
         """One more of them, at its place in the original text."""
-        mends = sorted((*self.mends, mend), key=lambda m: (m.span.start, m.span.end))
-        return Mended(self.original, tuple(mends))
+        fixes = sorted((*self.fixes, fix), key=lambda m: (m.span.start, m.span.end))
+        return FixedText(self.original, tuple(fixes))
 
     def _original(self, at: int) -> tuple[int, int]:
-        """Where the character at a place of the mended text began and ended in the original."""
+        """Where the character at a place of the fixed text began and ended in the original."""
         place = self.original.start + at
-        for mend in self.mends:
-            if place < mend.span.start:
+        for fix in self.fixes:
+            if place < fix.span.start:
                 break
-            if place < mend.span.start + len(mend.text):
-                return mend.span.start, mend.span.end
-            place += mend.span.end - mend.span.start - len(mend.text)
+            if place < fix.span.start + len(fix.text):
+                return fix.span.start, fix.span.end
+            place += fix.span.end - fix.span.start - len(fix.text)
         return place, place + 1
 
 
-def left_out(span: Span, *, sure: bool = False) -> Mend:
+def left_out(span: Span, *, is_safe: bool = False) -> Fix:
     """Without the span and the white space behind it."""
     rest = span.source.text[span.end :]
     blank = len(rest) - len(rest.lstrip(" \t"))
-    return Mend(Span(span.source, span.start, span.end + blank), "", sure)
+    return Fix(Span(span.source, span.start, span.end + blank), "", is_safe)
 
 
-def applied(text: Span, mends: Sequence[Mend]) -> str:
-    """The text with each mend in its place.
+def applied(text: Span, fixes: Sequence[Fix]) -> str:
+    """The text with each fix in its place.
 
     Args:
-        text: what is mended.
-        mends: within it, in its order; none overlaps another one.
+        text: what is fixed.
+        fixes: within it, in its order; none overlaps another one.
     """
-    return "".join(_pieces(text, mends))
+    return "".join(_pieces(text, fixes))
 
 
-def _pieces(text: Span, mends: Sequence[Mend]) -> Iterator[str]:
+def _pieces(text: Span, fixes: Sequence[Fix]) -> Iterator[str]:
     at = text.start
-    for mend in mends:
-        yield text.source.text[at : mend.span.start]
-        yield mend.text
-        at = mend.span.end
+    for fix in fixes:
+        yield text.source.text[at : fix.span.start]
+        yield fix.text
+        at = fix.span.end
     yield text.source.text[at : text.end]

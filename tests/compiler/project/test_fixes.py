@@ -1,10 +1,10 @@
-"""Sure mends of files: all of them, of sentences alone."""
+"""Sure fixes of files: all of them, of sentences alone."""
 
 from pathlib import Path
 
 import pytest
 
-from compiler.project.mending import mended
+from compiler.project.fixes import fixed
 from fretish.parser import MISTAKES
 from tests.command import write
 
@@ -17,21 +17,21 @@ def _in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def texts(*files: str) -> list[str]:
-    """The texts of the files that are mended."""
+    """The texts of the files that are fixed."""
     paths = [write(f"r{i}.fret", text) for i, text in enumerate(files)]
-    return [file.text for file in mended(paths)]
+    return [file.text for file in fixed(paths)]
 
 
-def test_more_mistakes_than_a_pass_finds_are_all_mended() -> None:
+def test_more_mistakes_than_a_pass_finds_are_all_fixed() -> None:
     count = MISTAKES + 3
     written = " && ".join(["p"] * (count + 1))
     wrong = f"the rover shall always satisfy {written.replace('&&', 'and')}"
-    (file,) = mended([write("r.fret", wrong)])
+    (file,) = fixed([write("r.fret", wrong)])
     assert file.text == f"the rover shall always satisfy {written.replace('&&', '&')}"
-    assert len(file.mends) == count
+    assert len(file.fixes) == count
 
 
-def test_every_sentence_of_a_file_is_mended_and_its_headers_stay() -> None:
+def test_every_sentence_of_a_file_is_fixed_and_its_headers_stay() -> None:
     two = '+++\nid = "A"\n+++\n{0}\n+++\nid = "B"\n+++\n{0}\n'
     assert texts(two.format(WRONG)) == [two.format(RIGHT)]
 
@@ -41,5 +41,5 @@ def test_free_text_a_file_with_an_open_header_and_what_is_right_stay(text: str) 
     assert texts(text) == []
 
 
-def test_a_file_that_cannot_be_read_is_left_out_and_the_others_are_mended() -> None:
-    assert [file.path for file in mended(["none.fret", write("r.fret", WRONG)])] == ["r.fret"]
+def test_a_file_that_cannot_be_read_is_left_out_and_the_others_are_fixed() -> None:
+    assert [file.path for file in fixed(["none.fret", write("r.fret", WRONG)])] == ["r.fret"]

@@ -1,0 +1,89 @@
+"""`fretc check --fix`: apply the safe fixes to the sentences of `.fret` files.
+
+A fix is safe where it can say nothing but what the author means (`Fix.is_safe`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from compiler.files.text_files import read
+from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.fixes import Fix, applied
+from fretish.diagnostics.source import Source, Span
+from fretish.documents import Requirement, requirements
+from fretish.parser import mistakes
+from fretish.reading.limits import within
+from fretish.reading.recursion import deep
+
+_MOST_PASSES = 100
+"""Passes over one file. A pass finds at most `fretish.parser.MISTAKES` mistakes in a sentence, and
+a fix can uncover another mistake, so one pass is not enough. The bound ends fixes that would undo
+each other for ever."""
+
+
+@dataclass(frozen=True, slots=True)
+class FixedFile:
+    """A file with its safe fixes applied; nothing has been written yet."""
+
+    path: str
+    text: str
+    fixes: tuple[Fix, ...]
+    """In the order of their application. The span of each is in the text that its pass began with,
+    which has the fixes of earlier passes in it."""
+
+
+def fixed(paths: Sequence[str]) -> tuple[FixedFile, ...]:
+    """The files that have a safe fix, with all of their safe fixes applied.
+
+    Files without a safe fix are left out, and so are those that cannot be read: whoever reads
+    them next reports that.
+    """
+    sources = (read(path) for path in paths)
+    files = (_fixed_file(source) for source in sources if isinstance(source, Source))
+    return tuple(file for file in files if file.fixes)
+
+
+@deep
+def _fixed_file(source: Source) -> FixedFile:
+    """The file after as many passes as find a safe fix."""
+    all_fixes: list[Fix] = []
+    for _ in range(_MOST_PASSES):
+        fixes = _safe_fixes(source)
+        if not fixes:
+            break
+        all_fixes += fixes
+        source = Source(source.name, applied(source.span(), fixes))
+    return FixedFile(source.name, source.text, tuple(all_fixes))
+
+
+def _safe_fixes(source: Source) -> list[Fix]:
+    """The safe fixes of all sentences of a file, in the order that `applied` needs."""
+    entries, _ = requirements(source)
+    fixes = [
+        fix
+        for entry in entries
+        if _has_a_sentence(entry)
+        for fix in _safe_fixes_of_sentence(entry.wording)
+    ]
+    return sorted(fixes, key=lambda fix: (fix.span.start, fix.span.end))
+
+
+def _has_a_sentence(requirement: Requirement) -> bool:
+    """Whether its wording is meant as FRETish, so that a fix cannot spoil another text.
+
+    Free text is not. Nor is the wording below a header that does not end: it is the whole file.
+    """
+    unclosed = any(mistake.code is Code.UNCLOSED_HEADER for mistake in requirement.mistakes)
+    return not unclosed and not requirement.is_free_text
+
+
+def _safe_fixes_of_sentence(wording: Span) -> list[Fix]:
+    """Those of one sentence; none where reading it would cost too much."""
+    found = within(wording.end - wording.start, wording, partial(mistakes, wording))
+    if isinstance(found, Diagnostic):
+        return []
+    fixes = (mistake.fix for mistake in found)
+    return [fix for fix in fixes if fix is not None and fix.is_safe]
