@@ -18,11 +18,11 @@ from pathlib import Path
 from compiler.files.records import replace
 from compiler.files.text_files import sha256
 from compiler.project.folder import load
-from compiler.project.paths import beside, requirement_files
-from fretc.audit import fleet
+from compiler.project.paths import requirement_files, sibling_path
+from fretc.audit import dask_executor
 from fretc.audit.evidence.schema import Result
-from fretc.audit.into_store import Session, StoredAudit
-from fretc.audit.many_logs import Engine, audited, locally
+from fretc.audit.into_store import StoredAudit, StoreWriter
+from fretc.audit.many_logs import Engine, audited, local_executor
 from fretc.audit.outputs.summary import summarized
 from fretc.audit.outputs.table import parquet, read, rows
 from fretc.audit.plan import Plan, planned
@@ -34,7 +34,7 @@ RUNS = 10_000
 def plan(requirements: str) -> Plan:
     files = requirement_files(requirements)
     assert not isinstance(files, Diagnostic), files.message
-    made = planned(load(files, beside(requirements, "bindings.toml")))
+    made = planned(load(files, sibling_path(requirements, "bindings.toml")))
     assert isinstance(made, Plan), made
     return made
 
@@ -50,7 +50,7 @@ def linked(log: str, count: int, folder: Path) -> list[str]:
 def timed(judged: Plan, logs: Sequence[str], engine: Engine, folder: Path) -> tuple[float, int]:
     """Wall time of an audit into a store, and how many logs were read for it."""
     start = time.perf_counter()
-    with Session(folder / "evidence", judged, logs, b"benchmark", rehash=False) as session:
+    with StoreWriter(folder / "evidence", judged, logs, b"benchmark", rehash=False) as session:
         audit = session.run(engine, lambda log: None)
     taken = time.perf_counter() - start
     assert isinstance(audit, StoredAudit), audit.message
@@ -67,9 +67,9 @@ def listed(logs: Sequence[str]) -> float:
 
 
 def engines(jobs: int, *, dask: bool) -> dict[str, Engine]:
-    found = {f"{jobs} process{'es' if jobs > 1 else ''}": locally(jobs)}
+    found = {f"{jobs} process{'es' if jobs > 1 else ''}": local_executor(jobs)}
     if dask:
-        there = fleet.engine("dask", jobs)
+        there = dask_executor.engine("dask", jobs)
         assert not isinstance(there, Diagnostic), there.message
         found[f"Dask, {jobs} workers"] = there
     return found

@@ -20,8 +20,8 @@ import numpy as np
 from benchmarks.peers import PEERS, WORKLOADS, Columns, Evaluation, Peer, rate, speed
 from benchmarks.timing import seconds
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
-from compiler.formalization.past import Watch
+from compiler.formalization.formalized import FormalizedRequirement
+from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
 from compiler.targets.python.monitor import text
 from fretc.logs.signals.traces import bits
@@ -38,23 +38,23 @@ STEPS = 200_000
 # What is monitored ----------------------------------------------------------------------------
 
 
-def rule(sentence: str, id: str = "R1") -> Formalized:
+def rule(sentence: str, id: str = "R1") -> FormalizedRequirement:
     made, said = formalize(Requirement(id, Source("b.fret", sentence).span()), None)
     assert made is not None, said
     return made
 
 
-def always(trigger: f.Formula, demanded: f.Formula, id: str = "R1") -> Formalized:
+def always(trigger: f.Formula, demanded: f.Formula, id: str = "R1") -> FormalizedRequirement:
     """`H(trigger -> demanded)` as a monitor: FRETish has no `since` of its own."""
     breach = f.and_(trigger, f.not_(demanded))
-    watch = Watch(trigger, breach, f.FALSE, f.FALSE, f.FALSE, f.FALSE, None, 0, renewed=False)
+    watch = MonitorSpec(trigger, breach, f.FALSE, f.FALSE, f.FALSE, f.FALSE, None, 0, renewed=False)
     return replace(rule("whenever a sw shall immediately satisfy b", id), watch=watch)
 
 
 A, B, C = f.Atom("a"), f.Atom("b"), f.Atom("c")
 
 
-def workload_rules() -> Mapping[str, Formalized]:
+def workload_rules() -> Mapping[str, FormalizedRequirement]:
     return {
         "W1": rule("whenever a sw shall eventually satisfy b"),
         "W2": rule("whenever a sw shall within 10 ticks satisfy b"),
@@ -63,7 +63,7 @@ def workload_rules() -> Mapping[str, Formalized]:
     }
 
 
-def mixed(count: int, names: int = 12) -> list[Formalized]:
+def mixed(count: int, names: int = 12) -> list[FormalizedRequirement]:
     """W5: requirements of many forms, bounds to 1 000, on a few propositions."""
     forms = (
         "whenever p{0} sw shall within {n} ticks satisfy p{1}",
@@ -85,7 +85,7 @@ def mixed(count: int, names: int = 12) -> list[Formalized]:
     return found
 
 
-def monitor(*rules: Formalized) -> Monitor:
+def monitor(*rules: FormalizedRequirement) -> Monitor:
     return load("monitor.py", text(*rules))
 
 

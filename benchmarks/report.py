@@ -17,7 +17,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import decoded
 from compiler.files.text_files import sha256
 from compiler.formalization.record import wording

@@ -14,7 +14,7 @@ from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import decision_diagrams as bdd
 from compiler.targets.python import monitor as monitors
 from fretc.analysis.arena.budget import Budget
@@ -250,7 +250,7 @@ SAFETY = Subject(
 # Suites -----------------------------------------------------------------------------------------
 
 
-def rules(subject: Subject) -> list[Formalized]:
+def rules(subject: Subject) -> list[FormalizedRequirement]:
     """Its requirements."""
     return [rule(f"Q{number}", text) for number, text in enumerate(subject.requirements, 1)]
 

@@ -17,7 +17,7 @@ from itertools import product
 from pathlib import Path
 
 from compiler.formalization import reference
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import meanings
 from compiler.project.folder import load
 from compiler.project.paths import requirement_files
@@ -40,14 +40,14 @@ MORE = (
 Valuation = tuple[bool, ...]
 
 
-def sentences() -> list[Formalized]:
+def sentences() -> list[FormalizedRequirement]:
     """Fifteen of a mission, with bounds of up to 200 ticks, and six more."""
     paths = requirement_files(str(MISSION))
     assert not isinstance(paths, Diagnostic)
     return [*load(paths, None).rules, *(rule(f"X{i}", text) for i, text in enumerate(MORE, 1))]
 
 
-def as_word(rule: Formalized, rows: Sequence[Valuation]) -> Word:
+def as_word(rule: FormalizedRequirement, rows: Sequence[Valuation]) -> Word:
     """Valuations of the atoms of a rule, tick by tick."""
     columns = {
         name: sum(row[place] << tick for tick, row in enumerate(rows))
@@ -56,7 +56,7 @@ def as_word(rule: Formalized, rows: Sequence[Valuation]) -> Word:
     return Word((), columns, len(rows))
 
 
-def by_flips(rule: Formalized) -> Iterator[Word]:
+def by_flips(rule: FormalizedRequirement) -> Iterator[Word]:
     """For each atom a shortest accepted word that one flip of it makes a rejected one."""
     template = reference.template(rule.sentence, rule.ticks or 0)
     letters = meanings(rule.sentence, rule.watched)
@@ -87,7 +87,7 @@ def by_flips(rule: Formalized) -> Iterator[Word]:
             yield as_word(rule, found)
 
 
-def at_random(rule: Formalized, lengths: Sequence[int], seed: int) -> Iterator[Word]:
+def at_random(rule: FormalizedRequirement, lengths: Sequence[int], seed: int) -> Iterator[Word]:
     """Words of the same lengths."""
     drawn = random.Random(f"{rule.id} {seed}")
     for ticks in lengths:
@@ -96,7 +96,9 @@ def at_random(rule: Formalized, lengths: Sequence[int], seed: int) -> Iterator[W
         )
 
 
-def killed(rule: Formalized, wrong: Sequence[Formalized], words: Sequence[Word]) -> int:
+def killed(
+    rule: FormalizedRequirement, wrong: Sequence[FormalizedRequirement], words: Sequence[Word]
+) -> int:
     """How many of the mutants some word kills."""
     own = [judged(rule, word) for word in words]
     return sum(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, cast
 from compiler.logic.printing import is_compound
 
 if TYPE_CHECKING:
-    from compiler.formalization.formalized import Formalized
+    from compiler.formalization.formalized import FormalizedRequirement
     from compiler.targets.target import Target
 
 _MODULES: Mapping[str, str] = {
@@ -55,7 +55,7 @@ class _Targets(Mapping[str, "Target"]):
 TARGETS: Mapping[str, Target] = _Targets()
 
 
-def renamed(rule: Formalized) -> dict[str, dict[str, str]]:
+def renamed(rule: FormalizedRequirement) -> dict[str, dict[str, str]]:
     """Kind of file → name of the user → what it is called there, where that is another name."""
     found: dict[str, dict[str, str]] = {}
     for kind, target in TARGETS.items():

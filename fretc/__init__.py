@@ -4,12 +4,13 @@ The names below are the API; docs/api.md says what they do, and which of their p
 is imported when it is first asked for.
 """
 
+import warnings
 from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from compiler.files.edition import __version__ as __version__
-    from compiler.formalization.formalized import Formalized as Formalized
+    from compiler.files.build_id import __version__ as __version__
+    from compiler.formalization.formalized import FormalizedRequirement as FormalizedRequirement
     from compiler.logic.claims import Proof as Proof
     from compiler.project.folder import Project as Project
     from fretc.api.audits import Audit as Audit
@@ -35,6 +36,7 @@ _HOMES = {
     "Audit": "fretc.api.audits",
     "Diagnostic": "fretish.diagnostics.diagnostic",
     "End": "fretc.api.streams",
+    "FormalizedRequirement": "compiler.formalization.formalized",
     "Formulas": "fretc.api.requirements",
     "Monitor": "fretc.api.monitors",
     "Project": "compiler.project.folder",
@@ -42,10 +44,9 @@ _HOMES = {
     "Refusal": "fretc.api.refusal",
     "Report": "fretc.api.reports",
     "Result": "fretc.audit.evidence.schema",
-    "Formalized": "compiler.formalization.formalized",
     "Stream": "fretc.api.streams",
     "Tick": "fretc.api.streams",
-    "__version__": "compiler.files.edition",
+    "__version__": "compiler.files.build_id",
     "audit_logs": "fretc.api.audits",
     "formalize": "fretc.api.requirements",
     "formulas": "fretc.api.requirements",
@@ -57,11 +58,14 @@ _HOMES = {
 }
 """The module of each name."""
 
+_RENAMED = {"Formalized": "FormalizedRequirement"}
+"""Names of the previous version: each still works, with a `DeprecationWarning`."""
+
 __all__ = [
     "Audit",
     "Diagnostic",
     "End",
-    "Formalized",
+    "FormalizedRequirement",
     "Formulas",
     "Monitor",
     "Project",
@@ -85,6 +89,10 @@ __all__ = [
 
 def __getattr__(name: str) -> object:
     """The value of a name, which stays: it is not asked for again."""
+    if name in _RENAMED:
+        message = f"`fretc.{name}` is now `fretc.{_RENAMED[name]}`"
+        warnings.warn(message, DeprecationWarning, stacklevel=2)
+        return getattr(import_module(__name__), _RENAMED[name])
     if name not in _HOMES:
         raise AttributeError(f"module `fretc` has no attribute `{name}`", name=name)
     value = globals()[name] = getattr(import_module(_HOMES[name]), name)

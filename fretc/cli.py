@@ -16,7 +16,7 @@ from pathlib import Path
 import click
 
 from compiler.emit import TARGETS
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.processes import shield
 from fretc.api.refusal import too_deep
 from fretc.terminal.completion import answered

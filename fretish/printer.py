@@ -10,7 +10,7 @@ from fretish import expressions as e
 from fretish import syntax as s
 from fretish.clock import duration_text
 from fretish.keywords import RESERVED
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 _IFF, _IMPLIES, _XOR, _OR, _AND, _NOT, _COMPARE, _SUM, _PRODUCT, _SIGN, _POWER, _OPERAND = range(12)
 _PLAIN = re.compile(r"[A-Za-z](?:[A-Za-z0-9_.%]*[A-Za-z0-9_%])?")
@@ -36,14 +36,14 @@ _SCOPES = {
 }
 
 
-@deep
+@with_recursion_limit
 def canonical(tree: s.Sentence) -> str:
     """The one wording that all equal trees share: the text that fingerprints are taken of."""
     condition = replace(tree.condition, word="") if tree.condition else None
     return sentence(replace(tree, article=False, condition=condition))
 
 
-@deep
+@with_recursion_limit
 def sentence(tree: s.Sentence) -> str:
     """The wording that `fretc fmt` writes: parsing it gives an equal tree.
 
@@ -111,7 +111,7 @@ def identifier(id: str) -> str:
     return id if plain else f'"{id}"'
 
 
-@deep
+@with_recursion_limit
 def expression(tree: e.Expression) -> str:
     """The text in FRETish; in the language of bindings where FRETish has no such operator."""
     return _at(tree, _IFF)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c.monitor import TARGET
 from compiler.targets.target import Options
 from monitors.kernel import Monitor
@@ -60,7 +60,7 @@ class Source:
     outcomes: tuple[str, ...]
 
     @classmethod
-    def of(cls, *rules: Formalized) -> Source:
+    def of(cls, *rules: FormalizedRequirement) -> Source:
         """One file of all rules."""
         assert [TARGET.refuse(rule) for rule in rules] == [None] * len(rules)
         files = TARGET.emit(rules, Options(one_file=len(rules) > 1))

@@ -9,12 +9,12 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Outcome, Result
 from compiler.targets.javascript.monitor import text as in_javascript
 from fretc.verification.c import language as c
-from fretc.verification.compiled.plan import Checked, Executable, Given, Language
-from fretc.verification.compiled.text import StrangeTextError
+from fretc.verification.compiled.plan import Executable, Language, ParsedSource, SourceText
+from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.tools import ToolError
 from fretc.verification.compiled.verifying import explored
 from fretc.verification.javascript import language as javascript
@@ -38,7 +38,7 @@ REFUTED, REFUSED, SAME = "refuted", "refused", "same"
 KINDS = {Result.COUNTEREXAMPLE: REFUTED, Result.PROVED: SAME, Result.NOT_CHECKED: REFUSED}
 
 
-def edited(monitor: Given, old: str, new: str) -> Given:
+def edited(monitor: SourceText, old: str, new: str) -> SourceText:
     assert monitor.text.count(old) == 1, (old, monitor.text.count(old))
     return replace(monitor, text=monitor.text.replace(old, new))
 
@@ -53,29 +53,33 @@ class Checker:
     language: Language
     folder: Path
 
-    def prepared(self, monitor: Given, *rules: Formalized) -> tuple[Checked, Executable]:
-        """The text, checked and compiled; `StrangeTextError` and `ToolError` say why not."""
+    def prepared(
+        self, monitor: SourceText, *rules: FormalizedRequirement
+    ) -> tuple[ParsedSource, Executable]:
+        """The text, checked and compiled; `UnexpectedLayoutError` and `ToolError` say why not."""
         checked = self.language.checked(monitor, rules)
         program = self.language.tool()
         assert program is not None
         folder = Path(mkdtemp(dir=self.folder))
         return checked, self.language.prepared(program, monitor, checked, folder).executable
 
-    def outcomes(self, monitor: Given, rules: Sequence[Formalized]) -> list[Outcome]:
+    def outcomes(
+        self, monitor: SourceText, rules: Sequence[FormalizedRequirement]
+    ) -> list[Outcome]:
         """Of each requirement of one text."""
         checked, executable = self.prepared(monitor, *rules)
         return [explored(rule, executable, checked.plan(rule), 10**5) for rule in rules]
 
-    def outcome(self, monitor: Given, rule: Formalized) -> Outcome:
+    def outcome(self, monitor: SourceText, rule: FormalizedRequirement) -> Outcome:
         """Of a text of one requirement."""
         (outcome,) = self.outcomes(monitor, [rule])
         return outcome
 
-    def kind(self, monitor: Given, rule: Formalized) -> str:
+    def kind(self, monitor: SourceText, rule: FormalizedRequirement) -> str:
         """Whether it is refuted, refused, or the same as what fretc writes."""
         try:
             return KINDS[self.outcome(monitor, rule).result]
-        except (StrangeTextError, ToolError):
+        except (UnexpectedLayoutError, ToolError):
             return REFUSED
 
 
@@ -85,7 +89,7 @@ class Tongue:
 
     name: str
     language: Language
-    given: Callable[..., Given]
+    given: Callable[..., SourceText]
     """The monitor that fretc writes for some rules."""
     comments: tuple[str, str]
     """Those that are free, and one of them."""
@@ -97,7 +101,7 @@ class Tongue:
     """Mistakes, as what is found and what takes its place."""
     program: str
     """What compiles or runs it."""
-    told: Callable[[Path, Given, Formalized, Rows], list[list[c_monitors.Outcome]]]
+    told: Callable[[Path, SourceText, FormalizedRequirement, Rows], list[list[c_monitors.Outcome]]]
     """What the text tells at each tick, by another program than that of the verification."""
 
     def faults(self, text: str) -> Iterator[str]:
@@ -119,41 +123,41 @@ _BITWISE = ((r"(?<!word) & (?!bit|~)", " | "), (r" \| (?!bit)", " & "))
 """Not of rings, which are as fretc writes them."""
 
 
-def given_c(*rules: Formalized) -> Given:
+def given_c(*rules: FormalizedRequirement) -> SourceText:
     """What `--emit c` writes for them."""
     source = Source.of(*rules)
     header = source.source.removesuffix(".c") + ".h"
-    return Given(source.source, source.texts[source.source], header, source.texts[header])
+    return SourceText(source.source, source.texts[source.source], header, source.texts[header])
 
 
 def _told_by_c(
-    folder: Path, monitor: Given, rule: Formalized, rows: Rows
+    folder: Path, monitor: SourceText, rule: FormalizedRequirement, rows: Rows
 ) -> list[list[c_monitors.Outcome]]:
     source = replace(Source.of(rule), texts=monitor.texts)
     program = c_monitors.compiled(folder, "gcc", source, flags=["-std=c99"])
     return program.run((0, rows))[1][0]
 
 
-def given_rust(*rules: Formalized) -> Given:
+def given_rust(*rules: FormalizedRequirement) -> SourceText:
     """What `--emit rust` writes for them."""
-    return Given("lib.rs", rust_monitors.library(rust_monitors.crate(*rules)))
+    return SourceText("lib.rs", rust_monitors.library(rust_monitors.crate(*rules)))
 
 
 def _told_by_rust(
-    folder: Path, monitor: Given, rule: Formalized, rows: Rows
+    folder: Path, monitor: SourceText, rule: FormalizedRequirement, rows: Rows
 ) -> list[list[c_monitors.Outcome]]:
     return rust_monitors.outcomes(
         folder, [monitor.text], [(0, rows)], lints=["--cap-lints", "warn"]
     )[0]
 
 
-def given_javascript(*rules: Formalized) -> Given:
+def given_javascript(*rules: FormalizedRequirement) -> SourceText:
     """What `--emit js` writes for them."""
-    return Given("monitor.mjs", in_javascript(*rules))
+    return SourceText("monitor.mjs", in_javascript(*rules))
 
 
 def _told_by_javascript(
-    folder: Path, monitor: Given, rule: Formalized, rows: Rows
+    folder: Path, monitor: SourceText, rule: FormalizedRequirement, rows: Rows
 ) -> list[list[c_monitors.Outcome]]:
     (told,) = node.outcomes(folder, [monitor.text], [(0, rows)], "judge")
     return [[_outcome(tick, each) for each in row] for tick, row in enumerate(told)]

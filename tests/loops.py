@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from compiler.targets.python import monitor as target
-from fretc.verification.loop.drive import Channel
+from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.search import Case
 from monitors.interceptor import Options
 from monitors.source_text import interceptor

@@ -11,8 +11,8 @@ from textwrap import indent
 from typing import NamedTuple
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
-from compiler.formalization.past import Watch
+from compiler.formalization.formalized import FormalizedRequirement
+from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor.statements import below_docstring
@@ -47,7 +47,7 @@ class Step(NamedTuple):
 
 
 @lru_cache(maxsize=4096)
-def rule(sentence: str, id: str = "R1", clock: Clock | None = None) -> Formalized:
+def rule(sentence: str, id: str = "R1", clock: Clock | None = None) -> FormalizedRequirement:
     """The rule of a sentence; tests that ask for the same one share it."""
     source = Source("r.fret", sentence)
     declared = Declarations(Source("bindings.toml", ""), clock, {}, {}) if clock else None
@@ -143,5 +143,5 @@ def with_step(text: str) -> str:
 def of_formula(formula: f.Formula) -> Monitor:
     """A monitor whose trigger is a past-time formula and whose answer is its negation."""
     no = f.FALSE
-    watch = Watch(formula, no, no, no, no, no, f.Not(formula), None, renewed=False)
+    watch = MonitorSpec(formula, no, no, no, no, no, f.Not(formula), None, renewed=False)
     return load("monitor.py", target.text(replace(rule("the sw shall satisfy q"), watch=watch)))

@@ -9,12 +9,12 @@ from functools import cache
 import spot
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
 from fretc.analysis.analysis import Options, analyze
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.findings import Analysis
-from fretc.analysis.stage import Stage, stage
+from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
@@ -24,14 +24,14 @@ ROLES: Roles = {**dict.fromkeys(INPUTS, Role.INPUT), **dict.fromkeys(OUTPUTS, Ro
 
 
 @cache
-def rule(id: str, sentence: str) -> Formalized:
+def rule(id: str, sentence: str) -> FormalizedRequirement:
     """A rule, without any bindings."""
     found, diagnostics = formalize(Requirement(id, Source(f"{id}.fret", sentence).span()), None)
     assert found is not None, (sentence, diagnostics)
     return found
 
 
-def rules(*sentences: str) -> tuple[Formalized, ...]:
+def rules(*sentences: str) -> tuple[FormalizedRequirement, ...]:
     """Rules that are called R1, R2, ..."""
     return tuple(rule(f"R{i}", f"{sentence}") for i, sentence in enumerate(sentences, 1))
 
@@ -43,7 +43,7 @@ def roles(inputs: Sequence[str], outputs: Sequence[str]) -> Roles:
 
 def staged(
     *sentences: str, roles: Roles = ROLES, assumed: Sequence[str] = (), as_fret: bool = False
-) -> Stage:
+) -> RealizabilityProblem:
     """Their stage."""
     assumptions = [rule(f"A{i}", sentence) for i, sentence in enumerate(assumed, 1)]
     return stage(rules(*sentences), assumptions, roles, as_fret=as_fret)
@@ -66,7 +66,9 @@ def conflicts(analysis: Analysis) -> list[tuple[str, ...]]:
     return [each.requirements for each in analysis.conflicts]
 
 
-def synthesized(rules: Sequence[Formalized], assumptions: Sequence[Formalized] = ()) -> bool:
+def synthesized(
+    rules: Sequence[FormalizedRequirement], assumptions: Sequence[FormalizedRequirement] = ()
+) -> bool:
     """What Spot says of the future-time formulas."""
     kept, given = (
         " & ".join(f"({printing.future(rule.ft_infinite)})" for rule in some) or "1"
@@ -76,7 +78,7 @@ def synthesized(rules: Sequence[Formalized], assumptions: Sequence[Formalized] =
     return bool(spot.solve_game(spot.ltl_to_game(formula, list(OUTPUTS))))
 
 
-def satisfiable(rules: Sequence[Formalized]) -> bool:
+def satisfiable(rules: Sequence[FormalizedRequirement]) -> bool:
     """Whether any run keeps them, as Spot says."""
     formulas = (f"({printing.future(rule.ft_infinite)})" for rule in rules)
     return not spot.translate(" & ".join(formulas)).is_empty()

@@ -8,7 +8,7 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.rust.monitor import TARGET
 from compiler.targets.target import Options
 from tests.c_monitors import VERDICTS, Outcome, Reading, Rows
@@ -18,7 +18,7 @@ STRICT = ["--edition", "2021", "-D", "warnings", "-C", "debug-assertions=on"]
 _TRUTHS = (False, True, None)
 
 
-def crate(*rules: Formalized) -> Mapping[str, str]:
+def crate(*rules: FormalizedRequirement) -> Mapping[str, str]:
     """The files of one crate."""
     assert [TARGET.refuse(rule) for rule in rules] == [None] * len(rules)
     files = TARGET.emit(rules, Options(one_file=len(rules) > 1))

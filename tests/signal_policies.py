@@ -18,7 +18,7 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
 from compiler.signals.policies import meaning
 from fretc.logs.signals.measures import Scope
@@ -345,7 +345,7 @@ def _arrays(near: Sequence[Any], choose: random.Random) -> list[Any]:
     ]
 
 
-def numbered(case: Case, number: int) -> Formalized:
+def numbered(case: Case, number: int) -> FormalizedRequirement:
     """A rule that watches the case's proposition, over signals that no other case has."""
     names = {signal.name: f"{signal.name}{number}" for signal in case.signals}
 
@@ -388,17 +388,17 @@ def audited_truth(
 def number_of(tree: n.Number, row: Mapping[str, Any]) -> Any:
     """The value of a number; `row` has what `readings.number` takes."""
     match tree:
-        case n.Given(name):
+        case n.SignalValue(name):
             return readings.number(row[name], name)
-        case n.Fixed(value):
+        case n.Constant(value):
             return readings.exact(str(value))
-        case n.Applied(function, arg):
+        case n.UnaryCall(function, arg):
             return getattr(readings, function)(number_of(arg, row))
-        case n.Computed(function, left, right) | n.Chosen(function, left, right):
+        case n.Computed(function, left, right) | n.MinMax(function, left, right):
             return getattr(readings, function)(number_of(left, row), number_of(right, row))
         case n.Power(base, times):
             return readings.power(number_of(base, row), times)
-        case n.InBase(arg, scale):
+        case n.ToBaseUnit(arg, scale):
             return readings.in_base(number_of(arg, row), readings.exact(str(scale)))
         case _:
             assert_never(tree)
@@ -412,7 +412,7 @@ def truth_of(tree: n.Truth, row: Mapping[str, Any]) -> Truth:
         case n.Flag(name):
             number = readings.number(row[name], name)
             return None if number not in (0, 1) else number == 1
-        case n.Compared(sign, left, right):
+        case n.Comparison(sign, left, right):
             return readings.compared(number_of(left, row), sign, number_of(right, row))
         case n.Not(arg):
             value = truth_of(arg, row)
@@ -423,10 +423,10 @@ def truth_of(tree: n.Truth, row: Mapping[str, Any]) -> Truth:
         case n.Some(args):
             values = [truth_of(arg, row) for arg in args]
             return True if True in values else None if None in values else False
-        case n.Same(left, right):
+        case n.Iff(left, right):
             first, second = truth_of(left, row), truth_of(right, row)
             return None if first is None or second is None else first == second
-        case n.Held():
+        case n.HeldFor():
             raise AssertionError("not a truth of one instant")
         case _:
             assert_never(tree)

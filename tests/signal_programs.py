@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from compiler.emit import TARGETS
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.policies import policy
 from compiler.targets.target import Options
 from tests.c_monitors import CHECKED, STRICT
@@ -55,7 +55,7 @@ class Language:
         return self.target
 
     def runner(
-        self, folder: Path, rules: Sequence[Formalized], text: str
+        self, folder: Path, rules: Sequence[FormalizedRequirement], text: str
     ) -> Callable[[bytes], bytes]:
         """What runs the program over the monitor of all rules."""
         files = TARGETS[self.target].emit(rules, Options(one_file=True))

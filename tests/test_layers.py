@@ -37,7 +37,7 @@ fretc.report.model  fretc.report.pictures  fretc.report.set_analysis
 fretc.report.sections  fretc.report.front
 fretc.report.across  fretc.report.page  fretc.report.forms  fretc.report  fretc.trends
 simulation.world  simulation.nodes  simulation
-fretc.play  fretc.terminal  fretc.campaigns  fretc.testing.staging
+fretc.play  fretc.terminal  fretc.campaigns  fretc.testing.log_synthesis
 fretc.watch.sources  fretc.watch  fretc.watch.publishing  fretc.api  fretc.commands  fretc
 """.split()
 ROOMS = {package.partition(".")[0] for package in ORDER}
@@ -78,8 +78,8 @@ DOORS = {
         "fretc/audit/store/tables.py",
     },
     "duckdb": {"fretc/audit/outputs/summary.py"},
-    "distributed": {"fretc/audit/fleet.py"},
-    "dask": {"fretc/audit/fleet.py"},
+    "distributed": {"fretc/audit/dask_executor.py"},
+    "dask": {"fretc/audit/dask_executor.py"},
     "mujoco": {"simulation/world/robot.py"},
     "matplotlib": {"simulation/picture.py"},
     "msgspec": {"compiler/files/records.py"},
@@ -87,7 +87,7 @@ DOORS = {
         "fretc/logs/messages/idl.py",
         "fretc/logs/messages/ros2_types.py",
         "fretc/logs/storage/bags.py",
-        "fretc/testing/staging/messages.py",
+        "fretc/testing/log_synthesis/messages.py",
         "simulation/nodes/messages.py",
         "simulation/recording.py",
     },

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from benchmarks.monitoring import always, rule
 from benchmarks.peers import WORKLOADS
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 
 KINDS = ("W1", "W2", "W3", "W4")
@@ -31,7 +31,7 @@ class Demand:
     """The propositions that are its `a`, `b` and `c`."""
     bound: int = 0
 
-    def rule(self) -> Formalized:
+    def rule(self) -> FormalizedRequirement:
         """As fretc takes it."""
         a, b, c = (self.names.get(each, "") for each in "abc")
         match self.kind:

@@ -19,7 +19,7 @@ from compiler.agents.psl_printing import property_text
 from compiler.agents.vacuity import bare, demanded
 from compiler.files import records
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from compiler.logic import spot as automata
 from compiler.logic.claims import (
@@ -37,7 +37,7 @@ from compiler.logic.claims import (
 from compiler.logic.kripke import Explored, Lasso, TooManyStatesError, check
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 STATES = 200_000
 """The exploration stops at so many states, unless the caller asks for more."""
@@ -47,7 +47,7 @@ _ATOM = re.compile(r"(?P<modality>[A-Za-z]+)\((?P<agent>\w+),(?P<literal>.*)\)",
 _PERCEPT = re.compile(r"[a-z][A-Za-z0-9_]*(?:\([A-Za-z0-9_,. -]+\))?", re.ASCII)
 
 
-@deep
+@with_recursion_limit
 def checked(
     agent: Source, properties: Source, percepts: Sequence[str], limit: int = STATES
 ) -> tuple[Proof, ...] | Diagnostic:
@@ -66,9 +66,12 @@ def checked(
     return _checked(agent, properties, percepts, limit, None)
 
 
-@deep
+@with_recursion_limit
 def agent_evidence(
-    rule: Formalized, files: Mapping[str, str], percepts: Sequence[str], limit: int = STATES
+    rule: FormalizedRequirement,
+    files: Mapping[str, str],
+    percepts: Sequence[str],
+    limit: int = STATES,
 ) -> tuple[Proof, ...]:
     """Evidence for the texts of a bundle.
 

@@ -27,7 +27,7 @@ from compiler.agents.gwendolen_errors import (
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.reading.grammars import Grammar
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 
 Sign = Literal["+", "-"]
 
@@ -94,7 +94,7 @@ _MOST_LEVELS = 50
 
 def read(source: Source) -> Agent | Diagnostic:
     """The agent of a file; or F610 for what MCAPL misreads, F611 for what the model leaves out."""
-    return within(len(source.text), source.span(0, 0), lambda: _read(source))
+    return with_budget(len(source.text), source.span(0, 0), lambda: _read(source))
 
 
 def _read(source: Source) -> Agent | Diagnostic:

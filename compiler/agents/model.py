@@ -35,7 +35,7 @@ SILENT = ("print", "remove_shared", "assert_shared")
 Beliefs = frozenset[str]
 
 
-class Stage(StrEnum):
+class ReasoningStep(StrEnum):
     """What the agent does next."""
 
     BEGIN = "begin"
@@ -80,7 +80,7 @@ class State:
     """Beliefs that the agent has added, or began with."""
     current: Intention | None
     waiting: tuple[Intention, ...]
-    stage: Stage
+    stage: ReasoningStep
     last: str | None
     """The last action that was not printing."""
     in_turn: bool = False
@@ -107,23 +107,23 @@ class Model:
     def initial(self) -> State:
         """Nothing has been drawn yet."""
         own = frozenset(self.agent.beliefs)
-        return State(frozenset(), False, frozenset(), own, None, (), Stage.BEGIN, None)
+        return State(frozenset(), False, frozenset(), own, None, (), ReasoningStep.BEGIN, None)
 
     def steps(self, state: State) -> Iterator[Step]:
         """Everything that may happen next; at least one thing."""
         match state.stage:
-            case Stage.BEGIN:
+            case ReasoningStep.BEGIN:
                 yield from self._drawn(state)
                 yield from self._drawn(replace(state, in_turn=True))
-            case Stage.SLEEP:
+            case ReasoningStep.SLEEP:
                 yield from self._drawn(state)
-            case Stage.PERCEIVE:
+            case ReasoningStep.PERCEIVE:
                 yield from _perceived(state)
-            case Stage.SELECT:
+            case ReasoningStep.SELECT:
                 yield _selected(state)
-            case Stage.PLAN:
+            case ReasoningStep.PLAN:
                 yield self._planned(state)
-            case Stage.EXECUTE:
+            case ReasoningStep.EXECUTE:
                 yield from self._executed(state)
 
     def explored(self, limit: int) -> Explored[State]:
@@ -158,7 +158,7 @@ class Model:
     def _drawn(self, state: State) -> Iterator[Step]:
         for percepts in self._draws():
             after = _with_percepts(state, percepts)
-            stage = Stage.SLEEP if after.up_to_date else Stage.PERCEIVE
+            stage = ReasoningStep.SLEEP if after.up_to_date else ReasoningStep.PERCEIVE
             yield f"the environment shows {_set(percepts)}", replace(after, stage=stage)
 
     def _draws(self) -> Iterator[Beliefs]:
@@ -169,7 +169,7 @@ class Model:
         intention = state.current
         assert intention is not None
         if intention.deeds:
-            return "goes on", replace(state, stage=Stage.EXECUTE)
+            return "goes on", replace(state, stage=ReasoningStep.EXECUTE)
         for plan in self.agent.plans:
             fits = all((g.belief in state.beliefs) is g.positive for g in plan.guards)
             if plan.event != intention.event or not fits:
@@ -178,16 +178,16 @@ class Model:
                 break
             chosen = replace(intention, deeds=plan.deeds)
             description = f"plans {intention.event}"
-            return description, replace(state, current=chosen, stage=Stage.EXECUTE)
+            return description, replace(state, current=chosen, stage=ReasoningStep.EXECUTE)
         description = f"drops {intention.event}: there is nothing to do"
-        return description, replace(state, current=None, stage=Stage.PERCEIVE)
+        return description, replace(state, current=None, stage=ReasoningStep.PERCEIVE)
 
     def _executed(self, state: State) -> Iterator[Step]:
         intention = state.current
         assert intention is not None
         deed, *rest = intention.deeds
         remaining = replace(intention, deeds=tuple(rest)) if rest else None
-        after = replace(state, current=remaining, stage=Stage.PERCEIVE)
+        after = replace(state, current=remaining, stage=ReasoningStep.PERCEIVE)
         match deed:
             case Action(name) if name.partition("(")[0] in SILENT:
                 printing = name.partition("(")[0] == "print"
@@ -221,7 +221,7 @@ def _perceived(state: State) -> Iterator[Step]:
     """Beliefs without a percept go first; then beliefs of new percepts come."""
     gone = [Change("-", belief) for belief in sorted(state.perceived - state.percepts)]
     come = [Change("+", belief) for belief in sorted(state.percepts - state.perceived)]
-    done = replace(state, up_to_date=True, stage=Stage.SELECT)
+    done = replace(state, up_to_date=True, stage=ReasoningStep.SELECT)
     if state.up_to_date or not (gone or come):
         yield "perceives nothing new", done
     elif state.in_turn:
@@ -260,8 +260,8 @@ def _believed(state: State, change: Change) -> tuple[State, ...]:
 def _selected(state: State) -> Step:
     queue = state.waiting if state.current is None else (*state.waiting, state.current)
     if not queue:
-        return "falls asleep", replace(state, stage=Stage.SLEEP)
-    after = replace(state, current=queue[0], waiting=queue[1:], stage=Stage.PLAN)
+        return "falls asleep", replace(state, stage=ReasoningStep.SLEEP)
+    after = replace(state, current=queue[0], waiting=queue[1:], stage=ReasoningStep.PLAN)
     return f"turns to {queue[0].event}", after
 
 

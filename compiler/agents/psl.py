@@ -13,12 +13,12 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from compiler.agents.psl_grammar import JoinedText, MisreadError, formula, misread
+from compiler.agents.psl_grammar import AjpfDivergenceError, JoinedText, formula, misread
 from compiler.logic.formula import Formula
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
-from fretish.reading.limits import within
-from fretish.reading.recursion import deep
+from fretish.reading.limits import with_budget
+from fretish.reading.recursion import with_recursion_limit
 
 KEY = re.compile(r"[A-Za-z0-9_.-]+")
 """What can stand in `target.args` as the key of a property."""
@@ -41,13 +41,13 @@ class Property:
     """Warnings about properties that probably do not mean what their author intends."""
 
 
-@deep
+@with_recursion_limit
 def read(source: Source) -> tuple[Property, ...] | Diagnostic:
     """All properties of a file, in its order; or F603 for the first thing that AJPF would misread.
 
     A file of comments has none.
     """
-    return within(len(source.text), source.span(0, 0), lambda: _read(source))
+    return with_budget(len(source.text), source.span(0, 0), lambda: _read(source))
 
 
 def _read(source: Source) -> tuple[Property, ...] | Diagnostic:
@@ -62,7 +62,7 @@ def _read(source: Source) -> tuple[Property, ...] | Diagnostic:
                     f"AJPF takes the last one; the first is in line {first[key.text].line}",
                 )
         return tuple(_property(key, text) for key, text in keyed)
-    except MisreadError as error:
+    except AjpfDivergenceError as error:
         return error.diagnostic
 
 

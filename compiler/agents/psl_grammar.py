@@ -72,7 +72,7 @@ _DROPPED = {
 }
 
 
-class MisreadError(Exception):
+class AjpfDivergenceError(Exception):
     """AJPF would misread the text."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
@@ -80,9 +80,9 @@ class MisreadError(Exception):
         self.diagnostic = diagnostic
 
 
-def misread(message: str, span: Span, fix: str) -> MisreadError:
+def misread(message: str, span: Span, fix: str) -> AjpfDivergenceError:
     """F603, to be raised."""
-    return MisreadError(Diagnostic(Code.BAD_PROPERTY, message, span, fix))
+    return AjpfDivergenceError(Diagnostic(Code.BAD_PROPERTY, message, span, fix))
 
 
 class JoinedText:
@@ -116,7 +116,7 @@ def formula(text: JoinedText) -> tuple[f.Formula, tuple[Span, ...]]:
     """The formula of one property, and the strings in it.
 
     Raises:
-        MisreadError: AJPF would repair the text, drop a part of it, or crash.
+        AjpfDivergenceError: AJPF would repair the text, drop a part of it, or crash.
     """
     reader = _Reader(deque(_tokens(text)), text.span(0, 0))
     tree = reader.formula()
@@ -249,7 +249,7 @@ class _Reader:
                 "leave out those that are not needed",
             )
 
-    def _no_formula(self, token: _Token) -> MisreadError:
+    def _no_formula(self, token: _Token) -> AjpfDivergenceError:
         if token.kind == "end":
             return misread("a formula is missing", token.span, "write it behind the operator")
         fix = _DROPPED.get(token.text, "an atom is `B(agent,belief)`")

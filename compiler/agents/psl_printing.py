@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from compiler.logic import formula as f
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 
-@deep
+@with_recursion_limit
 def property_text(formula: f.Formula, spell: Callable[[str], str]) -> str:
     """The formula in AJPF's language.
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import MOST_ATOMS, excluded, temporal_predicate
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
@@ -16,15 +16,15 @@ from compiler.logic.evaluation import evaluate
 from compiler.logic.orders import Exclusion, only_possible
 from fretish import expressions as e
 from fretish.checking import conditions
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ScopeKind
 
 _ByFirst = Mapping[str, Sequence[Exclusion]]
 """What cannot be, by the first comparison: each part looks only at what speaks of it."""
 
 
-@deep
-def constant_parts(rule: Formalized) -> tuple[tuple[e.Expression, bool], ...]:
+@with_recursion_limit
+def constant_parts(rule: FormalizedRequirement) -> tuple[tuple[e.Expression, bool], ...]:
     """Each part that has one truth value whatever is measured, and which; none within another.
 
     The condition of a scope is looked at together with its mode.

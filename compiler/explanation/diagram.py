@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import assert_never
 
-from compiler.explanation.windows import Column, Need, Window, intervals, windows
-from compiler.formalization.formalized import Formalized
+from compiler.explanation.windows import Column, Expectation, ObligationWindow, intervals, windows
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.reference import Template, template
 from fretish import syntax as s
 from fretish.meaning import span as in_ticks
@@ -61,7 +61,7 @@ class Lane:
     note: str
     """What a bar in it means."""
     stretches: tuple[Stretch, ...]
-    need: Need | None = None
+    need: Expectation | None = None
     """For `Kind.NEED`."""
     trigger: int | None = None
     """The tick of the trigger that asks for it, where there are several."""
@@ -98,11 +98,11 @@ class Diagram:
     """Nanoseconds of a tick, where a clock says it."""
     lanes: tuple[Lane, ...]
     trace: Trace
-    windows: tuple[Window, ...]
+    windows: tuple[ObligationWindow, ...]
     """What the triggers in the picture ask for."""
 
 
-def diagram(rule: Formalized) -> Diagram:
+def diagram(rule: FormalizedRequirement) -> Diagram:
     """The picture of a formalized sentence, whatever its bound."""
     drawn = template(rule.sentence, rule.ticks or 0)
     trace = _trace(drawn)
@@ -182,7 +182,11 @@ def _mode(scope: ScopeKind | None, t: int, left: int, right: int) -> bool:
 
 
 def _lanes(
-    rule: Formalized, drawn: Template, trace: Trace, found: Sequence[Window], end: int
+    rule: FormalizedRequirement,
+    drawn: Template,
+    trace: Trace,
+    found: Sequence[ObligationWindow],
+    end: int,
 ) -> Iterator[Lane]:
     """From above: where, when, until when, and what."""
     sentence = rule.written
@@ -203,7 +207,9 @@ def _lanes(
     yield from _needs(rule, drawn, found, end)
 
 
-def _needs(rule: Formalized, drawn: Template, found: Sequence[Window], end: int) -> Iterator[Lane]:
+def _needs(
+    rule: FormalizedRequirement, drawn: Template, found: Sequence[ObligationWindow], end: int
+) -> Iterator[Lane]:
     q = expression(rule.written.response)
     several = len(found) > 1
     for window in found:
@@ -233,14 +239,14 @@ def _goes_on(drawn: Template, last: int, end: int) -> bool:
             assert_never(extent)
 
 
-def _need(single: bool, need: Need) -> str:
+def _need(single: bool, need: Expectation) -> str:
     if single:
-        return "must be true" if need in (Need.ALL, Need.SOME) else "must be false"
+        return "must be true" if need in (Expectation.ALL, Expectation.SOME) else "must be false"
     return {
-        Need.ALL: "must be true throughout",
-        Need.SOME: "must be true at least once",
-        Need.NONE: "must be false throughout",
-        Need.MISS: "must be false at least once",
+        Expectation.ALL: "must be true throughout",
+        Expectation.SOME: "must be true at least once",
+        Expectation.NONE: "must be false throughout",
+        Expectation.MISS: "must be false at least once",
     }[need]
 
 

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from itertools import pairwise
 
 from compiler.explanation.diagram import Diagram, Kind, Lane, Stretch, words
-from compiler.explanation.windows import Need
+from compiler.explanation.windows import Expectation
 from compiler.files.templating import render
 from fretish.clock import in_words
 from fretish.diagnostics.rendering import visible
@@ -66,7 +66,7 @@ def shortened(text: str, most: int) -> str:
 # Characters -------------------------------------------------------------------------------------
 
 _FILLS = {Kind.MODE: "─", Kind.SCOPE: "━", Kind.CONDITION: "─", Kind.STOP: "─", Kind.BOUND: "╌"}
-_NEEDS = {Need.ALL: "█", Need.SOME: "▒", Need.NONE: "/", Need.MISS: "░"}
+_NEEDS = {Expectation.ALL: "█", Expectation.SOME: "▒", Expectation.NONE: "/", Expectation.MISS: "░"}
 _NAMES = 26
 _EMPTY = "·"
 

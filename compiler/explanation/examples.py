@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from compiler.explanation.shortest_words import Move, Run, Waypoint, Words
 from compiler.explanation.windows import has_deadline, kept
 from compiler.formalization import reference as counters
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import (
     MOST_ATOMS,
     Valuation,
@@ -68,7 +68,7 @@ class Examples:
     """Whether numbers make the traces was not decided."""
 
 
-def examples(rule: Formalized, wanted: int = WANTED) -> Examples:
+def examples(rule: FormalizedRequirement, wanted: int = WANTED) -> Examples:
     """The traces of a rule: at most so many of either kind, the shortest ones first."""
     predicate = temporal_predicate(rule.sentence)
     if predicate is not None:
@@ -106,7 +106,9 @@ class _Chosen:
     """Of a letter that no real numbers make."""
 
 
-def _chosen(rule: Formalized, atoms: Sequence[str], every: Mapping[Valuation, Letter]) -> _Chosen:
+def _chosen(
+    rule: FormalizedRequirement, atoms: Sequence[str], every: Mapping[Valuation, Letter]
+) -> _Chosen:
     """For each letter the one with the fewest true atoms that real numbers make."""
     if not comparisons(rule):
         return _Chosen(_quiet_first(every))

@@ -12,7 +12,7 @@ from compiler.explanation.diagram import Diagram, Lane, diagram, words
 from compiler.explanation.examples import Example, Examples, examples
 from compiler.explanation.reasons import why
 from compiler.formalization import record
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import Valuation, meanings
 from compiler.logic.definition import holds
 from compiler.logic.formula import longest_bound
@@ -20,7 +20,7 @@ from compiler.targets import ltl
 from fretish import syntax as s
 from fretish.diagnostics import signs
 from fretish.diagnostics.rendering import visible
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 SCHEMA = "fretc-explanation-1"
 
@@ -52,7 +52,7 @@ class Shown:
 class Explanation:
     """Everything about a requirement, in words."""
 
-    rule: Formalized
+    rule: FormalizedRequirement
     picture: Diagram
     propositions: tuple[str, ...]
     """In the order of the values of a row."""
@@ -60,8 +60,8 @@ class Explanation:
     notes: tuple[str, ...]
 
 
-@deep
-def explanation(rule: Formalized) -> Explanation:
+@with_recursion_limit
+def explanation(rule: FormalizedRequirement) -> Explanation:
     """Explain a formalized requirement; every trace in it has been checked."""
     found = examples(rule)
     every = (*found.satisfied, *found.violated)
@@ -73,7 +73,7 @@ def explanation(rule: Formalized) -> Explanation:
     return Explanation(rule, diagram(rule), found.atoms, shown, notes)
 
 
-def _notes(rule: Formalized, found: Examples) -> Iterator[str]:
+def _notes(rule: FormalizedRequirement, found: Examples) -> Iterator[str]:
     if found.note:
         yield f"no traces are shown: {found.note}"
         return
@@ -108,7 +108,7 @@ _CHECKED = 30
 """Ticks up to which the slow definition of the operators checks a trace, too."""
 
 
-def _check(rule: Formalized, atoms: Sequence[str], example: Example) -> None:
+def _check(rule: FormalizedRequirement, atoms: Sequence[str], example: Example) -> None:
     """The formulas say of the trace what the automaton does.
 
     Spot has the word of the endless trace, where the bound is small enough for it.
@@ -127,7 +127,9 @@ def _check(rule: Formalized, atoms: Sequence[str], example: Example) -> None:
             assert on_all_of_it is example.satisfied
 
 
-def _shown(rule: Formalized, letters: Mapping[Valuation, Any], example: Example) -> Shown:
+def _shown(
+    rule: FormalizedRequirement, letters: Mapping[Valuation, Any], example: Example
+) -> Shown:
     prefix = [letters[values] for values in example.prefix]
     loop = [letters[values] for values in example.loop]
     ends = not loop and example.decided is None

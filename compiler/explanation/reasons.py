@@ -6,8 +6,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
-from compiler.explanation.windows import Column, Need, Part, Window, intervals, need, windows
-from compiler.formalization.formalized import Formalized
+from compiler.explanation.windows import (
+    Column,
+    Expectation,
+    ObligationWindow,
+    TickRange,
+    intervals,
+    need,
+    windows,
+)
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.reference import Letter, Template, template
 from fretish import syntax as s
 from fretish.meaning import span as in_ticks
@@ -19,7 +27,7 @@ _MOST = 2
 
 
 def why(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     prefix: Sequence[Letter],
     loop: Sequence[Letter] = (),
     *,
@@ -55,7 +63,7 @@ def why(
     return f"{'; '.join([*sentences, *rest])}{teller.bound()}"
 
 
-def _nothing(rule: Formalized, counted: Template, m: Column) -> str:
+def _nothing(rule: FormalizedRequirement, counted: Template, m: Column) -> str:
     """No demand begins."""
     scope, condition = rule.written.scope, rule.written.condition
     if not intervals(counted.scope, m):
@@ -69,7 +77,7 @@ def _nothing(rule: Formalized, counted: Template, m: Column) -> str:
 class _Teller:
     """What is known of one trace."""
 
-    rule: Formalized
+    rule: FormalizedRequirement
     counted: Template
     q: Column
     """Of the ticks that are shown, and of those that follow."""
@@ -78,7 +86,7 @@ class _Teller:
     endless: bool
     """Whether what follows is a loop that matters."""
 
-    def sentence(self, window: Window, *, kept: bool) -> str:
+    def sentence(self, window: ObligationWindow, *, kept: bool) -> str:
         """`triggered at tick 1, ...`."""
         begun = "triggered" if self.rule.sentence.condition else "begins"
         start = f"{begun} at tick {window.trigger}"
@@ -122,10 +130,10 @@ class _Teller:
     def _hit(self, first: int, *, value: bool) -> int | None:
         return next((t for t in range(first, len(self.q)) if self.q[t] is value), None)
 
-    def _kept(self, part: Part, window: Window) -> str:
+    def _kept(self, part: TickRange, window: ObligationWindow) -> str:
         value = _wanted(part)
         clause = f"{self._name} is {str(value).lower()}"
-        if part.need in (Need.SOME, Need.MISS):
+        if part.need in (Expectation.SOME, Expectation.MISS):
             hit = self._hit(part.first, value=value)
             assert hit is not None
             return f"{clause} at tick {hit}, {_later(hit - window.trigger)}"
@@ -133,7 +141,7 @@ class _Teller:
             return f"{clause} from tick {part.first} on"
         return f"{clause} at {_ticks(part.first, part.last)}{self._end(part, window)}"
 
-    def _end(self, part: Part, window: Window) -> str:
+    def _end(self, part: TickRange, window: ObligationWindow) -> str:
         """What ends a demand that is not counted."""
         if part.last < window.right:
             return f", until {self._stop}" if self._stops else ""
@@ -141,7 +149,7 @@ class _Teller:
             return ""
         return f", where the {'scope' if self._is_closed(window) else 'run'} ends"
 
-    def _is_complete(self, part: Part, window: Window) -> bool:
+    def _is_complete(self, part: TickRange, window: ObligationWindow) -> bool:
         """Whether the demand would end there in a longer interval, too."""
         match self._extent:
             case Extent.TRIGGER | Extent.NEXT:
@@ -153,16 +161,16 @@ class _Teller:
             case _:
                 assert_never(self._extent)
 
-    def _is_closed(self, window: Window) -> bool:
+    def _is_closed(self, window: ObligationWindow) -> bool:
         return window.right < len(self.q) - 1
 
-    def _broken(self, part: Part, window: Window) -> str:
+    def _broken(self, part: TickRange, window: ObligationWindow) -> str:
         value = _wanted(part)
         wanted, opposite = str(value).lower(), str(not value).lower()
         clause = f"{self._name} is {opposite}"
         if part.last < part.first:
             return f"{self._stop} is true at that same tick, before {self._name} is {wanted}"
-        if part.need in (Need.ALL, Need.NONE):
+        if part.need in (Expectation.ALL, Expectation.NONE):
             at = self._hit(part.first, value=not value)
             assert at is not None
             later = f", {_later(at - window.trigger)}" if at > window.trigger else ""
@@ -177,7 +185,7 @@ class _Teller:
             end = f", and then {self._stop} is true"
         return f"{clause} at {_ticks(part.first, part.last)}{end}"
 
-    def _must(self, part: Part, wanted: str) -> str:
+    def _must(self, part: TickRange, wanted: str) -> str:
         match self._extent:
             case Extent.LAST:
                 return f", the last tick; it must be {wanted} there"
@@ -192,7 +200,7 @@ class _Teller:
             case _:
                 assert_never(self._extent)
 
-    def _spared(self, window: Window) -> str:
+    def _spared(self, window: ObligationWindow) -> str:
         """Why a trigger asks for nothing, or for nothing more."""
         match self._extent:
             case Extent.STOP:
@@ -209,10 +217,10 @@ class _Teller:
             case _:
                 assert_never(self._extent)
 
-    def _unstopped(self, window: Window) -> str:
+    def _unstopped(self, window: ObligationWindow) -> str:
         """The stop condition comes at once, or not at all, or after the response."""
         negated = self.counted.scope is not None and self.counted.scope.negates
-        if need(self.counted) in (Need.ALL, Need.NONE):
+        if need(self.counted) in (Expectation.ALL, Expectation.NONE):
             return f"{self._stop} is true at that same tick: nothing is required"
         hit = self._hit(window.trigger, value=not negated)
         if hit is None or hit > self.shown:
@@ -221,7 +229,7 @@ class _Teller:
         later = _later(hit - window.trigger)
         return f"{self._name} is {value} at tick {hit}, {later}, and {self._stop} not before"
 
-    def _too_short(self, window: Window, ticks: int, *, wanted: bool) -> str:
+    def _too_short(self, window: ObligationWindow, ticks: int, *, wanted: bool) -> str:
         """The interval ends before the deadline, with the response or without it."""
         hit = self._hit(window.trigger, value=wanted)
         if hit is not None and hit <= window.right:
@@ -235,8 +243,8 @@ class _Teller:
         )
 
 
-def _wanted(part: Part) -> bool:
-    return part.need in (Need.ALL, Need.SOME)
+def _wanted(part: TickRange) -> bool:
+    return part.need in (Expectation.ALL, Expectation.SOME)
 
 
 def _later(ticks: int) -> str:

@@ -9,7 +9,7 @@ what no finite run can violate is a liveness property.
 from __future__ import annotations
 
 from compiler.formalization.anticipation import SHORT
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import occurring, temporal_predicate
 from compiler.formalization.reference import BROKEN, TooManyStatesError, explore, template
 from compiler.logic.formula import FALSE
@@ -18,7 +18,7 @@ from fretish.clock import End
 _MOST_STATES = 500
 
 
-def is_violable(rule: Formalized) -> bool:
+def is_violable(rule: FormalizedRequirement) -> bool:
     """Whether a run can get the verdict `violated`; where that is not found out, it can."""
     watch = rule.watch
     if rule.clock is not None and rule.clock.end is End.VIOLATED and watch.owed != FALSE:
@@ -28,7 +28,7 @@ def is_violable(rule: Formalized) -> bool:
     return _is_lost_somewhere(rule)
 
 
-def limit(rule: Formalized) -> str:
+def limit(rule: FormalizedRequirement) -> str:
     """Why no run can violate it, as one sentence; empty where one can."""
     if is_violable(rule):
         return ""
@@ -40,7 +40,7 @@ def limit(rule: Formalized) -> str:
     )
 
 
-def _is_lost_somewhere(rule: Formalized) -> bool:
+def _is_lost_somewhere(rule: FormalizedRequirement) -> bool:
     """Whether the automaton of the sentence, over the letters that can occur, has a lost state."""
     sentence = rule.sentence
     if temporal_predicate(sentence):

@@ -20,7 +20,7 @@ Column = Sequence[bool]
 """One truth value for each tick of a finite trace, from tick 0 on."""
 
 
-class Need(StrEnum):
+class Expectation(StrEnum):
     """What the response must be on a stretch of ticks."""
 
     ALL = "true at each of these ticks"
@@ -30,7 +30,7 @@ class Need(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class TickRange:
     """A stretch of ticks, both ends included, and what the response must be there.
 
     `last < first`: there is no such tick, so that nothing can be true at one of them.
@@ -38,32 +38,32 @@ class Part:
 
     first: int
     last: int
-    need: Need
+    need: Expectation
 
     def kept(self, q: Column) -> bool:
         """Whether the response is as it must be."""
         values = q[self.first : self.last + 1]
         match self.need:
-            case Need.ALL:
+            case Expectation.ALL:
                 return all(values)
-            case Need.SOME:
+            case Expectation.SOME:
                 return any(values)
-            case Need.NONE:
+            case Expectation.NONE:
                 return not any(values)
-            case Need.MISS:
+            case Expectation.MISS:
                 return not all(values)
             case _:
                 assert_never(self.need)
 
 
 @dataclass(frozen=True, slots=True)
-class Window:
+class ObligationWindow:
     """What one trigger asks for."""
 
     trigger: int
     right: int
     """The last tick of its interval."""
-    parts: tuple[Part, ...]
+    parts: tuple[TickRange, ...]
     """Empty: nothing."""
     either: bool = False
     """Whether one of the parts is enough."""
@@ -74,7 +74,7 @@ class Window:
         return not kept or (any(kept) if self.either else all(kept))
 
 
-def windows(template: Template, m: Column, p: Column, s: Column) -> tuple[Window, ...]:
+def windows(template: Template, m: Column, p: Column, s: Column) -> tuple[ObligationWindow, ...]:
     """What all triggers of a finite trace ask for, in their order.
 
     Args:
@@ -138,15 +138,15 @@ def triggers(condition: ConditionKind | None, p: Column, left: int, right: int) 
             yield t
 
 
-def window(template: Template, t: int, right: int, stops: Column) -> Window:
+def window(template: Template, t: int, right: int, stops: Column) -> ObligationWindow:
     """What the trigger at tick `t` asks for, in an interval that ends with tick `right`."""
     negated = template.scope is not None and template.scope.negates
-    each = Need.NONE if negated else Need.ALL
+    each = Expectation.NONE if negated else Expectation.ALL
     whole, n = need(template), template.ticks
-    waits = whole in (Need.SOME, Need.MISS)
+    waits = whole in (Expectation.SOME, Expectation.MISS)
 
-    def asks(*parts: tuple[int, int, Need], either: bool = False) -> Window:
-        return Window(t, right, tuple(Part(*part) for part in parts), either)
+    def asks(*parts: tuple[int, int, Expectation], either: bool = False) -> ObligationWindow:
+        return ObligationWindow(t, right, tuple(TickRange(*part) for part in parts), either)
 
     extent = s.SHAPES[template.timing].extent
     match extent:
@@ -165,8 +165,12 @@ def window(template: Template, t: int, right: int, stops: Column) -> Window:
         case Extent.BEYOND:
             late = (t + n + 1, t + n + 1, each)
             if negated:
-                return asks((t, t + n, Need.SOME), late, either=True) if t + n < right else asks()
-            early = (t, min(t + n, right), Need.NONE)
+                return (
+                    asks((t, t + n, Expectation.SOME), late, either=True)
+                    if t + n < right
+                    else asks()
+                )
+            early = (t, min(t + n, right), Expectation.NONE)
             return asks(early, late) if t + n < right else asks(early)
         case Extent.STOP:
             stop = next((k for k in range(t, right + 1) if stops[k]), None)
@@ -183,7 +187,7 @@ def has_deadline(template: Template) -> bool:
     extent = s.SHAPES[template.timing].extent
     match extent:
         case Extent.DURATION:
-            return need(template) in (Need.SOME, Need.MISS)
+            return need(template) in (Expectation.SOME, Expectation.MISS)
         case Extent.TRIGGER | Extent.NEXT | Extent.LAST | Extent.INTERVAL:
             return False
         case Extent.BEYOND | Extent.STOP:
@@ -192,16 +196,16 @@ def has_deadline(template: Template) -> bool:
             assert_never(extent)
 
 
-def need(template: Template) -> Need:
+def need(template: Template) -> Expectation:
     """What the response must be on the ticks that the timing is about."""
     negated = template.scope is not None and template.scope.negates
     quantifier = s.SHAPES[template.timing].quantifier
     match quantifier:
         case Quantifier.ALL:
-            return Need.MISS if negated else Need.ALL
+            return Expectation.MISS if negated else Expectation.ALL
         case Quantifier.SOME:
-            return Need.NONE if negated else Need.SOME
+            return Expectation.NONE if negated else Expectation.SOME
         case Quantifier.NONE:
-            return Need.SOME if negated else Need.NONE
+            return Expectation.SOME if negated else Expectation.NONE
         case _:
             assert_never(quantifier)

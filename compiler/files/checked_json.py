@@ -1,6 +1,6 @@
 """A value of a JSON file together with its path: every access to it is checked.
 
-What is not as it must be raises `MisshapenError` with the path. Files whose types are known are
+What is not as it must be raises `SchemaError` with the path. Files whose types are known are
 read by `compiler/files/records.py`.
 """
 
@@ -20,7 +20,7 @@ _DIGITS = 21
 _EXCERPT = 40
 
 
-class MisshapenError(ValueError):
+class SchemaError(ValueError):
     """A value is missing or of the wrong kind; the message says which and where."""
 
 
@@ -46,14 +46,14 @@ def plain(text: str) -> object:
     """The value of a JSON text.
 
     Raises:
-        MisshapenError: it is no such text.
+        SchemaError: it is no such text.
     """
     try:
         return parsed(text).value
     except RecursionError:
-        raise MisshapenError("it is nested too deeply") from None
+        raise SchemaError("it is nested too deeply") from None
     except ValueError as error:
-        raise MisshapenError(f"the text is not JSON that fretc can read: {error}") from None
+        raise SchemaError(f"the text is not JSON that fretc can read: {error}") from None
 
 
 def _distinct(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
@@ -98,7 +98,7 @@ class Shape:
         """The value of a key of an object."""
         fields = self._object()
         if key not in fields:
-            raise MisshapenError(f"{self.name} has no `{key}`")
+            raise SchemaError(f"{self.name} has no `{key}`")
         return Shape(fields[key], f"{self.path}.{key}".removeprefix("."))
 
     def has(self, key: str) -> bool:
@@ -162,11 +162,11 @@ class Shape:
         """Nothing else may be in an object."""
         for key in self._object():
             if key not in keys:
-                raise MisshapenError(f"{self.name} may not have `{key[:_EXCERPT]}`")
+                raise SchemaError(f"{self.name} may not have `{key[:_EXCERPT]}`")
 
-    def wrong(self, wanted: str) -> MisshapenError:
+    def wrong(self, wanted: str) -> SchemaError:
         """The error of a value that is not `wanted`."""
-        return MisshapenError(f"{self.name} must be {wanted}, and is {self._excerpt()}")
+        return SchemaError(f"{self.name} must be {wanted}, and is {self._excerpt()}")
 
     def _object(self) -> dict[str, object]:
         if not isinstance(self.value, dict):

@@ -15,7 +15,7 @@ from msgspec import UnsetType as UnsetType
 from msgspec import field as field
 from msgspec.structs import replace as replace
 
-from compiler.files.checked_json import GREATEST, LARGEST_COUNT, LEAST, MisshapenError
+from compiler.files.checked_json import GREATEST, LARGEST_COUNT, LEAST, SchemaError
 
 types = msgspec.inspect
 """Types of records as values."""
@@ -55,14 +55,14 @@ def decoded(value: object, kind: type[R]) -> R:
     """A value of JSON as a record.
 
     Raises:
-        MisshapenError: it is none; the message names the place.
+        SchemaError: it is none; the message names the place.
     """
     try:
         return msgspec.convert(value, kind, strict=True)
     except msgspec.ValidationError as error:
-        raise MisshapenError(_in_words(str(error))) from None
+        raise SchemaError(_in_words(str(error))) from None
     except UnicodeEncodeError:
-        raise MisshapenError("a text in it has half of a character: a lone surrogate") from None
+        raise SchemaError("a text in it has half of a character: a lone surrogate") from None
 
 
 def plain(record: object) -> Any:

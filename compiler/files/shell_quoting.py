@@ -9,7 +9,7 @@ from collections.abc import Iterable
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
-class UnsayableError(Exception):
+class UnencodableNameError(Exception):
     """A name with characters that are no text: what is pasted from a page would be another one."""
 
 
@@ -17,10 +17,10 @@ def word(name: str) -> str:
     """The name of a file as a shell reads it; never an option.
 
     Raises:
-        UnsayableError: it has a line break, or a character that is not seen.
+        UnencodableNameError: it has a line break, or a character that is not seen.
     """
     if not name.isprintable() or not name:
-        raise UnsayableError(name)
+        raise UnencodableNameError(name)
     return shlex.quote(f"./{name}" if name.startswith("-") else name)
 
 
@@ -41,7 +41,7 @@ def check_of(hashes: Iterable[tuple[str, str]]) -> str:
         hashes: SHA-256 and name; what is no SHA-256 is left out.
 
     Raises:
-        UnsayableError: as `word` does.
+        UnencodableNameError: as `word` does.
     """
     lines = [shlex.quote(_line(sha256, name)) for sha256, name in hashes if is_sha256(sha256)]
     return f"printf '%s\\n' {' '.join(lines)} | sha256sum --check" if lines else ""

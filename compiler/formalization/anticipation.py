@@ -19,7 +19,7 @@ from typing import assert_never
 
 from compiler.formalization.letters import MOST_ATOMS, letters, temporal_predicate
 from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait
-from compiler.formalization.past import Stage, Watch, staged
+from compiler.formalization.past import MonitorSpec, ScopeFormulas, scope_formulas
 from compiler.formalization.reference import (
     BROKEN,
     Automaton,
@@ -41,7 +41,7 @@ _EDGE = 2
 _MOST_STATES = 500
 
 
-def anticipated(sentence: s.Sentence, obligation: Obligation, watch: Watch) -> Watch:
+def anticipated(sentence: s.Sentence, obligation: Obligation, watch: MonitorSpec) -> MonitorSpec:
     """The watch, with all that the letters of the sentence tell in advance.
 
     Args:
@@ -105,7 +105,7 @@ class _Observable:
 
 def _observables(obligation: Obligation, automaton: Automaton) -> Iterable[_Observable]:
     """The cheap ones come first."""
-    stage = staged(obligation)
+    stage = scope_formulas(obligation)
     enforced = (Phase.INSIDE, Phase.LAST_RUN)
     yield _Observable(stage.inside, lambda state: state.phase in enforced)
     if obligation.scope in (ScopeKind.AFTER, ScopeKind.ONLY_AFTER):
@@ -118,7 +118,7 @@ def _observables(obligation: Obligation, automaton: Automaton) -> Iterable[_Obse
     yield from _counted(obligation.demand, stage, automaton.template.ticks)
 
 
-def _counted(demand: Demand, stage: Stage, short: int) -> Iterable[_Observable]:
+def _counted(demand: Demand, stage: ScopeFormulas, short: int) -> Iterable[_Observable]:
     """What the counter of the timing tells; `short` is what the automaton counts to."""
     q, n = demand.response, demand.ticks
     waits = stage.open(f.not_(q))
@@ -153,7 +153,7 @@ def _counted(demand: Demand, stage: Stage, short: int) -> Iterable[_Observable]:
             assert_never(demand.kind)
 
 
-def _open_for(q: f.Formula, age: int, stage: Stage) -> f.Formula:
+def _open_for(q: f.Formula, age: int, stage: ScopeFormulas) -> f.Formula:
     """The oldest open trigger lies `age` ticks back, or more."""
     return stage.open(f.not_(q), f.Interval(age, None))
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import atom
 from fretish import expressions as e
 from fretish import units
@@ -26,7 +26,9 @@ from fretish.reading.toml_text import as_key
 _MIRRORED: Mapping[str, e.ComparisonOperator] = {**e.MIRRORED, "=": "=", "!=": "!="}
 
 
-def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
+def check_binding_consistency(
+    rule: FormalizedRequirement, declarations: Declarations
+) -> Iterator[Diagnostic]:
     """F524 for each comparison of the sentence that is bound to another one."""
     stated = rule.stated
     terms = _Terms.of_signals(declarations)
@@ -155,7 +157,9 @@ def _number(digits: str) -> Fraction | None:
         return None
 
 
-def _drifted(rule: Formalized, name: str, stated: e.Expression, bound: Proposition) -> Diagnostic:
+def _drifted(
+    rule: FormalizedRequirement, name: str, stated: e.Expression, bound: Proposition
+) -> Diagnostic:
     place: Span | None = getattr(stated, "span", None)
     inside = place is not None and place.source is rule.requirement.wording.source
     assert bound.span is not None
@@ -172,7 +176,7 @@ def _drifted(rule: Formalized, name: str, stated: e.Expression, bound: Propositi
 # What has no binding ------------------------------------------
 
 
-def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
+def unbound(rule: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
     """F304 for every proposition of the sentence that the bindings do not have.
 
     Where they have one that cannot be used, it is the mistakes in its tables. No other proposition
@@ -191,7 +195,7 @@ def unbound(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic
         )
 
 
-def broken_tables(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
+def broken_tables(rule: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
     """The mistakes in the tables of propositions and signals that a requirement reads."""
     for name in rule.watched:
         yield from _mistakes(name, rule.stated.get(name), declarations)
@@ -206,7 +210,9 @@ def _mistakes(
     return [mistake for part in parts for mistake in declarations.mistakes.get(part, ())]
 
 
-def missing_signals(rule: Formalized, name: str, signals: Mapping[str, Signal]) -> tuple[str, ...]:
+def missing_signals(
+    rule: FormalizedRequirement, name: str, signals: Mapping[str, Signal]
+) -> tuple[str, ...]:
     """The signals that a comparison of the sentence lacks, without which it must be bound itself.
 
     Beside `=` and `!=` a second name is taken for a word of the first.
@@ -223,7 +229,7 @@ def missing_signals(rule: Formalized, name: str, signals: Mapping[str, Signal]) 
     return tuple(dict.fromkeys(each.id for each in e.names(read) if each.id not in signals))
 
 
-def way_out(rule: Formalized, name: str, declarations: Declarations) -> str:
+def way_out(rule: FormalizedRequirement, name: str, declarations: Declarations) -> str:
     """What to write in the bindings so that they give `name` a meaning.
 
     Signals for a comparison; a comparison for the word of a signal; else a proposition.
@@ -243,7 +249,7 @@ def way_out(rule: Formalized, name: str, declarations: Declarations) -> str:
     )
 
 
-def place(rule: Formalized, name: str) -> Span:
+def place(rule: FormalizedRequirement, name: str) -> Span:
     """Where the sentence names it first: the name, or the comparison or the call that it is of."""
     compared: Span | None = getattr(rule.stated.get(name), "span", None)
     if compared is not None and compared.source is rule.requirement.wording.source:

@@ -10,14 +10,15 @@ from itertools import chain
 
 from compiler.formalization import predicates
 from compiler.formalization.anticipation import anticipated
-from compiler.formalization.binding_agreement import disagreements, place
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.binding_agreement import check_binding_consistency, place
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.future import future, probabilistic
 from compiler.formalization.obligation import obligation
 from compiler.formalization.past import past, watch
 from compiler.formalization.resolution import in_own_units, resolved
 from compiler.logic.formula import endless
 from compiler.logic.printing import identifier
+from fretish.ambiguities import ambiguity_warnings
 from fretish.bindings.comparisons import is_measured
 from fretish.bindings.declarations import Declarations, Modality, Variable
 from fretish.bindings.definitions import Definitions, expanded, used
@@ -29,16 +30,15 @@ from fretish.diagnostics.source import Span
 from fretish.documents import Requirement
 from fretish.expressions import Comparison, Expression, Truth, with_comparisons
 from fretish.parser import mistakes, parse
-from fretish.pitfalls import surprises
-from fretish.reading.limits import within
-from fretish.reading.recursion import deep
+from fretish.reading.limits import with_budget
+from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import Sentence, with_expressions
 
 
-@deep
+@with_recursion_limit
 def formalize(
     requirement: Requirement, declarations: Declarations | None
-) -> tuple[Formalized | None, tuple[Diagnostic, ...]]:
+) -> tuple[FormalizedRequirement | None, tuple[Diagnostic, ...]]:
     """Parse, check and formalize one requirement.
 
     Returns:
@@ -46,13 +46,13 @@ def formalize(
     """
     wording = requirement.wording
     reading = partial(_formalized, requirement, declarations)
-    found = within(wording.end - wording.start, wording, reading)
+    found = with_budget(wording.end - wording.start, wording, reading)
     return (None, (found,)) if isinstance(found, Diagnostic) else found
 
 
 def _formalized(
     requirement: Requirement, declarations: Declarations | None
-) -> tuple[Formalized | None, tuple[Diagnostic, ...]]:
+) -> tuple[FormalizedRequirement | None, tuple[Diagnostic, ...]]:
     if requirement.is_free_text:
         return None, (_free_text(requirement),)
     written = parse(requirement.wording)
@@ -71,9 +71,14 @@ def _formalized(
         return None, (ticks,)
     try:
         rule = _rule(requirement, written, sentence, ticks, declarations, definitions)
-    except RecursionError:  # some versions of Python bound it below what `deep` asks for
+    except (
+        RecursionError
+    ):  # some versions of Python bound it below what `with_recursion_limit` asks for
         return None, (too_deep(sentence),)
-    wrong = (*clashes([rule]), *(disagreements(rule, declarations) if declarations else ()))
+    wrong = (
+        *name_collisions([rule]),
+        *(check_binding_consistency(rule, declarations) if declarations else ()),
+    )
     if wrong:
         return None, wrong
     bound = resolved(rule, declarations) if declarations else rule
@@ -105,7 +110,7 @@ def _judged(
     return wrong or in_own_units(sentence, declarations, place)
 
 
-@deep
+@with_recursion_limit
 def unreadable_sentence(requirement: Requirement) -> tuple[Diagnostic, ...]:
     """The mistakes of the sentence of a requirement whose header has some, too.
 
@@ -116,7 +121,7 @@ def unreadable_sentence(requirement: Requirement) -> tuple[Diagnostic, ...]:
     codes = {mistake.code for mistake in requirement.mistakes}
     if not codes or codes & _WITHOUT_SENTENCE or requirement.is_free_text:
         return ()
-    found = within(wording.end - wording.start, wording, partial(mistakes, wording))
+    found = with_budget(wording.end - wording.start, wording, partial(mistakes, wording))
     return (found,) if isinstance(found, Diagnostic) else found
 
 
@@ -129,7 +134,7 @@ _WITHOUT_SENTENCE = {
 }
 
 
-def clashes(rules: Sequence[Formalized]) -> Iterator[Diagnostic]:
+def name_collisions(rules: Sequence[FormalizedRequirement]) -> Iterator[Diagnostic]:
     """F116: formulas spell `a.b` as `a_DOT_b`, and another name is spelt so already."""
     spelt: dict[str, str] = {}
     for rule in rules:
@@ -151,13 +156,13 @@ def _rule(
     ticks: int | None,
     declarations: Declarations | None,
     definitions: Definitions,
-) -> Formalized:
+) -> FormalizedRequirement:
     """The three formulas and the watch, each from the same obligation."""
     ahead = obligation(sentence, ticks or 0, predicates.Future())
     back = obligation(sentence, ticks or 0, predicates.Past())
     finite = future(ahead)
     odds = sentence.probability
-    return Formalized(
+    return FormalizedRequirement(
         requirement=requirement,
         written=written,
         sentence=sentence,
@@ -230,7 +235,7 @@ def _remarks(sentence: Sentence, declarations: Declarations | None) -> Iterator[
     assumed = assumed_ticks(sentence, clock)
     if assumed is not None:
         yield assumed
-    yield from surprises(sentence)
+    yield from ambiguity_warnings(sentence)
     yield from temporal_predicates(_without_signals(sentence, declarations))
 
 
@@ -244,7 +249,7 @@ def _without_signals(sentence: Sentence, declarations: Declarations | None) -> S
     return with_expressions(sentence, partial(with_comparisons, rewrite=answered))
 
 
-def duplicates(requirements: Sequence[Requirement]) -> Mapping[int, Diagnostic]:
+def duplicate_ids(requirements: Sequence[Requirement]) -> Mapping[int, Diagnostic]:
     """F201 for every id that comes again; capitals, `-`, `_` and `.` do not tell files apart.
 
     Returns:

@@ -9,7 +9,7 @@ from functools import cached_property
 from itertools import chain
 
 from compiler.formalization.obligation import Obligation, atom, obligation, variable
-from compiler.formalization.past import Watch
+from compiler.formalization.past import MonitorSpec
 from compiler.formalization.predicates import Past
 from compiler.logic.formula import Formula, atoms
 from fretish import expressions as e
@@ -23,12 +23,12 @@ from fretish.expressions import Name, names
 from fretish.parser import parse
 from fretish.printer import canonical, expression
 from fretish.printer import sentence as printed
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import Sentence
 
 
 @dataclass(frozen=True)
-class Formalized:
+class FormalizedRequirement:
     """A requirement, formalized: one meaning in three formulas, and as signals to watch."""
 
     requirement: Requirement
@@ -47,7 +47,7 @@ class Formalized:
     """Future-time, on finite traces, with `LAST`; at the first tick."""
     pt: Formula
     """Past-time; at the last tick."""
-    watch: Watch
+    watch: MonitorSpec
     pctl: Formula | None
     """PCTL*; None where the sentence gives no probability."""
     glossary: Mapping[str, Variable]
@@ -101,7 +101,7 @@ class Formalized:
         return tuple(dict.fromkeys(name.id for name in sorted(found, key=_place)))
 
     @cached_property
-    @deep
+    @with_recursion_limit
     def stated(self) -> Mapping[str, e.Expression]:
         """The comparisons and calls of the sentence, by the names that formulas give them.
 
@@ -123,7 +123,7 @@ class Formalized:
         return found
 
     @cached_property
-    @deep
+    @with_recursion_limit
     def wordings(self) -> Mapping[str, str]:
         """How atoms are shown to people: with the numbers and units that the sentence has.
 
@@ -174,7 +174,7 @@ def _place(name: Name) -> int:
     return name.span.start if name.span else 0
 
 
-def plain(rule: Formalized) -> Formalized:
+def plain(rule: FormalizedRequirement) -> FormalizedRequirement:
     """The rule of the same sentence without its probability, under the same id."""
     if rule.sentence.probability is None:
         return rule

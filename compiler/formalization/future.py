@@ -22,7 +22,7 @@ from compiler.logic.formula import (
     Formula,
     Implies,
     Interval,
-    Odds,
+    ProbabilityBound,
     Release,
     and_,
     endless,
@@ -49,8 +49,8 @@ def probabilistic(obligation: Obligation, op: str, bound: str) -> Formula:
     The shape is FRET's, `P>=1[ ... P op bound[demand] ... ]`, around our own formulas: what is
     demanded, scope by scope, is what the sentence demands without a probability.
     """
-    met = _everywhere(obligation, lambda demanded: Odds(op, bound, demanded))
-    return Odds(">=", "1", endless(met))
+    met = _everywhere(obligation, lambda demanded: ProbabilityBound(op, bound, demanded))
+    return ProbabilityBound(">=", "1", endless(met))
 
 
 def _everywhere(obligation: Obligation, form: Callable[[Formula], Formula]) -> Formula:

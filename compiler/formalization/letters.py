@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import product
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.formalization.reference import Letter
 from compiler.formalization.resolution import candidates
@@ -21,7 +21,7 @@ from fretish import syntax as s
 from fretish.bindings.comparisons import is_measured
 from fretish.bindings.declarations import Aggregate, Declarations
 from fretish.checking import LOOK_AHEAD, LOOK_BACK, calls, conditions
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 MOST_ATOMS = 12
 """Each doubles the letters: 4 096 steps for each pair of states."""
@@ -41,7 +41,7 @@ def temporal_predicate(sentence: s.Sentence) -> str | None:
     return None
 
 
-@deep
+@with_recursion_limit
 def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, Letter]:
     """What each valuation of the atoms makes of mode, condition, response and stop condition.
 
@@ -54,7 +54,7 @@ def meanings(sentence: s.Sentence, atoms: Sequence[str]) -> Mapping[Valuation, L
     }
 
 
-@deep
+@with_recursion_limit
 def letters(sentence: s.Sentence, atoms: Sequence[str]) -> tuple[Letter, ...]:
     """The letters that some valuation of the atoms makes, sorted."""
     every = (1 << 2 ** len(atoms)) - 1
@@ -84,7 +84,7 @@ def atoms_of(sentence: s.Sentence) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for formula in formulas for name in f.atoms(formula)))
 
 
-@deep
+@with_recursion_limit
 def occurring(sentence: s.Sentence) -> tuple[Letter, ...]:
     """The letters that can occur; with more than `MOST_ATOMS` atoms, those that might.
 
@@ -128,7 +128,7 @@ def _formula(expression: e.Expression) -> f.Formula:
 # Valuations that cannot occur ------------------------------------------------------------------
 
 
-def excluded(rule: Formalized) -> tuple[Exclusion, ...]:
+def excluded(rule: FormalizedRequirement) -> tuple[Exclusion, ...]:
     """The comparisons of a rule that cannot have these values together, whatever is measured."""
     signals = rule.declarations.signals if rule.declarations else {}
     scales = {name: signal.scale for name, signal in signals.items()}
@@ -141,7 +141,7 @@ def exclusion_in_words(exclusion: Exclusion) -> str:
     return " and ".join(f"{'' if value else 'not '}`{name}`" for name, value in exclusion)
 
 
-def comparisons(rule: Formalized) -> Mapping[str, e.Comparison]:
+def comparisons(rule: FormalizedRequirement) -> Mapping[str, e.Comparison]:
     """The atoms that compare numbers of one moment, by their names.
 
     A proposition that is declared for a comparison may be more than that: true where a sample of

@@ -41,7 +41,7 @@ from monitors.kernel.verdicts import Signals
 
 
 @dataclass(frozen=True, slots=True)
-class Watch:
+class MonitorSpec:
     """One sentence as signals over past-time formulas, for a monitor.
 
     The trace up to a tick satisfies the sentence, as FRET's finite semantics has it, when
@@ -82,7 +82,7 @@ class Watch:
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class ScopeFormulas:
     """Where a sentence is enforced, and where its demands begin."""
 
     inside: Formula
@@ -115,18 +115,18 @@ class Stage:
 
 def past(obligation: Obligation) -> Formula:
     """The formula about the trace up to now, with the operators that FRET has."""
-    stage, demand = staged(obligation), obligation.demand
+    stage, demand = scope_formulas(obligation), obligation.demand
     broken = or_(_broken_plainly(demand, stage), _broken_at_end(demand, stage))
     return and_(historically(_unless(broken)), _unless(_fails(demand, stage)))
 
 
-def watch(obligation: Obligation) -> Watch:
+def watch(obligation: Obligation) -> MonitorSpec:
     """The signals of a monitor; counting operators look back from now, never from a deadline."""
-    stage, demand = staged(obligation), obligation.demand
+    stage, demand = scope_formulas(obligation), obligation.demand
     breach = or_(_broken(demand, stage), _broken_at_end(demand, stage))
     owed, fails = _owed(demand, stage), _fails(demand, stage)
     traits = TRAITS[demand.kind]
-    return Watch(
+    return MonitorSpec(
         trigger=stage.trigger,
         breach=breach,
         doom=_doom(demand, stage),
@@ -142,7 +142,7 @@ def watch(obligation: Obligation) -> Watch:
 # Scope and condition -----------------------------------------------------------------------
 
 
-def staged(obligation: Obligation) -> Stage:
+def scope_formulas(obligation: Obligation) -> ScopeFormulas:
     """The scope and the condition of a sentence, as formulas about the ticks up to now."""
     inside, left, leaves = _interval(obligation.scope, obligation.mode)
     p = obligation.trigger
@@ -159,7 +159,7 @@ def staged(obligation: Obligation) -> Stage:
             assert_never(obligation.condition)
     over = _over(obligation.scope, obligation.mode)
     recurs = obligation.condition is not None or obligation.scope in _REPEATED
-    return Stage(inside, left, trigger, leaves, over, recurs)
+    return ScopeFormulas(inside, left, trigger, leaves, over, recurs)
 
 
 _REPEATED = (ScopeKind.IN, ScopeKind.NOT_IN, ScopeKind.ONLY_IN)
@@ -210,7 +210,7 @@ def first_marker(scope: ScopeKind | None, m: Formula) -> Formula:
 # Demands -----------------------------------------------------------------------------------
 
 
-def _broken(demand: Demand, stage: Stage) -> Formula:
+def _broken(demand: Demand, stage: ScopeFormulas) -> Formula:
     """A demand is broken here; a missed deadline stays broken until the answer comes."""
     q, n = demand.response, demand.ticks
     match demand.kind:
@@ -232,12 +232,12 @@ def _broken(demand: Demand, stage: Stage) -> Formula:
             assert_never(demand.kind)
 
 
-def _overdue(q: Formula, n: int, stage: Stage) -> Formula:
+def _overdue(q: Formula, n: int, stage: ScopeFormulas) -> Formula:
     """A trigger n ticks ago or more has had no answer yet."""
     return stage.open(not_(q), Interval(n, None))
 
 
-def _broken_plainly(demand: Demand, stage: Stage) -> Formula:
+def _broken_plainly(demand: Demand, stage: ScopeFormulas) -> Formula:
     """As `_broken`, with the operators of FRET: a deadline is missed at one tick."""
     q, s, n = demand.response, demand.stop, demand.ticks
     match demand.kind:
@@ -268,32 +268,32 @@ def _broken_plainly(demand: Demand, stage: Stage) -> Formula:
             assert_never(demand.kind)
 
 
-def _missed(q: Formula, n: int, stage: Stage) -> Formula:
+def _missed(q: Formula, n: int, stage: ScopeFormulas) -> Formula:
     """A trigger exactly n ticks ago, in this interval, has had no answer up to now."""
     asked = once(and_(stage.trigger, not_(q)), Interval(n, n))
     answered = once(or_(stage.left, q), Interval(0, n - 1)) if n else FALSE
     return and_(stage.inside, asked, not_(answered))
 
 
-def _recent(n: int, stage: Stage) -> Formula:
+def _recent(n: int, stage: ScopeFormulas) -> Formula:
     """A trigger of this interval lies no more than n ticks back."""
     recently = once(stage.trigger, Interval(0, n))
     return recently if stage.inside == TRUE else and_(recently, stage.open(TRUE))
 
 
-def _began(n: int, stage: Stage) -> Formula:
+def _began(n: int, stage: ScopeFormulas) -> Formula:
     """The interval began no more than n ticks ago."""
     return once(stage.left, Interval(0, n))
 
 
-def _broken_at_end(demand: Demand, stage: Stage) -> Formula:
+def _broken_at_end(demand: Demand, stage: ScopeFormulas) -> Formula:
     """The interval is over, and its last tick left a demand unmet."""
     if stage.leaves == FALSE:
         return FALSE
     return and_(stage.leaves, previous(_fails(demand, stage)))
 
 
-def _fails(demand: Demand, stage: Stage) -> Formula:
+def _fails(demand: Demand, stage: ScopeFormulas) -> Formula:
     """The interval may not end here."""
     match demand.kind:
         case Kind.FINALLY:
@@ -308,7 +308,7 @@ def _fails(demand: Demand, stage: Stage) -> Formula:
             assert_never(demand.kind)
 
 
-def _owed(demand: Demand, stage: Stage) -> Formula:
+def _owed(demand: Demand, stage: ScopeFormulas) -> Formula:
     """A demand waits for what follows.
 
     Demands without a deadline that only forbid (`always`, `until`, `before`) wait for nothing:
@@ -334,7 +334,7 @@ def _owed(demand: Demand, stage: Stage) -> Formula:
             assert_never(demand.kind)
 
 
-def _doom(demand: Demand, stage: Stage) -> Formula:
+def _doom(demand: Demand, stage: ScopeFormulas) -> Formula:
     """Demands are open that cannot all be met.
 
     Where an interval can end before the deadline, its end would void them.
@@ -353,14 +353,14 @@ def _doom(demand: Demand, stage: Stage) -> Formula:
             assert_never(demand.kind)
 
 
-def _settled(demand: Demand, stage: Stage) -> Formula:
+def _settled(demand: Demand, stage: ScopeFormulas) -> Formula:
     """Every demand has been met, and no other can begin."""
     if Trait.LAST in TRAITS[demand.kind] and stage.endless:
         return TRUE  # an interval without an end has no last tick
     return stage.over if stage.recurs else or_(stage.over, _met(demand, stage))
 
 
-def _met(demand: Demand, stage: Stage) -> Formula:
+def _met(demand: Demand, stage: ScopeFormulas) -> Formula:
     """The one demand, of the first tick of the interval, has been met or has passed."""
     q, n = demand.response, demand.ticks
     match demand.kind:

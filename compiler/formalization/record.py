@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from compiler.files.edition import __version__
-from compiler.formalization.formalized import Formalized
+from compiler.files.build_id import __version__
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
 from fretish import syntax
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -17,7 +17,7 @@ from fretish.printer import canonical, expression
 SCHEMA = "fretc-requirement-1"
 
 
-def formulas(rule: Formalized) -> dict[str, Any]:
+def formulas(rule: FormalizedRequirement) -> dict[str, Any]:
     """The object of `--emit ltl --format json`.
 
     `ft_infinite` is LTL that Spot reads; `ft_finite` may use `LAST`; `pt` is for the last point.
@@ -53,7 +53,7 @@ def wording(requirement: Requirement) -> str:
     return " ".join(requirement.wording.text.split())
 
 
-def record(rule: Formalized) -> dict[str, Any]:
+def record(rule: FormalizedRequirement) -> dict[str, Any]:
     """The object of `--emit json`; its schema is `templates/json/requirement.schema.json`."""
     requirement, tree = rule.requirement, rule.written
     return {

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import chain
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import atom, variable
 from fretish import expressions as e
 from fretish import syntax as s
@@ -76,7 +76,9 @@ def _without(
     }
 
 
-def resolved(rule: Formalized, declarations: Declarations) -> Formalized | Diagnostic:
+def resolved(
+    rule: FormalizedRequirement, declarations: Declarations
+) -> FormalizedRequirement | Diagnostic:
     """The rule with declarations that hold each of its atoms which signals decide."""
     propositions: dict[str, Proposition] = {}
     mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
@@ -137,7 +139,7 @@ def extended(
     )
 
 
-def _as_written(rule: Formalized, declarations: Declarations) -> Sentence:
+def _as_written(rule: FormalizedRequirement, declarations: Declarations) -> Sentence:
     """The sentence in the units in which it is written, with words, and with what names stand for.
 
     It has the same comparisons in the same places as the one in the signals' units.

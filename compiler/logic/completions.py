@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from compiler.logic import formula as f
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel.columns import Column
 
 MOST_STEPS = 1 << 16
@@ -138,7 +138,7 @@ class _Automaton:
             values.append(node(values, state, memory))
         return tuple(memory), values[self._whole]
 
-    @deep
+    @with_recursion_limit
     def _place(self, formula: f.Formula) -> int:
         """Where the value of a part is; a part that stands in two places is computed once."""
         if isinstance(formula, f.Atom):

@@ -47,7 +47,7 @@ def holds(formula: f.Formula, trace: Sequence[Valuation], at: int = 0) -> bool:
             return not holds(left, trace, at) or holds(right, trace, at)
         case f.Iff(left, right):
             return holds(left, trace, at) is holds(right, trace, at)
-        case f.Odds():
+        case f.ProbabilityBound():
             raise ValueError("one trace does not tell a probability")
         case f.Next() | f.Eventually() | f.Globally() | f.Until() | f.Release():
             return _future(formula, trace, at)

@@ -11,11 +11,11 @@ from collections.abc import Mapping, Sequence
 from typing import assert_never
 
 from compiler.logic import formula as f
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel import columns as c
 
 
-@deep
+@with_recursion_limit
 def evaluate(formula: f.Formula, columns: Mapping[str, int], ticks: int) -> int:
     """The formula's truth at each tick, as `compiler.logic.definition.holds` defines it.
 
@@ -42,7 +42,7 @@ def evaluate_unknown(formula: f.Formula, columns: Mapping[str, c.Column], ticks:
     return column
 
 
-@deep
+@with_recursion_limit
 def evaluate_unknown_all(
     formulas: Sequence[f.Formula], columns: Mapping[str, c.Column], ticks: int
 ) -> tuple[c.Column, ...]:
@@ -108,7 +108,7 @@ class _Evaluation:
                 return negated(left) | read(right)
             case f.Iff(left, right):
                 return read(left) & read(right) | negated(left) & negated(right)
-            case f.Odds():
+            case f.ProbabilityBound():
                 raise ValueError("one trace does not tell a probability")
             case f.Next() | f.Eventually() | f.Globally() | f.Until() | f.Release():
                 return self._future(formula)

@@ -179,7 +179,7 @@ class Release:
 
 
 @dataclass(frozen=True, slots=True)
-class Odds:
+class ProbabilityBound:
     """`P op bound [ arg ]`: over all runs from here, arg has such a probability (PCTL*)."""
 
     op: str
@@ -207,7 +207,7 @@ Formula = (
     | Globally
     | Until
     | Release
-    | Odds
+    | ProbabilityBound
 )
 
 TRUE, FALSE, LAST = Const(True), Const(False), Last()
@@ -396,7 +396,7 @@ def children(f: Formula) -> tuple[Formula, ...]:
             return ()
         case And(args) | Or(args):
             return args
-        case Not(arg) | Previous(arg) | WeakPrevious(arg) | Next(arg) | Odds(_, _, arg):
+        case Not(arg) | Previous(arg) | WeakPrevious(arg) | Next(arg) | ProbabilityBound(_, _, arg):
             return (arg,)
         case Once(arg, _) | Historically(arg, _) | Eventually(arg, _) | Globally(arg, _):
             return (arg,)
@@ -429,8 +429,8 @@ def rebuild(f: Formula, change: Callable[[Formula], Formula]) -> Formula:
             return until(change(left), change(right))
         case Release(left, right):
             return release(change(left), change(right))
-        case Odds(op, bound, arg):
-            return Odds(op, bound, change(arg))
+        case ProbabilityBound(op, bound, arg):
+            return ProbabilityBound(op, bound, change(arg))
         case _:
             return _rebuild_unary(f, change)
 

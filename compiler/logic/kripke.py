@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import Generic, TypeVar
 
 from compiler.logic import spot as automata
-from compiler.logic.formula import Formula, Last, Odds, children
+from compiler.logic.formula import Formula, Last, ProbabilityBound, children
 
 S = TypeVar("S", bound=Hashable)
 
@@ -130,7 +130,9 @@ def check(kripke: Kripke, formula: Formula) -> Lasso | None:
 
 
 def _is_linear(formula: Formula) -> bool:
-    return not isinstance(formula, Last | Odds) and all(map(_is_linear, children(formula)))
+    return not isinstance(formula, Last | ProbabilityBound) and all(
+        map(_is_linear, children(formula))
+    )
 
 
 def _is_run(kripke: Kripke, lasso: Lasso) -> bool:

@@ -31,7 +31,7 @@ from compiler.logic.ordering.relations import (
     relation_of,
 )
 from fretish import expressions as e
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 Literal = tuple[str, bool]
 """A comparison by its name, and whether it is true."""
@@ -48,7 +48,7 @@ _DENIED: Mapping[e.ComparisonOperator, e.ComparisonOperator] = {
 }  # fmt: skip
 
 
-@deep
+@with_recursion_limit
 def exclusions(
     comparisons: Mapping[str, e.Comparison],
     scales: Mapping[str, Fraction],

@@ -11,7 +11,7 @@ from compiler.logic import formula as f
 from compiler.logic.spelling.reserved_words import FRET as FRET_WORDS
 from compiler.logic.spelling.reserved_words import NOTATION
 from compiler.logic.spelling.reserved_words import SPOT as SPOT_WORDS
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 _ATOMIC, _UNARY, _BINARY, _AND, _OR, _XOR, _IMPLIES, _IFF = range(8)
 """How loose an operator binds."""
@@ -191,7 +191,7 @@ def past(formula: f.Formula) -> str:
     return text(formula, _FULL_PAST)
 
 
-@deep
+@with_recursion_limit
 def pctl(formula: f.Formula) -> str:
     """Fully parenthesized PCTL*, in the operators that PRISM and Storm read within a path.
 
@@ -217,7 +217,7 @@ def for_prism(formula: f.Formula) -> f.Formula:
             return rebuilt
 
 
-@deep
+@with_recursion_limit
 def text(formula: f.Formula, dialect: Dialect) -> str:
     """The formula in the spelling of a dialect, with as few parentheses as it allows."""
     plain = formula if dialect.has_bounded_since else without_bounded_since(formula)
@@ -262,7 +262,7 @@ class _Printer:
                 return _ATOMIC, d.atom(name)
             case f.Last():
                 return _ATOMIC, d.last
-            case f.Odds(op, bound, arg):
+            case f.ProbabilityBound(op, bound, arg):
                 return _ATOMIC, f"P{op}{bound} [ {self.at(arg, _IFF)} ]"
             case f.Not(arg):
                 return _UNARY, f"{d.not_}{self.at(arg, _UNARY)}"

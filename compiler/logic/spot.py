@@ -24,7 +24,7 @@ from compiler.logic.formula import (
     longest_bound,
     rebuild,
 )
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 
 def equivalent(left: Formula, right: Formula) -> bool:
@@ -79,7 +79,7 @@ _PROVABLE_BOUND = 12
 """A longer bound is not given to Spot, which expands it into a chain of X."""
 
 
-@deep
+@with_recursion_limit
 def simplified(formula: Formula) -> str | None:
     """A shorter text in Spot's syntax that says the same on infinite traces, if there is one.
 
@@ -128,7 +128,7 @@ def _hide(formula: Formula, opaque: dict[str, Formula]) -> Formula:
             return rebuild(formula, lambda part: _hide(part, opaque))
 
 
-@deep
+@with_recursion_limit
 def violation(
     labels: Sequence[frozenset[str]],
     edges: Sequence[Sequence[int]],

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
-from compiler.formalization.past import Watch
+from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.program import columns
@@ -29,12 +29,12 @@ from compiler.program.values import (
     either,
     not_,
 )
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel.verdicts import Signals
 
 
-@deep
-def program(watches: Mapping[str, Watch], taken: Collection[str] = ()) -> Program:
+@with_recursion_limit
+def program(watches: Mapping[str, MonitorSpec], taken: Collection[str] = ()) -> Program:
     """Compile the signals of watches; a sub-formula that comes twice is computed once.
 
     Args:

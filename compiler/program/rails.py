@@ -59,7 +59,7 @@ Step = Assign | Shift | Count | Advance | Delay | Choose
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class StatementGroup:
     """Steps that belong together, below a comment."""
 
     comment: str
@@ -91,7 +91,7 @@ class Rail:
 
     literals: tuple[Literal, ...]
     cells: tuple[Cell, ...]
-    stages: tuple[Stage, ...]
+    stages: tuple[StatementGroup, ...]
     readings: tuple[Reading, ...]
 
 
@@ -110,14 +110,14 @@ def rail(program: Program, prefixes: Mapping[str, str]) -> Rail:
     cells: list[Cell] = [
         cell for cell in program.cells if cell.name in names and not isinstance(cell, Window)
     ]
-    stages, readings = list[Stage](), list[Reading]()
+    stages, readings = list[StatementGroup](), list[Reading]()
     for block in blocks:
         steps = list[Step]()
         for instruction in block.instructions:
             made, moves = _static(instruction, windows)
             cells.extend(made)
             steps.extend(moves)
-        stages.append(Stage(block.comment, tuple(steps)))
+        stages.append(StatementGroup(block.comment, tuple(steps)))
     for requirement in program.requirements:
         marks, stage, reading = _remembered(
             requirement, prefixes[requirement.id], known.get(requirement.id)
@@ -218,7 +218,7 @@ def _slid(slide: Slide, window: Window) -> tuple[tuple[Cell, ...], tuple[Step, .
 
 def _remembered(
     requirement: Requirement, prefix: str, clock: str | None
-) -> tuple[list[Cell], Stage, Reading]:
+) -> tuple[list[Cell], StatementGroup, Reading]:
     """The cells of a requirement's own, how they move, and what is read of them.
 
     `clock`: the counter that is as old as the open demand, if there is one.
@@ -255,5 +255,5 @@ def _remembered(
         "settled": signals.settled,
         "answer": signals.answer,
     }
-    stage = Stage(f"{requirement.id}: what is remembered", tuple(steps))
+    stage = StatementGroup(f"{requirement.id}: what is remembered", tuple(steps))
     return cells, stage, Reading(requirement.id, prefix, truths, deadline)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Self, assert_never
 
 from compiler.program.instructions import Advance, Assign, Choose, Count, Shift
-from compiler.program.rails import Cell, Delay, Rail, Ring, Stage, Step
+from compiler.program.rails import Cell, Delay, Rail, Ring, StatementGroup, Step
 from compiler.program.values import Age, And, Constant, Literal, Not, Or, Value, Variable
 
 
@@ -96,7 +96,7 @@ class Statements(ABC):
     def _place(self, name: str) -> str:
         return f"{self.CELLS}{name}" if name in self.cells else name
 
-    def lines(self, stage: Stage) -> Iterator[str]:
+    def lines(self, stage: StatementGroup) -> Iterator[str]:
         """The statements of a stage."""
         for step in stage.steps:
             yield from self._statement(step)

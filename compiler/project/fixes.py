@@ -15,8 +15,8 @@ from fretish.diagnostics.fixes import Fix, applied
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import Requirement, requirements
 from fretish.parser import mistakes
-from fretish.reading.limits import within
-from fretish.reading.recursion import deep
+from fretish.reading.limits import with_budget
+from fretish.reading.recursion import with_recursion_limit
 
 _MOST_PASSES = 100
 """Passes over one file. A pass finds at most `fretish.parser.MISTAKES` mistakes in a sentence, and
@@ -46,7 +46,7 @@ def fixed(paths: Sequence[str]) -> tuple[FixedFile, ...]:
     return tuple(file for file in files if file.fixes)
 
 
-@deep
+@with_recursion_limit
 def _fixed_file(source: Source) -> FixedFile:
     """The file after as many passes as find a safe fix."""
     all_fixes: list[Fix] = []
@@ -82,7 +82,7 @@ def _has_a_sentence(requirement: Requirement) -> bool:
 
 def _safe_fixes_of_sentence(wording: Span) -> list[Fix]:
     """Those of one sentence; none where reading it would cost too much."""
-    found = within(wording.end - wording.start, wording, partial(mistakes, wording))
+    found = with_budget(wording.end - wording.start, wording, partial(mistakes, wording))
     if isinstance(found, Diagnostic):
         return []
     fixes = (mistake.fix for mistake in found)

@@ -11,16 +11,22 @@ from typing import TYPE_CHECKING
 from compiler.files.attribution import NOBODY, Attribution
 from compiler.files.settings import Settings, settings
 from compiler.files.text_files import read
-from compiler.formalization.formalize import duplicates, formalize, unreadable_sentence
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalize import duplicate_ids, formalize, unreadable_sentence
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.resolution import extended
 from compiler.project.acceptances import Acceptance, acceptances, answered
-from compiler.project.ancestry import circles, unknown_parents
 from compiler.project.hazards import Hazard
 from compiler.project.hazards import hazards as read_hazards
-from compiler.project.paths import BINDINGS, HAZARDS, beside, beside_first, requirement_files
+from compiler.project.parent_graph import cycles, unknown_parents
+from compiler.project.paths import (
+    BINDINGS,
+    HAZARDS,
+    first_sibling_path,
+    requirement_files,
+    sibling_path,
+)
 from compiler.project.refusals import Refused, refused
-from compiler.project.stated_numbers import disagreements
+from compiler.project.stated_numbers import check_stated_numbers
 from fretish.bindings.declarations import SHARED, Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
@@ -31,7 +37,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Failed:
+class UnformalizedRequirement:
     """A requirement without a rule, and why: it has an error, or it is free text."""
 
     requirement: Requirement
@@ -47,8 +53,8 @@ class Project:
 
     requirements: tuple[Requirement, ...]
     """As written, in the order of the files."""
-    rules: tuple[Formalized, ...]
-    failed: tuple[Failed, ...]
+    rules: tuple[FormalizedRequirement, ...]
+    failed: tuple[UnformalizedRequirement, ...]
     declarations: Declarations | None
     hazards: Mapping[str, Hazard]
     diagnostics: tuple[Diagnostic, ...]
@@ -106,7 +112,9 @@ def load(
         reads: the shared tables of the bindings that the caller reads; a mistake in any other one
             keeps back nothing.
     """
-    declarations, of_bindings = _declarations(bindings or beside_first(paths, BINDINGS), reads)
+    declarations, of_bindings = _declarations(
+        bindings or first_sibling_path(paths, BINDINGS), reads
+    )
     known, of_hazards = read_hazards(hazards) if hazards else ({}, ())
     written = _written(paths)
     chosen = _settings(paths)
@@ -116,7 +124,7 @@ def load(
     upward = [*of_hazards, *elsewhere]
     if (hazards or parents) and not has_errors(upward):
         upward.extend(unknown_parents(written, known, above, hazards))
-        upward.extend(circles(written))
+        upward.extend(cycles(written))
     declarations = _with_atoms(declarations, rules)
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
@@ -143,7 +151,7 @@ def load(
 
 
 def _with_atoms(
-    declarations: Declarations | None, rules: Sequence[Formalized]
+    declarations: Declarations | None, rules: Sequence[FormalizedRequirement]
 ) -> Declarations | None:
     """The declarations with the atoms of all rules that signals decide."""
     for rule in rules:
@@ -171,7 +179,12 @@ _MOST_BROKEN_HEADERS = 100
 
 def _formalized(
     written: Sequence[Requirement], declarations: Declarations | None, *, broken: bool
-) -> tuple[tuple[Formalized, ...], tuple[Failed, ...], dict[int, Diagnostic], list[Diagnostic]]:
+) -> tuple[
+    tuple[FormalizedRequirement, ...],
+    tuple[UnformalizedRequirement, ...],
+    dict[int, Diagnostic],
+    list[Diagnostic],
+]:
     """The rules, requirements without one, mistakes of those with one, and all there is to say.
 
     Args:
@@ -180,9 +193,9 @@ def _formalized(
         broken: whether the bindings have a mistake for which none of them can be used.
     """
     unsaid = frozenset({Code.NO_CLOCK}) if broken else frozenset()
-    mistaken = dict(duplicates(written))
-    rules: list[Formalized] = []
-    failed: list[Failed] = []
+    mistaken = dict(duplicate_ids(written))
+    rules: list[FormalizedRequirement] = []
+    failed: list[UnformalizedRequirement] = []
     diagnostics = list(dict.fromkeys(mistaken.values()))
     for requirement in written:
         rule, remarks = None, requirement.mistakes
@@ -191,10 +204,10 @@ def _formalized(
         if not requirement.mistakes:
             rule, remarks = formalize(requirement, declarations)
         if rule is not None and rule.declarations is not None:
-            remarks = (*remarks, *disagreements(rule, rule.declarations))
+            remarks = (*remarks, *check_stated_numbers(rule, rule.declarations))
         diagnostics.extend(remark for remark in remarks if remark.code not in unsaid)
         if rule is None:
-            failed.append(Failed(requirement, _reason(remarks), remarks))
+            failed.append(UnformalizedRequirement(requirement, _reason(remarks), remarks))
             continue
         rules.append(rule)
         if has_errors(remarks):
@@ -202,7 +215,7 @@ def _formalized(
     return tuple(rules), tuple(failed), mistaken, diagnostics
 
 
-def whole(
+def load_folder(
     folder: str, bindings: str | None = None, hazards: str | None = None
 ) -> Project | Diagnostic:
     """A requirements folder (or one file) with all that stands beside it, and parents elsewhere.
@@ -217,8 +230,8 @@ def whole(
         return files
     return load(
         files,
-        bindings or beside(folder, BINDINGS),
-        hazards or beside(folder, HAZARDS),
+        bindings or sibling_path(folder, BINDINGS),
+        hazards or sibling_path(folder, HAZARDS),
         parents=True,
     )
 

@@ -29,7 +29,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestio
 from fretish.diagnostics.source import Source
 from fretish.parser import parse, parse_value
 from fretish.printer import expression
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 
 STATUSES = {"completed": "approved", "deprecated": "retired"}
 """FRET's status → ours; every other one is a draft."""
@@ -73,7 +73,7 @@ def read_export(source: Source, columns: Mapping[str, str]) -> Import:
         source: the file; `.csv` by its name, JSON otherwise.
         columns: for CSV, the names of the columns `id`, `text` and `project`.
     """
-    result = within(len(source.text), source.span(0, 0), lambda: _read(source, columns))
+    result = with_budget(len(source.text), source.span(0, 0), lambda: _read(source, columns))
     return Import((), (result,), 0, 0) if isinstance(result, Diagnostic) else result
 
 

@@ -15,7 +15,7 @@ from fretish import expressions as e
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.parser import parse_value
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 _LEXEME = re.compile(
     r"\s*(?:(?P<word>[A-Za-z_]\w*)|(?P<number>\d+(?:\.\d+)?(?:[eE][+-]?\d+)?)"
@@ -150,7 +150,7 @@ def _is_followed(lexemes: list[str], opening: int) -> bool:
     return False
 
 
-@deep
+@with_recursion_limit
 def lustre(tree: e.Expression) -> str | None:
     """The expression as FRET's assignment; None where Lustre does not have what it says."""
     if any(not _has(part) for part in e.parts(tree)):

@@ -21,13 +21,13 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from compiler.files.checked_json import MisshapenError, plain
+from compiler.files.checked_json import SchemaError, plain
 from compiler.files.settings import Settings
 from compiler.files.text_files import regular
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import missing_extra
 from fretish.diagnostics.source import Source, Span
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 from fretish.reading.yaml_text import loaded
 
 
@@ -54,7 +54,7 @@ def parents(settings: Settings) -> tuple[Mapping[str, Parent], tuple[Diagnostic,
         reading = partial(_all, settings.folder / name, name)
         try:
             _demand_within(settings, settings.folder / name)
-            read = within(_size(settings.folder / name), _place(settings, name), reading)
+            read = with_budget(_size(settings.folder / name), _place(settings, name), reading)
             if isinstance(read, Diagnostic):
                 diagnostics.append(read)
                 continue
@@ -167,7 +167,7 @@ def _json(text: str, name: str) -> Iterator[Parent]:
     """An export of StrictDoc, or of sphinx-needs."""
     try:
         data: Any = plain(text)
-    except MisshapenError as error:
+    except SchemaError as error:
         raise UnreadableError(f"it is not JSON: {error}") from None
     if isinstance(data, dict) and isinstance(data.get("DOCUMENTS"), list):
         return _strictdoc(data["DOCUMENTS"], name)

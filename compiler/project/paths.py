@@ -61,18 +61,22 @@ def listed(paths: Sequence[str]) -> list[str] | Diagnostic:
     return list(found.values())
 
 
-def beside(folder: str, name: str) -> str | None:
+def sibling_path(folder: str, name: str) -> str | None:
     """The path of a file in the requirements folder, where it is there."""
-    return beside_first([folder if os.path.isfile(folder) else str(Path(folder) / "any")], name)
+    return first_sibling_path(
+        [folder if os.path.isfile(folder) else str(Path(folder) / "any")], name
+    )
 
 
 def companions(paths: Sequence[str]) -> tuple[str, ...]:
     """What stands beside the first requirement and is read with it; no output may replace it."""
     names = (BINDINGS, HAZARDS, "fretc.toml", "fretc.lock", "waivers.toml", "allowed_signers")
-    return tuple(path for path in (beside_first(paths, name) for name in names) if path is not None)
+    return tuple(
+        path for path in (first_sibling_path(paths, name) for name in names) if path is not None
+    )
 
 
-def beside_first(paths: Sequence[str], name: str) -> str | None:
+def first_sibling_path(paths: Sequence[str], name: str) -> str | None:
     """The path of a file in the folder of the first of these, where it is there."""
     first = next((path for path in paths if path != "-"), None)
     path = str(Path(first).parent / name) if first else None

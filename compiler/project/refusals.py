@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from compiler.formalization.binding_agreement import broken_tables
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.documents import Requirement
@@ -32,7 +32,7 @@ class Refused:
 
 def refused(
     requirements: Sequence[Requirement],
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     own: Mapping[int, Diagnostic],
     declarations: Declarations | None,
     unusable: Iterable[Diagnostic],

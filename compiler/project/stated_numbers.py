@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretish import syntax, units
 from fretish.bindings.constants import Exact, constants
 from fretish.bindings.declarations import Declarations, Proposition
@@ -34,13 +34,15 @@ _QUANTITY = re.compile(
 )
 
 
-def disagreements(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
+def check_stated_numbers(
+    rule: FormalizedRequirement, declarations: Declarations
+) -> Iterator[Diagnostic]:
     """F310 and F351: `params`, title or text state a number, and the bindings have another one."""
     yield from _parameters(rule, declarations)
     yield from _prose(rule, declarations)
 
 
-def drifted(rule: Formalized, declarations: Declarations) -> Iterator[tuple[str, str]]:
+def drifted(rule: FormalizedRequirement, declarations: Declarations) -> Iterator[tuple[str, str]]:
     """The same as field and number: `("title", "0.40 m/s")`, `("params", "0.40 m/s")`."""
     for name, text in rule.requirement.params.items():
         if _has_drifted(text, _propositions(rule, declarations, name)):
@@ -48,7 +50,7 @@ def drifted(rule: Formalized, declarations: Declarations) -> Iterator[tuple[str,
     yield from ((field, words) for field, words, _ in _drifted_words(rule, declarations))
 
 
-def first_unit(rules: Iterable[Formalized]) -> Diagnostic | None:
+def first_unit(rules: Iterable[FormalizedRequirement]) -> Diagnostic | None:
     """F352 for the first number with a unit in the sentences of a project."""
     for rule in rules:
         for expression in conditions(rule.written):
@@ -68,7 +70,7 @@ def first_unit(rules: Iterable[Formalized]) -> Diagnostic | None:
 # Parameters
 
 
-def _parameters(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
+def _parameters(rule: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
     """F310; a number of `params` belongs to a proposition, or to a signal that is compared."""
     for name, text in rule.requirement.params.items():
         place = rule.requirement.place("params", name)
@@ -109,7 +111,9 @@ def _is_stated(number: Exact, known: Iterable[Proposition]) -> bool:
     return any(number in constants(each.expression) for each in known)
 
 
-def _propositions(rule: Formalized, declarations: Declarations, name: str) -> list[Proposition]:
+def _propositions(
+    rule: FormalizedRequirement, declarations: Declarations, name: str
+) -> list[Proposition]:
     """The proposition of that name; for a signal those of the sentence that read it."""
     if name in declarations.propositions:
         return [declarations.propositions[name]]
@@ -120,14 +124,14 @@ def _propositions(rule: Formalized, declarations: Declarations, name: str) -> li
 # Title and text
 
 
-def _prose(rule: Formalized, declarations: Declarations) -> Iterator[Diagnostic]:
+def _prose(rule: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
     """F351 for each quantity in title and text that is none of those that are judged."""
     for field, words, elsewhere in _drifted_words(rule, declarations):
         yield _differs(rule, field, words, rule.requirement.place(field), elsewhere)
 
 
 def _drifted_words(
-    rule: Formalized, declarations: Declarations
+    rule: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[tuple[str, str, Span | None]]:
     """Field, quantity, and where the requirement rests on another one of its dimension."""
     known = _numbers(rule, declarations)
@@ -139,7 +143,9 @@ def _drifted_words(
             yield field, words, rivals[0][1]
 
 
-def _numbers(rule: Formalized, declarations: Declarations) -> list[tuple[Exact, Span | None]]:
+def _numbers(
+    rule: FormalizedRequirement, declarations: Declarations
+) -> list[tuple[Exact, Span | None]]:
     """Every number of the sentence and of what it is bound to, and where it stands."""
     bound = [declarations.propositions.get(name) for name in rule.watched]
     found = [
@@ -170,7 +176,7 @@ def _quantities(text: str) -> Iterator[tuple[str, Exact]]:
 
 
 def _differs(
-    rule: Formalized, field: str, words: str, place: Span, elsewhere: Span | None
+    rule: FormalizedRequirement, field: str, words: str, place: Span, elsewhere: Span | None
 ) -> Diagnostic:
     at = place.text.find(words)
     where = place.part(at, at + len(words)) if at >= 0 else place

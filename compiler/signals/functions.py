@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass
 
-from compiler.files.edition import __version__
-from compiler.formalization.formalized import Formalized
+from compiler.files.build_id import __version__
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
 from compiler.signals.policies import Instant, Meaning, Policy, instant
 from compiler.signals.printing import Language, Printer
@@ -79,7 +79,7 @@ def file_name(monitor: str) -> str:
 
 
 def functions(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     names: Mapping[str, str],
     language: Language,
     reserved: Container[str] = (),
@@ -120,7 +120,7 @@ def functions(
     )
 
 
-def _notes(rules: Sequence[Formalized], found: Instant) -> tuple[str, ...]:
+def _notes(rules: Sequence[FormalizedRequirement], found: Instant) -> tuple[str, ...]:
     title = ", ".join(rule.id for rule in rules)
     return (
         f"What samples say of the propositions of {title}, as `fretc audit` reads them.",

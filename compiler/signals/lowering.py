@@ -66,9 +66,9 @@ class Lowering:
             case e.Name(id):
                 return n.Flag(id)
             case e.Comparison(op, e.Name(id), e.Word(text)):
-                return n.Compared(op, n.Given(id), self._place(id, text))
+                return n.Comparison(op, n.SignalValue(id), self._place(id, text))
             case e.Comparison(op, e.Word(text), e.Name(id)):
-                return n.Compared(_SIGNS[op], n.Given(id), self._place(id, text))
+                return n.Comparison(_SIGNS[op], n.SignalValue(id), self._place(id, text))
             case e.Comparison(op, left, right):
                 return self._compared(op, self._term(left), self._term(right))
             case e.Not(arg):
@@ -80,17 +80,17 @@ class Lowering:
             case e.Implies(left, right):
                 return n.Some((n.Not(self.truth(left)), self.truth(right)))
             case e.Iff(left, right):
-                return n.Same(self.truth(left), self.truth(right))
+                return n.Iff(self.truth(left), self.truth(right))
             case e.Xor(left, right):
-                return n.Not(n.Same(self.truth(left), self.truth(right)))
+                return n.Not(n.Iff(self.truth(left), self.truth(right)))
             case e.Persistence(arg, duration):
                 self.held.append((self.truth(arg), duration))
-                return n.Held(len(self.held) - 1)
+                return n.HeldFor(len(self.held) - 1)
             case _:
                 raise AssertionError("the reader of bindings refuses a number as a truth value")
 
-    def _place(self, id: str, text: str) -> n.Fixed:
-        return n.Fixed(Fraction(self.words[id].index(text)))
+    def _place(self, id: str, text: str) -> n.Constant:
+        return n.Constant(Fraction(self.words[id].index(text)))
 
     def _compared(self, op: e.ComparisonOperator, left: _Term, right: _Term) -> n.Truth:
         if isinstance(left, Fraction):
@@ -98,7 +98,7 @@ class Lowering:
                 return n.Known(e.COMPARE[op](left, right))
             left, right, op = right, left, _SIGNS[op]
         x, y, _ = _together(left, right)
-        return n.Known(None) if x is None or y is None else n.Compared(op, x, y)
+        return n.Known(None) if x is None or y is None else n.Comparison(op, x, y)
 
     # Numbers
 
@@ -109,7 +109,7 @@ class Lowering:
             case e.Quantity(digits, name):
                 return quantity(digits, name, self.unit)
             case e.Name(id):
-                return _Measure(n.Given(id), self.scales.get(id, Fraction(1)))
+                return _Measure(n.SignalValue(id), self.scales.get(id, Fraction(1)))
             case e.Negation(arg):
                 term = self._term(arg)
                 return -term if isinstance(term, Fraction) else _applied("negative", term)
@@ -129,20 +129,20 @@ class Lowering:
 def _together(left: _Measure, right: _Term) -> tuple[n.Number | None, n.Number | None, Fraction]:
     """Both in one unit, and the scale of it."""
     if isinstance(right, Fraction):
-        return left.number, n.Fixed(right / left.scale), left.scale
+        return left.number, n.Constant(right / left.scale), left.scale
     if left.scale == right.scale:
         return left.number, right.number, left.scale
     return _in_base(left), _in_base(right), Fraction(1)
 
 
 def _in_base(term: _Measure) -> n.Number | None:
-    return None if term.number is None else n.InBase(term.number, term.scale)
+    return None if term.number is None else n.ToBaseUnit(term.number, term.scale)
 
 
 def _applied(function: Literal["negative", "absolute"], term: _Measure) -> _Measure:
     if term.number is None:
         return _UNKNOWN
-    return _Measure(n.Applied(function, term.number), term.scale)
+    return _Measure(n.UnaryCall(function, term.number), term.scale)
 
 
 def _arithmetic(op: e.ArithmeticOperator, left: _Term, right: _Term) -> _Term:
@@ -163,7 +163,7 @@ def _arithmetic(op: e.ArithmeticOperator, left: _Term, right: _Term) -> _Term:
 
 
 def _factor(term: _Term) -> _Measure:
-    return _Measure(n.Fixed(term)) if isinstance(term, Fraction) else term
+    return _Measure(n.Constant(term)) if isinstance(term, Fraction) else term
 
 
 def _power(base: _Term, exponent: _Term) -> _Term:
@@ -189,5 +189,5 @@ def _end(name: Literal["min", "max"], args: Sequence[_Term]) -> _Term:
         x, y, scale = _together(found, term)
         if x is None or y is None:
             return _UNKNOWN
-        found = _Measure(n.Chosen("lesser" if name == "min" else "greater", x, y), scale)
+        found = _Measure(n.MinMax("lesser" if name == "min" else "greater", x, y), scale)
     return found

@@ -3,7 +3,7 @@
 A number is a 32-bit float, a 64-bit float, or exact: a whole number of 64 bits from 2^53 on, and
 what the least or the greatest of it and another one is. A number may be unknown, and what is
 computed of it is unknown, too. `monitors.kernel.readings` has a function for each of these nodes
-but `Given`; a constant becomes the nearest number of the kind that it meets.
+but `SignalValue`; a constant becomes the nearest number of the kind that it meets.
 """
 
 from __future__ import annotations
@@ -14,21 +14,21 @@ from typing import Literal
 
 
 @dataclass(frozen=True, slots=True)
-class Given:
+class SignalValue:
     """The number of a signal, or of a field of its message."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
-class Fixed:
+class Constant:
     """A constant in the unit of what it meets; it stands beside no other constant."""
 
     value: Fraction
 
 
 @dataclass(frozen=True, slots=True)
-class Applied:
+class UnaryCall:
     """A function of one number: of the same kind as that."""
 
     function: Literal["negative", "absolute"]
@@ -48,7 +48,7 @@ class Computed:
 
 
 @dataclass(frozen=True, slots=True)
-class Chosen:
+class MinMax:
     """The less or the greater of two numbers, of the kind that holds both.
 
     Where the right side is a constant, whole numbers become 64-bit floats first.
@@ -68,14 +68,14 @@ class Power:
 
 
 @dataclass(frozen=True, slots=True)
-class InBase:
+class ToBaseUnit:
     """`arg * numerator / denominator` in 64-bit floats, the factor's parts as the nearest ones."""
 
     arg: Number
     scale: Fraction
 
 
-Number = Given | Fixed | Applied | Computed | Chosen | Power | InBase
+Number = SignalValue | Constant | UnaryCall | Computed | MinMax | Power | ToBaseUnit
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class Flag:
 
 
 @dataclass(frozen=True, slots=True)
-class Compared:
+class Comparison:
     """`left sign right`; only the right side may be a constant. Unknown where a side is."""
 
     sign: str
@@ -102,7 +102,7 @@ class Compared:
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class HeldFor:
     """Whether a truth has held for a duration: an input, the `place`-th of its proposition."""
 
     place: int
@@ -130,11 +130,11 @@ class Some:
 
 
 @dataclass(frozen=True, slots=True)
-class Same:
+class Iff:
     """Kleene's equivalence: unknown where a side is."""
 
     left: Truth
     right: Truth
 
 
-Truth = Known | Flag | Compared | Held | Not | All | Some | Same
+Truth = Known | Flag | Comparison | HeldFor | Not | All | Some | Iff

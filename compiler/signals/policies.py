@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
 from compiler.signals.lowering import Lowering
 from fretish import expressions as e
@@ -75,7 +75,7 @@ class Instant:
     """Propositions of the rules that are bound and look back by ticks: their truth is given."""
 
 
-def instant(rules: Sequence[Formalized]) -> Instant | None:
+def instant(rules: Sequence[FormalizedRequirement]) -> Instant | None:
     """Of all propositions that the rules watch; None where no bindings say what they are."""
     bound = _bound(rules)
     pure = [each for each in bound if not ticks_back(each.expression)]
@@ -95,7 +95,7 @@ def instant(rules: Sequence[Formalized]) -> Instant | None:
     return Instant(policies, meanings, left_out)
 
 
-def _bound(rules: Sequence[Formalized]) -> list[Proposition]:
+def _bound(rules: Sequence[FormalizedRequirement]) -> list[Proposition]:
     found: dict[str, Proposition] = {}
     for rule in rules:
         known = rule.declarations.propositions if rule.declarations is not None else {}

@@ -18,7 +18,7 @@ _WHOLE_END = 2**64
 """From here on no whole number is recorded."""
 
 
-class Suited(NamedTuple):
+class ConstantEncodings(NamedTuple):
     """A constant as the number of each kind that it may meet; NaN: none is equal to it."""
 
     single: float
@@ -30,7 +30,7 @@ class Suited(NamedTuple):
     """Of the exact number, if it is whole and from 2^53 on; else 0."""
 
 
-def suited(value: Fraction, sign: str = "") -> Suited:
+def encode_constant(value: Fraction, sign: str = "") -> ConstantEncodings:
     """The numbers for which `x sign number` says of each `x` of their kind what the fraction says.
 
     It is what an audit compares samples with; without a sign they are the nearest ones.
@@ -46,7 +46,7 @@ def suited(value: Fraction, sign: str = "") -> Suited:
             magnitude = abs(whole) if DOUBLES_END <= abs(whole) < _WHOLE_END else 0
         double = wide if abs(value) < DOUBLES_END else double
     is_single = isinstance(found.single, Single)
-    return Suited(float(found.single), is_single, double, wide, magnitude)
+    return ConstantEncodings(float(found.single), is_single, double, wide, magnitude)
 
 
 class Language(NamedTuple):
@@ -83,13 +83,13 @@ class Printer:
                 return self.language.truths[value]
             case n.Flag(name):
                 return self._call("flag", self.given[name])
-            case n.Compared(sign, left, n.Fixed(value)):
+            case n.Comparison(sign, left, n.Constant(value)):
                 return self.language.compared(self.number(left), sign, value)
-            case n.Compared(sign, left, right):
+            case n.Comparison(sign, left, right):
                 return self._call(
                     "compared", self.number(left), self.language.signs[sign], self.number(right)
                 )
-            case n.Held(place):
+            case n.HeldFor(place):
                 return self.held[place]
             case n.Not(arg):
                 return self._call("negated", self.truth(arg))
@@ -97,7 +97,7 @@ class Printer:
                 return reduce(lambda x, y: self._call("both", x, y), map(self.truth, args))
             case n.Some(args):
                 return reduce(lambda x, y: self._call("either", x, y), map(self.truth, args))
-            case n.Same(left, right):
+            case n.Iff(left, right):
                 return self._call("same", self.truth(left), self.truth(right))
             case _:
                 assert_never(tree)
@@ -105,19 +105,19 @@ class Printer:
     def number(self, tree: n.Number) -> str:
         """The text of a number."""
         match tree:
-            case n.Given(name):
+            case n.SignalValue(name):
                 return self.given[name]
-            case n.Fixed(value):
+            case n.Constant(value):
                 return self.language.fixed(value)
-            case n.Applied(function, arg):
+            case n.UnaryCall(function, arg):
                 return self._call(function, self.number(arg))
-            case n.Chosen(function, left, n.Fixed(value)):
+            case n.MinMax(function, left, n.Constant(value)):
                 return self.language.chosen(function, self.number(left), value)
-            case n.Computed(function, left, right) | n.Chosen(function, left, right):
+            case n.Computed(function, left, right) | n.MinMax(function, left, right):
                 return self._call(function, self.number(left), self.number(right))
             case n.Power(base, times):
                 return self._call("power", self.number(base), str(times))
-            case n.InBase(arg, scale):
+            case n.ToBaseUnit(arg, scale):
                 return self._call("in_base", self.number(arg), self.language.scale(scale))
             case _:
                 assert_never(tree)

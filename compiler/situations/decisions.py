@@ -15,12 +15,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Read, boolean
 from compiler.formalization.predicates import Past
 from compiler.logic import formula as f
 from compiler.situations.changes import is_large
-from compiler.situations.facts import Facts
+from compiler.situations.tick_predicates import TickPredicates
 from fretish import expressions as e
 from fretish import syntax as s
 
@@ -42,7 +42,7 @@ class Operand:
     """Whether it is the whole, or that negated."""
 
 
-def operands(rule: Formalized, known: Facts) -> Iterator[Operand]:
+def operands(rule: FormalizedRequirement, known: TickPredicates) -> Iterator[Operand]:
     """Those of each part of a sentence; of a large part none."""
     sentence = rule.sentence
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)

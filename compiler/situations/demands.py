@@ -10,18 +10,18 @@ from typing import assert_never
 
 from compiler.formalization.obligation import Kind
 from compiler.logic import formula as f
-from compiler.situations.facts import Facts
+from compiler.situations.tick_predicates import TickPredicates
 
 Rows = Iterator[tuple[str, f.Formula]]
 """Keys, and formulas of the past; FALSE where no interval ends."""
 
 
-def of_demand(known: Facts) -> Rows:
+def of_demand(known: TickPredicates) -> Rows:
     """The situations that the timing of a sentence has."""
     return _rows(known.demand.kind)(known)
 
 
-def _rows(kind: Kind) -> Callable[[Facts], Rows]:
+def _rows(kind: Kind) -> Callable[[TickPredicates], Rows]:
     match kind:
         case Kind.IMMEDIATELY:
             return _immediately
@@ -49,14 +49,14 @@ def _rows(kind: Kind) -> Callable[[Facts], Rows]:
             assert_never(kind)
 
 
-def _immediately(known: Facts) -> Rows:
+def _immediately(known: TickPredicates) -> Rows:
     missed = f.and_(known.triggered, f.not_(known.answer))
     yield "answered-at-once", f.and_(known.triggered, known.answer)
     yield "missed-by-one", missed
     yield "one-tick-late", _late(known, missed)
 
 
-def _next(known: Facts) -> Rows:
+def _next(known: TickPredicates) -> Rows:
     q, missed = known.answer, f.and_(known.was_open, f.not_(known.answer))
     yield "answered-too-early", f.and_(f.previous(f.and_(known.triggered, q)), missed)
     yield "answered-at-last-tick", f.and_(known.was_open, q)
@@ -64,7 +64,7 @@ def _next(known: Facts) -> Rows:
     yield "one-tick-late", _late(known, missed)
 
 
-def _finally(known: Facts) -> Rows:
+def _finally(known: TickPredicates) -> Rows:
     q, missed = known.answer, f.and_(known.waiting, f.not_(known.answer))
     gone = f.and_(missed, f.previous(known.stage.open(f.TRUE)), f.previous(q))
     yield "answered-too-early", _at_its_end(known, gone)
@@ -73,7 +73,7 @@ def _finally(known: Facts) -> Rows:
     yield "one-tick-late", f.and_(_at_its_end(known, missed), q)
 
 
-def _eventually(known: Facts) -> Rows:
+def _eventually(known: TickPredicates) -> Rows:
     q = known.answer
     yield "answered-at-once", f.and_(known.triggered, q)
     yield "answered-later", f.and_(known.was_open, q)
@@ -82,7 +82,7 @@ def _eventually(known: Facts) -> Rows:
     yield "one-tick-late", f.and_(_at_its_end(known, known.open), q)
 
 
-def _always(known: Facts) -> Rows:
+def _always(known: TickPredicates) -> Rows:
     q = known.answer
     missed = f.and_(known.inside, f.previous(known.stage.open(f.TRUE)), f.not_(q))
     yield "answered-at-once", f.and_(known.triggered, q)
@@ -91,7 +91,7 @@ def _always(known: Facts) -> Rows:
     yield "missed-by-one", _at_its_end(known, missed)
 
 
-def _within(known: Facts) -> Rows:
+def _within(known: TickPredicates) -> Rows:
     q, n = known.answer, known.demand.ticks
     last = known.oldest(n)
     missed = f.and_(last, f.not_(q))
@@ -104,7 +104,7 @@ def _within(known: Facts) -> Rows:
     yield "one-tick-late", _late(known, missed)
 
 
-def _for(known: Facts) -> Rows:
+def _for(known: TickPredicates) -> Rows:
     q, n = known.answer, known.demand.ticks
     kept = known.newest(n, q)
     yield "answered-at-once", f.and_(known.triggered, q)
@@ -118,7 +118,7 @@ def _for(known: Facts) -> Rows:
     yield "given-up-after", f.and_(known.newest(n + 1, q), f.not_(q))
 
 
-def _after(known: Facts) -> Rows:
+def _after(known: TickPredicates) -> Rows:
     q, n = known.answer, known.demand.ticks
     last = known.oldest(n + 1)
     missed = f.and_(last, f.not_(q))
@@ -131,7 +131,7 @@ def _after(known: Facts) -> Rows:
     yield "one-tick-late", _late(known, missed)
 
 
-def _not_after(known: Facts) -> Rows:
+def _not_after(known: TickPredicates) -> Rows:
     q, n = known.answer, known.demand.ticks
     beyond = known.oldest(n + 1)
     yield "answered-at-once", f.and_(known.triggered, q)
@@ -143,7 +143,7 @@ def _not_after(known: Facts) -> Rows:
     yield "never-answered", f.and_(beyond, f.not_(q))
 
 
-def _until(known: Facts) -> Rows:
+def _until(known: TickPredicates) -> Rows:
     q, stop = known.answer, known.demand.stop
     asked = f.and_(known.was_open, f.not_(stop))
     yield "answered-at-once", f.and_(known.triggered, q, f.not_(stop))
@@ -155,7 +155,7 @@ def _until(known: Facts) -> Rows:
     yield "stopped-unanswered", f.and_(known.was_open, stop, f.not_(q))
 
 
-def _before(known: Facts) -> Rows:
+def _before(known: TickPredicates) -> Rows:
     q, stop = known.answer, known.demand.stop
     answered = f.and_(known.was_open, q, f.not_(stop))
     yield "answered-at-once", f.and_(known.triggered, q, f.not_(stop))
@@ -166,11 +166,11 @@ def _before(known: Facts) -> Rows:
     yield "stopped-unanswered", f.and_(known.was_open, stop, f.not_(q))
 
 
-def _late(known: Facts, missed: f.Formula) -> f.Formula:
+def _late(known: TickPredicates, missed: f.Formula) -> f.Formula:
     """The answer comes at the tick after the one at which it was missed, in the same interval."""
     return f.and_(known.inside, f.previous(missed), known.answer)
 
 
-def _at_its_end(known: Facts, last: f.Formula) -> f.Formula:
+def _at_its_end(known: TickPredicates, last: f.Formula) -> f.Formula:
     """The interval is over, and this held at its last tick."""
     return f.and_(known.ended, f.previous(last))

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.situations.changes import changes, opposite
 from fretish import expressions as e
 from fretish import syntax as s
@@ -21,7 +21,7 @@ from fretish.clock import in_unit
 from fretish.diagnostics.source import Source
 from fretish.printer import canonical, condition, expression, scope, timing
 from fretish.printer import sentence as printed
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 OPERATORS: Mapping[str, str] = {
     "scope": "another scope, or none",
@@ -48,7 +48,7 @@ class Mutant:
     """An operator of `OPERATORS`, behind a colon the place; unique within a rule."""
     words: str
     """For people: what stands in place of what."""
-    rule: Formalized
+    rule: FormalizedRequirement
     """Of the same id and bindings."""
 
 
@@ -61,8 +61,8 @@ class _Draft:
     sentence: s.Sentence
 
 
-@deep
-def mutants(rule: Formalized) -> tuple[Mutant, ...]:
+@with_recursion_limit
+def mutants(rule: FormalizedRequirement) -> tuple[Mutant, ...]:
     """Those of a rule; no two have the same sentence, and none has that of the rule.
 
     A sentence that cannot be formalized is none.
@@ -86,13 +86,13 @@ def _unique(key: str, taken: Mapping[str, Mutant]) -> str:
     return f"{key}-{number}" if key in taken else key
 
 
-def _formalized(rule: Formalized, sentence: s.Sentence) -> Formalized | None:
+def _formalized(rule: FormalizedRequirement, sentence: s.Sentence) -> FormalizedRequirement | None:
     source = Source(rule.requirement.wording.source.name, printed(sentence))
     formalized, _ = formalize(replace(rule.requirement, wording=source.span()), rule.declarations)
     return formalized
 
 
-def _drafts(rule: Formalized) -> Iterator[_Draft]:
+def _drafts(rule: FormalizedRequirement) -> Iterator[_Draft]:
     sentence = rule.written
     yield from _scopes(sentence)
     yield from _conditions(sentence)
@@ -147,7 +147,7 @@ def _named(own: s.Timing) -> str:
     return f"`{timing(own)}`" if timing(own) else "no timing"
 
 
-def _bounds(rule: Formalized) -> Iterator[_Draft]:
+def _bounds(rule: FormalizedRequirement) -> Iterator[_Draft]:
     own, ticks = s.duration(rule.written.timing), rule.ticks
     if own is None or ticks is None:
         return

@@ -11,19 +11,19 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import assert_never
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import TRAITS, Kind, Trait
 from compiler.logic import formula as f
 from compiler.situations.decisions import Operand, operands
 from compiler.situations.demands import of_demand
-from compiler.situations.facts import Facts, facts
 from compiler.situations.thresholds import Place, places
+from compiler.situations.tick_predicates import TickPredicates, facts
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import duration_text
 from fretish.printer import expression
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 MEANINGS: Mapping[str, str] = {
     "never-enforced": "the run never comes to the scope",
@@ -88,16 +88,16 @@ class Situation:
     variables of the sentence, where none are bound."""
 
 
-@deep
-def situations(rule: Formalized, *, exact: bool = False) -> tuple[Situation, ...]:
+@with_recursion_limit
+def situations(rule: FormalizedRequirement, *, exact: bool = False) -> tuple[Situation, ...]:
     """Those of a rule, in the order of `MEANINGS`.
 
     None of a sentence with predicates that look ahead: no formula of the past says what they are.
 
     Args:
         rule: of which they are.
-        exact: exact after a missed deadline, too, for recorded runs (`compiler.situations.facts`);
-            formulas for a search are not.
+        exact: exact after a missed deadline, too, for recorded runs
+            (`compiler.situations.tick_predicates`); formulas for a search are not.
     """
     if any(name in LOOK_AHEAD for each in conditions(rule.sentence) for name in calls(each)):
         return ()
@@ -109,7 +109,7 @@ def situations(rule: Formalized, *, exact: bool = False) -> tuple[Situation, ...
     )
 
 
-def _of_time(rule: Formalized, known: Facts) -> Iterator[Situation]:
+def _of_time(rule: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
     """Those that ask when something happens."""
     passing = dict([*_of_scope(known), *_of_triggers(known), *of_demand(known)])
     passing["scope-ends-open"] = _ends_open(known)
@@ -124,7 +124,7 @@ def _of_time(rule: Formalized, known: Facts) -> Iterator[Situation]:
 _Rows = Iterator[tuple[str, f.Formula]]
 
 
-def _of_scope(known: Facts) -> _Rows:
+def _of_scope(known: TickPredicates) -> _Rows:
     """How the interval comes, and comes again."""
     inside, triggered = known.inside, known.triggered
     scope, mode = known.whole.scope, known.whole.mode
@@ -165,7 +165,7 @@ def _begins_with_run(scope: s.ScopeKind) -> bool:
             assert_never(scope)
 
 
-def _of_triggers(known: Facts) -> _Rows:
+def _of_triggers(known: TickPredicates) -> _Rows:
     """When a demand begins, and again."""
     triggered = known.triggered
     scope, each = known.whole.scope, known.whole.condition is None
@@ -195,14 +195,14 @@ def _lasts(kind: Kind) -> bool:
             assert_never(kind)
 
 
-def _ends_open(known: Facts) -> f.Formula:
+def _ends_open(known: TickPredicates) -> f.Formula:
     """The interval is over, and a demand was open that its end decides or voids."""
     if Trait.LAST in TRAITS[known.demand.kind]:
         return f.FALSE  # it says already which last ticks there are
     return f.and_(known.ended, f.previous(known.open))
 
 
-def _of_the_end(known: Facts) -> _Rows:
+def _of_the_end(known: TickPredicates) -> _Rows:
     """What the last tick of the whole run tells."""
     if known.stage.left != f.FIRST:  # else the first tick lies in it
         yield "never-enforced", f.not_(f.once(known.inside))
@@ -218,14 +218,14 @@ def _of_the_end(known: Facts) -> _Rows:
 # What decides -----------------------------------------------------------------------------------
 
 
-def _of_operands(rule: Formalized, known: Facts) -> Iterator[Situation]:
+def _of_operands(rule: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
     """Those of single operands, by their keys in the order of `MEANINGS`."""
     found = [each for operand in operands(rule, known) for each in _of_operand(rule, operand)]
     order = [*MEANINGS]
     yield from sorted(found, key=lambda each: order.index(each.key.partition(":")[0]))
 
 
-def _of_operand(rule: Formalized, operand: Operand) -> Iterator[Situation]:
+def _of_operand(rule: FormalizedRequirement, operand: Operand) -> Iterator[Situation]:
     declared = rule.declarations.propositions if rule.declarations else {}
     bound = declared.get(operand.atom or "")
     stated = operand.expression if bound is None else bound.expression
@@ -271,7 +271,7 @@ def _short(part: e.Expression) -> str:
 # Words ------------------------------------------------------------------------------------------
 
 
-def _words(rule: Formalized, known: Facts) -> Mapping[str, str]:
+def _words(rule: FormalizedRequirement, known: TickPredicates) -> Mapping[str, str]:
     """What stands in `MEANINGS` for the parts of a sentence."""
     sentence = rule.written
     stop, response = s.stop(sentence.timing), expression(sentence.response)

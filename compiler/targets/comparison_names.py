@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, excluded
 from compiler.formalization.resolution import candidates
 from compiler.logic import formula as f
@@ -17,19 +17,19 @@ from compiler.logic.printing import identifier, is_compound
 from fretish import expressions as e
 from fretish.bindings.comparisons import bound, is_measured
 from fretish.printer import expression
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 
-@deep
-def comparison_names(rule: Formalized) -> Mapping[str, str]:
+@with_recursion_limit
+def comparison_names(rule: FormalizedRequirement) -> Mapping[str, str]:
     """The name of each atom of a rule that is a comparison or a call."""
     atoms = dict.fromkeys((*rule.propositions, *atoms_of(rule.sentence)))
     others = {identifier(name) for name in (*rule.variables, *rule.glossary, *atoms)}
     return legal_names(filter(is_compound, atoms), others)
 
 
-@deep
-def in_words(rule: Formalized) -> Mapping[str, str]:
+@with_recursion_limit
+def in_words(rule: FormalizedRequirement) -> Mapping[str, str]:
     """What each of these atoms means, in the units of its signals: `battery < 20 %`."""
     parts = dict(candidates(rule.sentence))
     meanings = {}
@@ -39,7 +39,9 @@ def in_words(rule: Formalized) -> Mapping[str, str]:
     return meanings
 
 
-def _meaning(rule: Formalized, atom: str, part: e.Expression | None) -> e.Expression | None:
+def _meaning(
+    rule: FormalizedRequirement, atom: str, part: e.Expression | None
+) -> e.Expression | None:
     if rule.declarations is None:
         return part
     signals = rule.declarations.signals
@@ -51,7 +53,7 @@ def _meaning(rule: Formalized, atom: str, part: e.Expression | None) -> e.Expres
     return part if declared is None else declared.expression
 
 
-def definitions(rule: Formalized, names: Mapping[str, str]) -> Mapping[str, str]:
+def definitions(rule: FormalizedRequirement, names: Mapping[str, str]) -> Mapping[str, str]:
     """By the names in a text, what stands for something else: `battery_lt_20` for `battery < 20 %`.
 
     Args:
@@ -66,7 +68,7 @@ def definitions(rule: Formalized, names: Mapping[str, str]) -> Mapping[str, str]
     }
 
 
-def impossible(rule: Formalized, names: Mapping[str, str]) -> list[str]:
+def impossible(rule: FormalizedRequirement, names: Mapping[str, str]) -> list[str]:
     """Which comparisons never have these values together, by the names of a language."""
     return [
         ", ".join(f"{names[atom]} {str(value).lower()}" for atom, value in exclusion)
@@ -74,7 +76,7 @@ def impossible(rule: Formalized, names: Mapping[str, str]) -> list[str]:
     ]
 
 
-def notes(rule: Formalized) -> list[str]:
+def notes(rule: FormalizedRequirement) -> list[str]:
     """Definitions, and what no numbers make true, a sentence each."""
     names = comparison_names(rule)
     return [

@@ -29,7 +29,7 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, temporal_predicate
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
@@ -43,14 +43,14 @@ from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ConditionKind, ScopeKind
 
 _ELSEWHERE = "check its monitor with `fretc verify`"
 
 
-@deep
-def refuse(rule: Formalized) -> Diagnostic | None:
+@with_recursion_limit
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F601 for the first part of the rule of which nothing could be proved."""
     sentence = rule.sentence
     if rule.pctl is not None:
@@ -78,18 +78,20 @@ _SCOPES: Mapping[ScopeKind, str] = {
 }
 
 
-@deep
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+@with_recursion_limit
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>.dfy` for each rule."""
     declared = options.declarations
     return tuple(Artifact(PurePosixPath(_name(rule)), text(rule, declared)) for rule in rules)
 
 
-def _name(rule: Formalized) -> str:
+def _name(rule: FormalizedRequirement) -> str:
     return f"{stem(rule)}.dfy"
 
 
-def text(rule: Formalized, declarations: Declarations | None) -> str:
+def text(rule: FormalizedRequirement, declarations: Declarations | None) -> str:
     """The whole file; the same for the same rule and declarations.
 
     Args:
@@ -164,7 +166,7 @@ _TRIGGERS: Mapping[ConditionKind | None, Trigger] = {
 }
 
 
-def _monitor(rule: Formalized) -> str:
+def _monitor(rule: FormalizedRequirement) -> str:
     sentence, timing = rule.sentence, rule.sentence.timing
     fields = _names(rule)
     stop, shape = s.stop(timing), s.SHAPES[type(timing)]
@@ -182,7 +184,7 @@ def _monitor(rule: Formalized) -> str:
     )
 
 
-def _trigger(rule: Formalized) -> Trigger:
+def _trigger(rule: FormalizedRequirement) -> Trigger:
     condition = rule.sentence.condition
     return _TRIGGERS[condition.kind if condition else None]
 
@@ -203,7 +205,7 @@ _COUNTERS: Mapping[type[s.Timing], str] = {
 """The template of each timing."""
 
 
-def _bound(rule: Formalized) -> Mapping[str, object]:
+def _bound(rule: FormalizedRequirement) -> Mapping[str, object]:
     """How the templates name the bound: a parameter and an argument, where there is one."""
     bounded = s.duration(rule.sentence.timing) is not None
     return {
@@ -230,7 +232,7 @@ def _field(name: str) -> str:
     return text if text[0].isalpha() else f"p_{text}"
 
 
-def _names(rule: Formalized) -> Mapping[str, str]:
+def _names(rule: FormalizedRequirement) -> Mapping[str, str]:
     return _fields(atoms_of(rule.sentence), comparison_names(rule))
 
 
@@ -279,7 +281,7 @@ def _interceptor(declarations: Declarations | None) -> str:
 # Closed loop ----------------------------------------------------------------------------------
 
 
-def _loop(rule: Formalized, declarations: Declarations | None) -> str:
+def _loop(rule: FormalizedRequirement, declarations: Declarations | None) -> str:
     reason = loopless(rule, declarations)
     if reason is not None:
         return render("dafny/loopless.dfy.j2", reason=reason)

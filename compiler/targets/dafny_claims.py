@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.logic.claims import Layer
@@ -42,7 +42,7 @@ class Delay:
         return self.reach + self.braking
 
 
-def loopless(rule: Formalized, declarations: Declarations | None) -> str | None:
+def loopless(rule: FormalizedRequirement, declarations: Declarations | None) -> str | None:
     """Why the file has no claim about the closed loop; None where it has one."""
     if declarations is None or declarations.interceptor is None:
         return "the bindings have no [interceptor], and the plain form waits for a command to stop"
@@ -58,7 +58,7 @@ def loopless(rule: Formalized, declarations: Declarations | None) -> str | None:
     return None
 
 
-def delay(rule: Formalized, declarations: Declarations | None) -> Delay | str | None:
+def delay(rule: FormalizedRequirement, declarations: Declarations | None) -> Delay | str | None:
     """The delay under [assume], or why it is no number of ticks; None without [assume]."""
     assumed = declarations.assumed if declarations else None
     if assumed is None:
@@ -84,7 +84,7 @@ class Claim:
     """Why the file does not show it."""
 
 
-def claims(rule: Formalized, declarations: Declarations | None) -> tuple[Claim, ...]:
+def claims(rule: FormalizedRequirement, declarations: Declarations | None) -> tuple[Claim, ...]:
     """The claims of a rule's file, in its order; none for a part that it leaves out."""
     return (
         _monitor_claim(rule),
@@ -93,7 +93,7 @@ def claims(rule: Formalized, declarations: Declarations | None) -> tuple[Claim, 
     )
 
 
-def _monitor_claim(rule: Formalized) -> Claim:
+def _monitor_claim(rule: FormalizedRequirement) -> Claim:
     timing = rule.sentence.timing
     every = ", for every bound" if s.duration(timing) else ""
     if s.is_eventual(timing) or s.SHAPES[type(timing)].extent.needs_end:
@@ -140,7 +140,7 @@ def _assumed(declarations: Declarations | None) -> tuple[str, ...]:
     return (requests, f"{delivery}; or one from before the trigger is still in force", stands)
 
 
-def _loop_claims(rule: Formalized, declarations: Declarations | None) -> Iterator[Claim]:
+def _loop_claims(rule: FormalizedRequirement, declarations: Declarations | None) -> Iterator[Claim]:
     if loopless(rule, declarations) is not None:
         return
     assumptions = _assumed(declarations)

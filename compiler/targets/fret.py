@@ -12,7 +12,7 @@ from typing import Any
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
 from compiler.logic.spelling.reserved_words import FRET
 from compiler.project.fret_import import OWN, STATUSES, assignment_field, unquoted
@@ -37,7 +37,9 @@ _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
 """RFC 4122's name space of URLs: the same requirement always has the same `_id`."""
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`fret.json` with all rules: `{"requirements": [...], "variables": [...]}`."""
     read = {id(rule.requirement): _in_fretish(rule) for rule in rules}
     ordered = [(entry, read.get(id(entry))) for entry in _ordered(rules, options)]
@@ -51,7 +53,7 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
     return (Artifact(PurePosixPath("fret.json"), text),)
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F601: FRET has no units, and converts nothing."""
     if _mixes_units(rule):
         return not_expressible(
@@ -70,7 +72,7 @@ def refuse(rule: Formalized) -> Diagnostic | None:
     )
 
 
-def _in_fretish(rule: Formalized) -> Formalized:
+def _in_fretish(rule: FormalizedRequirement) -> FormalizedRequirement:
     """The rule of the sentence that FRET reads.
 
     Its names stand there as they are written, and FRET has what they stand for. Where a unit is
@@ -83,7 +85,7 @@ def _in_fretish(rule: Formalized) -> Formalized:
     return _in_quotes(_with_names(rule) if rule.definitions else rule)
 
 
-def _in_quotes(rule: Formalized) -> Formalized:
+def _in_quotes(rule: FormalizedRequirement) -> FormalizedRequirement:
     """The rule of the same sentence, with quotes around names that FRET does not read without."""
     wording = rule.requirement.wording
     component = rule.written.component_span
@@ -122,7 +124,7 @@ def _variable_name(id: str) -> str:
     return f'"{id}"' if id in FRET else identifier(id)
 
 
-def _with_names(rule: Formalized) -> Formalized:
+def _with_names(rule: FormalizedRequirement) -> FormalizedRequirement:
     """The rule as if the names of its sentence stood for nothing."""
     assert rule.declarations is not None, "they define the names"
     variables = {
@@ -133,7 +135,7 @@ def _with_names(rule: Formalized) -> Formalized:
     return replace(plain, glossary=rule.glossary) if plain else _without_units(rule)
 
 
-def _mixes_units(rule: Formalized) -> bool:
+def _mixes_units(rule: FormalizedRequirement) -> bool:
     """Whether FRET would compare metres with centimetres: its variables are bare numbers."""
     signals = rule.declarations.signals if rule.declarations else {}
     return any(
@@ -143,7 +145,7 @@ def _mixes_units(rule: Formalized) -> bool:
     )
 
 
-def _without_units(rule: Formalized) -> Formalized:
+def _without_units(rule: FormalizedRequirement) -> FormalizedRequirement:
     """The rule as if its sentence had been written with bare numbers, in the signals' own units."""
     text = Source(rule.requirement.wording.source.name, sentence(rule.sentence)).span()
     written = parse(text)
@@ -152,7 +154,7 @@ def _without_units(rule: Formalized) -> Formalized:
     return replace(rule, requirement=requirement, written=written, sentence=written, definitions={})
 
 
-def _ordered(rules: Sequence[Formalized], options: Options) -> list[Requirement]:
+def _ordered(rules: Sequence[FormalizedRequirement], options: Options) -> list[Requirement]:
     """Those of rules and free texts, in the order of their files, and of each file."""
     entries = [*(rule.requirement for rule in rules), *options.free_texts]
     files = list(dict.fromkeys(entry.wording.source.name for entry in entries))
@@ -161,7 +163,7 @@ def _ordered(rules: Sequence[Formalized], options: Options) -> list[Requirement]
     )
 
 
-def requirement(entry: Requirement, rule: Formalized | None) -> dict[str, Any]:
+def requirement(entry: Requirement, rule: FormalizedRequirement | None) -> dict[str, Any]:
     """FRET's record of one requirement; one without a rule is free text."""
     fret = entry.fret
     return {
@@ -199,7 +201,7 @@ def _id(entry: Requirement) -> str:
     return entry.fret.get("_id") or str(uuid.uuid5(_SPACE, name))
 
 
-def semantics(rule: Formalized) -> dict[str, Any]:
+def semantics(rule: FormalizedRequirement) -> dict[str, Any]:
     """FRET's description of a sentence, with our formulas in FRET's spelling."""
     tree = rule.sentence
     base = rule.requirement.wording.start
@@ -265,7 +267,7 @@ def _spans(tree: s.Sentence) -> dict[str, Span | None]:
 
 
 def variables(
-    rules: Sequence[Formalized], declarations: Declarations | None = None
+    rules: Sequence[FormalizedRequirement], declarations: Declarations | None = None
 ) -> list[dict[str, Any]]:
     """FRET's records of all variables; types and roles as far as the bindings know them.
 
@@ -303,7 +305,7 @@ def _is_of(variable: tuple[str, str, str], named: tuple[str, str, str]) -> bool:
 
 
 def _glossary(
-    rules: Sequence[Formalized], declarations: Declarations | None
+    rules: Sequence[FormalizedRequirement], declarations: Declarations | None
 ) -> Iterator[tuple[str, Variable]]:
     """Each name with what it is, of each component."""
     if declarations is None:

@@ -7,12 +7,14 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import record
 from compiler.targets.target import DEFAULT, Options, Target, stem
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>.json` for each rule."""
     return tuple(
         Artifact(

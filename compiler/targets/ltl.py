@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names
@@ -19,14 +19,16 @@ from fretish.diagnostics.rendering import visible
 from fretish.meaning import meaning
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>.ltl` for each rule."""
     return tuple(
         Artifact(PurePosixPath(f"{stem(rule)}.ltl"), text(rule, options)) for rule in rules
     )
 
 
-def text(rule: Formalized, options: Options = DEFAULT) -> str:
+def text(rule: FormalizedRequirement, options: Options = DEFAULT) -> str:
     """What a person reads: the sentence, its meaning, and its formulas."""
     dialect = printing.DIALECTS[options.notation]
     names = _names(rule, dialect)
@@ -58,7 +60,7 @@ def text(rule: Formalized, options: Options = DEFAULT) -> str:
     )
 
 
-def _names(rule: Formalized, dialect: printing.Dialect) -> Mapping[str, str]:
+def _names(rule: FormalizedRequirement, dialect: printing.Dialect) -> Mapping[str, str]:
     """What propositions are called in a notation, where it is not what they are."""
     if dialect == printing.SPOT:
         return comparison_names(rule)  # any other is in quotes where it has to be
@@ -68,7 +70,7 @@ def _names(rule: Formalized, dialect: printing.Dialect) -> Mapping[str, str]:
     return {atom: name for atom, name in names.items() if name != printing.identifier(atom)}
 
 
-def _simplified(rule: Formalized) -> str:
+def _simplified(rule: FormalizedRequirement) -> str:
     """Spot's shorter form, proved equivalent; or why there is none."""
     from compiler.logic.spot import simplified
 

@@ -18,7 +18,7 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from compiler.logic import formula as f
 from compiler.logic import printing
@@ -39,14 +39,14 @@ from fretish import expressions as e
 from fretish.checking import LOOK_BACK, calls, conditions
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import timing as printing_of
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 _MOST_STEPS = 64
 """Of a chain of `X`: the automaton of a longer one is beyond any model checker."""
 
 
-@deep
-def refuse(rule: Formalized) -> Diagnostic | None:
+@with_recursion_limit
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F601 without a probability, and for what PRISM's formulas cannot say."""
     if rule.pctl is None:
         return not_expressible(
@@ -74,7 +74,7 @@ def refuse(rule: Formalized) -> Diagnostic | None:
     return too_long("PRISM", rule, rule.pctl)
 
 
-def _looks_back(rule: Formalized) -> str | None:
+def _looks_back(rule: FormalizedRequirement) -> str | None:
     for expression in conditions(rule.sentence):
         predicate = next((name for name in calls(expression) if name in LOOK_BACK), None)
         if predicate is None and any(name.id == "FTP" for name in e.names(expression)):
@@ -84,13 +84,15 @@ def _looks_back(rule: Formalized) -> str | None:
     return None
 
 
-@deep
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+@with_recursion_limit
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>.props` and `<id>.prism` for each rule."""
     return tuple(file for rule in rules for file in _files(rule))
 
 
-def _names(rule: Formalized) -> Mapping[str, str]:
+def _names(rule: FormalizedRequirement) -> Mapping[str, str]:
     # Storm's parser of models ends a module at this word, also within a name.
     parted = {
         name: identifier_of(name).replace("endmodule", "end_module")
@@ -100,7 +102,7 @@ def _names(rule: Formalized) -> Mapping[str, str]:
     return legal_names(rule.propositions, PRISM, names={**comparison_names(rule), **parted})
 
 
-def _files(rule: Formalized) -> Iterator[Artifact]:
+def _files(rule: FormalizedRequirement) -> Iterator[Artifact]:
     assert rule.pctl is not None, "refused"
     names = _names(rule)
     meanings = in_words(rule)
@@ -150,7 +152,7 @@ class _Property:
         """A formula that is true or false of a state."""
         return self._read(formula, self._odds)
 
-    def _odds(self, odds: f.Odds) -> str:
+    def _odds(self, odds: f.ProbabilityBound) -> str:
         if isinstance(odds.arg, f.Globally) and odds.arg.ahead != f.EVER and _is_simple(odds.arg):
             return self._odds(complement(odds))
         path = f"[ {self._path(odds.arg)} ]"
@@ -166,12 +168,12 @@ class _Property:
             return self._read(formula, self._odds)
         return self._read(unrolled(formula), self._odds)
 
-    def _read(self, formula: f.Formula, odds: Callable[[f.Odds], str]) -> str:
+    def _read(self, formula: f.Formula, odds: Callable[[f.ProbabilityBound], str]) -> str:
         """The text, with each probability within it in place."""
         hidden: dict[str, str] = {}
 
         def hide(part: f.Formula) -> f.Formula:
-            if isinstance(part, f.Odds):
+            if isinstance(part, f.ProbabilityBound):
                 name = f"_{len(hidden)}_"
                 hidden[name] = odds(part)
                 return f.Atom(name)
@@ -184,13 +186,13 @@ class _Property:
         return printing.text(printing.for_prism(hide(formula)), dialect)
 
 
-def complement(odds: f.Odds) -> f.Odds:
+def complement(odds: f.ProbabilityBound) -> f.ProbabilityBound:
     """`P<=0.1 [ F<=n !a ]` for `P>=0.9 [ G<=n a ]`, which Storm does not read."""
     assert isinstance(odds.arg, f.Globally)
     with localcontext(prec=len(odds.bound) + 2):
         bound = format(1 - Decimal(odds.bound), "f")
     flipped = odds.op.translate(str.maketrans("<>", "><"))
-    return f.Odds(flipped, bound, f.eventually(f.not_(odds.arg.arg), odds.arg.ahead))
+    return f.ProbabilityBound(flipped, bound, f.eventually(f.not_(odds.arg.arg), odds.arg.ahead))
 
 
 def _is_simple(formula: f.Formula) -> bool:
@@ -202,7 +204,7 @@ def _is_simple(formula: f.Formula) -> bool:
 
 def _is_temporal(formula: f.Formula) -> bool:
     match formula:
-        case f.Odds():
+        case f.ProbabilityBound():
             return False  # it is true or false of a state
         case f.Next() | f.Eventually() | f.Globally() | f.Until() | f.Release():
             return True
@@ -212,7 +214,7 @@ def _is_temporal(formula: f.Formula) -> bool:
 
 def unrolled(formula: f.Formula) -> f.Formula:
     """The formula with chains of `X` for bounds; what stands within a probability is left alone."""
-    if isinstance(formula, f.Odds):
+    if isinstance(formula, f.ProbabilityBound):
         return formula
     rebuilt = f.rebuild(formula, unrolled)
     match rebuilt:
@@ -235,7 +237,7 @@ def _later(formula: f.Formula, ticks: int) -> f.Formula:
 def _steps(formula: f.Formula) -> int:
     """How many `X` the chains of the longest LTL formula within it have."""
     match formula:
-        case f.Odds(_, _, arg):
+        case f.ProbabilityBound(_, _, arg):
             return _steps(arg) if _is_simple(arg) else max(_chain(arg), _steps(arg))
         case _:
             return max(map(_steps, f.children(formula)), default=0)
@@ -243,7 +245,7 @@ def _steps(formula: f.Formula) -> int:
 
 def _chain(formula: f.Formula) -> int:
     match formula:
-        case f.Odds():
+        case f.ProbabilityBound():
             return 0
         case f.Eventually(arg, f.Interval(_, int(hi))) | f.Globally(arg, f.Interval(_, int(hi))):
             return hi + _chain(arg)

@@ -9,7 +9,7 @@ from typing import Protocol
 
 from compiler.files.artifact import Artifact
 from compiler.files.attribution import NOBODY, Attribution
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -43,7 +43,7 @@ class Emit(Protocol):
     """Rules → files."""
 
     def __call__(
-        self, rules: Sequence[Formalized], options: Options = DEFAULT
+        self, rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
     ) -> tuple[Artifact, ...]:
         """Make all files of the rules; pure."""
 
@@ -58,8 +58,8 @@ class Target:
     name: str
     summary: str
     emit: Emit
-    refuse: Callable[[Formalized], Diagnostic | None] = lambda rule: None
-    remark: Callable[[Formalized], Diagnostic | None] = lambda rule: None
+    refuse: Callable[[FormalizedRequirement], Diagnostic | None] = lambda rule: None
+    remark: Callable[[FormalizedRequirement], Diagnostic | None] = lambda rule: None
     """A warning for the user of the output; it does not refuse the output."""
     refuse_project: Callable[[Options], Diagnostic | None] = lambda options: None
     """Asked once: a reason to refuse the target for any rules."""
@@ -77,24 +77,24 @@ class Target:
     """Whether all rules always become one monitor; `per_rule` is False then."""
     next_step: str = ""
     """A command for the first file, `{}`, and what it does; for whoever makes one anew."""
-    names: Callable[[Formalized], Mapping[str, str]] = lambda rule: {}
+    names: Callable[[FormalizedRequirement], Mapping[str, str]] = lambda rule: {}
     """What its texts call the propositions of a rule that it does not refuse."""
     weak: Target | None = None
     """The same target where weakening is allowed: it refuses less, and remarks what is lost."""
 
 
-def stem(rule: Formalized) -> str:
+def stem(rule: FormalizedRequirement) -> str:
     """The name of the rule's files, without their ending: the id in lower case."""
     return rule.id.lower()
 
 
-def identifier(rule: Formalized) -> str:
+def identifier(rule: FormalizedRequirement) -> str:
     """Its id in languages whose names begin with a letter: an id may begin with a digit."""
     plain = re.sub(r"\W", "_", stem(rule))
     return f"r{plain}" if plain[:1].isdigit() else plain
 
 
-def not_expressible(target: str, rule: Formalized, what: str, fix: str) -> Diagnostic:
+def not_expressible(target: str, rule: FormalizedRequirement, what: str, fix: str) -> Diagnostic:
     """F601: the target's language has no words for a part of the rule."""
     return Diagnostic(
         Code.NOT_EXPRESSIBLE,
@@ -108,7 +108,7 @@ _MOST_OPERATORS = 100_000
 """Of a property."""
 
 
-def too_long(target: str, rule: Formalized, formula: f.Formula) -> Diagnostic | None:
+def too_long(target: str, rule: FormalizedRequirement, formula: f.Formula) -> Diagnostic | None:
     """F670 where the formula is endless once `<->` and `xor` are written with other operators."""
     if _size(formula) <= _MOST_OPERATORS:
         return None

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import replace
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons, temporal_predicate
 from fretc.analysis import implications as of_runs
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import by_outputs, by_variables
@@ -34,13 +34,13 @@ from fretc.analysis.findings import (
 )
 from fretc.analysis.games import job as of_games
 from fretc.analysis.implications import Consistency, Constant, Removable
+from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.repairs import repairs
-from fretc.analysis.stage import Stage, stage
 from fretc.analysis.verdicts import Completeness, component, conflicts, strategy, verdict
 from fretish.bindings.declarations import Role
 from fretish.checking import NUMBERS_BACK, calls, conditions
 from fretish.printer import sentence as printed
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,11 +78,11 @@ Finding = (
 Job = of_games.Job[Finding]
 
 
-@deep
+@with_recursion_limit
 def analyze(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     roles: Roles,
-    assumptions: Sequence[Formalized] = (),
+    assumptions: Sequence[FormalizedRequirement] = (),
     options: Options = DEFAULT,
 ) -> Analysis:
     """All that can be known of the requirements together, computed in this process.
@@ -99,7 +99,7 @@ def analyze(
     return assembled(rules, roles, assumptions, options, found)
 
 
-Question = Callable[[Stage, Budget], Iterator[Finding]]
+Question = Callable[[RealizabilityProblem, Budget], Iterator[Finding]]
 _OF_GROUPS: Mapping[str, Question] = {
     "does each of {} say anything?": of_runs.constants,
     "is each of {} ever triggered?": of_runs.vacuities,
@@ -109,9 +109,9 @@ _OF_GROUPS: Mapping[str, Question] = {
 
 
 def jobs(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     roles: Roles,
-    assumptions: Sequence[Formalized],
+    assumptions: Sequence[FormalizedRequirement],
     options: Options,
 ) -> tuple[Job, ...]:
     """All questions, the most important ones first."""
@@ -137,7 +137,7 @@ def jobs(
     )
 
 
-def _promises(assumptions: Sequence[Formalized], roles: Roles, options: Options) -> Job:
+def _promises(assumptions: Sequence[FormalizedRequirement], roles: Roles, options: Options) -> Job:
     """Whether the assumptions can be kept at all: from those that cannot, everything follows."""
     title = f"can any run keep the assumptions {', '.join(each.id for each in assumptions)}?"
 
@@ -154,9 +154,9 @@ def _promises(assumptions: Sequence[Formalized], roles: Roles, options: Options)
 
 
 def controllers(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     roles: Roles,
-    assumptions: Sequence[Formalized],
+    assumptions: Sequence[FormalizedRequirement],
     options: Options,
     form: Form,
 ) -> tuple[Job, ...]:
@@ -172,9 +172,9 @@ class _Setting:
 
     def __init__(
         self,
-        rules: Sequence[Formalized],
+        rules: Sequence[FormalizedRequirement],
         roles: Roles,
-        assumptions: Sequence[Formalized],
+        assumptions: Sequence[FormalizedRequirement],
         options: Options,
     ) -> None:
         self._rules, self._roles, self._assumptions = rules, roles, assumptions
@@ -184,9 +184,9 @@ class _Setting:
             f"{ids[0]} and {len(ids) - 1} others" if len(ids) > _MOST_NAMES else ", ".join(ids)
         )
         self._ids = tuple(ids)
-        self._built: Stage | None = None
+        self._built: RealizabilityProblem | None = None
 
-    def _stage(self, budget: Budget) -> Stage:
+    def _stage(self, budget: Budget) -> RealizabilityProblem:
         """The arena, whose comparisons are sorted out in the time of the first question."""
         if self._built is None:
             as_fret = self._options.as_fret
@@ -206,7 +206,7 @@ class _Setting:
             try:
                 found, self._built = verdict(self._stage(budget), budget)
                 yield found
-            except (BeyondError, OutOfTimeError) as error:
+            except (UnsupportedError, OutOfTimeError) as error:
                 yield not_checked(str(error))
 
         return Job(f"can {self._name} be kept together?", ask, not_checked)
@@ -290,7 +290,7 @@ class _Setting:
         budget = Budget(self._options.seconds)
         try:
             yield from question(self._stage(budget), budget)
-        except (BeyondError, OutOfTimeError) as error:
+        except (UnsupportedError, OutOfTimeError) as error:
             yield OpenQuestion(title, str(error))
 
 
@@ -301,9 +301,9 @@ _MOST_NAMES = 4
 
 
 def assembled(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     roles: Roles,
-    assumptions: Sequence[Formalized],
+    assumptions: Sequence[FormalizedRequirement],
     options: Options,
     findings: Iterable[Finding],
 ) -> Analysis:
@@ -349,7 +349,7 @@ def _of(kind: type[F], found: Sequence[Finding]) -> tuple[F, ...]:
     return tuple(each for each in found if isinstance(each, kind))
 
 
-def _looks_back(rule: Formalized) -> bool:
+def _looks_back(rule: FormalizedRequirement) -> bool:
     if temporal_predicate(rule.sentence):
         return True
     return any(NUMBERS_BACK & {*calls(each)} for each in conditions(rule.sentence))
@@ -378,14 +378,18 @@ def _fought(component: Component, conflicts: Sequence[frozenset[str]]) -> Compon
     return component
 
 
-def _consistent(rules: Sequence[Formalized], found: Sequence[Consistency]) -> bool | None:
+def _consistent(
+    rules: Sequence[FormalizedRequirement], found: Sequence[Consistency]
+) -> bool | None:
     if any(each.holds is False for each in found):
         return False
     known = {id for each in found if each.holds for id in each.requirements}
     return True if known.issuperset(rule.id for rule in rules) else None
 
 
-def _terms(rules: Sequence[Formalized], assumes: bool, options: Options) -> Iterator[str]:
+def _terms(
+    rules: Sequence[FormalizedRequirement], assumes: bool, options: Options
+) -> Iterator[str]:
     """What the findings rest on.
 
     Args:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from compiler.formalization.formalize import clashes, duplicates, formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalize import duplicate_ids, formalize, name_collisions
+from compiler.formalization.formalized import FormalizedRequirement
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 
 
 def assumptions(
-    rules: Sequence[Formalized], declarations: Declarations | None
-) -> tuple[tuple[Formalized, ...], tuple[Diagnostic, ...]]:
+    rules: Sequence[FormalizedRequirement], declarations: Declarations | None
+) -> tuple[tuple[FormalizedRequirement, ...], tuple[Diagnostic, ...]]:
     """The assumptions as rules, and all that there is to say of them.
 
     Args:
@@ -21,15 +21,15 @@ def assumptions(
     """
     if declarations is None or not declarations.environment:
         return (), ()
-    found: list[Formalized] = []
+    found: list[FormalizedRequirement] = []
     said: list[Diagnostic] = []
     for requirement in declarations.environment:
         rule, remarks = formalize(requirement, declarations)
         said.extend(remarks)
         if rule is not None:
             found.append(rule)
-    said.extend(clashes([*rules, *found]))
+    said.extend(name_collisions([*rules, *found]))
     if not has_errors(said):
         every = [*(rule.requirement for rule in rules), *declarations.environment]
-        said.extend(dict.fromkeys(duplicates(every).values()))
+        said.extend(dict.fromkeys(duplicate_ids(every).values()))
     return tuple(found), tuple(dict.fromkeys(said))

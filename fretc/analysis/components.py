@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.arena.roles import Roles
 from fretish.bindings.declarations import Role
 
 Tokens = frozenset[str]
 
 
-def tokens(rule: Formalized, roles: Roles, *kinds: Role) -> Tokens:
+def tokens(rule: FormalizedRequirement, roles: Roles, *kinds: Role) -> Tokens:
     """The variables of such roles that a rule reads; of a bound proposition its signals."""
     found: set[str] = set()
     for name in rule.variables:
@@ -26,31 +26,37 @@ def tokens(rule: Formalized, roles: Roles, *kinds: Role) -> Tokens:
 
 
 def by_outputs(
-    rules: Sequence[Formalized], assumptions: Sequence[Formalized], roles: Roles
-) -> list[tuple[Formalized, ...]]:
+    rules: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement],
+    roles: Roles,
+) -> list[tuple[FormalizedRequirement, ...]]:
     """Components: those of which no output is shared; assumptions about outputs join them."""
 
-    def of(rule: Formalized) -> Tokens:
+    def of(rule: FormalizedRequirement) -> Tokens:
         return tokens(rule, roles, Role.OUTPUT)
 
     return _groups(rules, [each for each in assumptions if of(each)], of)
 
 
 def by_variables(
-    rules: Sequence[Formalized], assumptions: Sequence[Formalized], roles: Roles
-) -> list[tuple[Formalized, ...]]:
+    rules: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement],
+    roles: Roles,
+) -> list[tuple[FormalizedRequirement, ...]]:
     """Groups that share no variable at all."""
     return _groups(rules, assumptions, lambda rule: tokens(rule, roles, Role.INPUT, Role.OUTPUT))
 
 
 def about(
-    rules: Sequence[Formalized], assumptions: Sequence[Formalized], roles: Roles
-) -> tuple[Formalized, ...]:
+    rules: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement],
+    roles: Roles,
+) -> tuple[FormalizedRequirement, ...]:
     """The assumptions that bear upon the rules, directly or by way of other assumptions."""
     kinds = (Role.INPUT, Role.OUTPUT)
     reached = {token for rule in rules for token in tokens(rule, roles, *kinds)}
     rest = list(assumptions)
-    found: list[Formalized] = []
+    found: list[FormalizedRequirement] = []
     while True:
         near = [each for each in rest if reached & tokens(each, roles, *kinds)]
         if not near:
@@ -62,8 +68,10 @@ def about(
 
 
 def _groups(
-    rules: Sequence[Formalized], links: Sequence[Formalized], of: Callable[[Formalized], Tokens]
-) -> list[tuple[Formalized, ...]]:
+    rules: Sequence[FormalizedRequirement],
+    links: Sequence[FormalizedRequirement],
+    of: Callable[[FormalizedRequirement], Tokens],
+) -> list[tuple[FormalizedRequirement, ...]]:
     """The rules that are linked, in their order; links themselves are in no group."""
     groups: list[tuple[set[int], set[str]]] = []
     members = [*rules, *links]

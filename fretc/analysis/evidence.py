@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
-from compiler.files.checked_json import MisshapenError, parsed
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
+from compiler.files.checked_json import SchemaError, parsed
 from compiler.files.records import Name, Record, Sha256, about, decoded, json_schema
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.arena.roles import role
 from fretc.analysis.findings import Analysis, Verdict
 from fretc.analysis.reasons import listed
@@ -67,8 +67,8 @@ def schema() -> dict[str, Any]:
 
 
 def document(
-    rules: Sequence[Formalized],
-    assumptions: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement],
     analysis: Analysis,
     *,
     as_fret: bool,
@@ -77,12 +77,12 @@ def document(
     return Document(SCHEMA, __version__, as_fret, members(rules), members(assumptions), analysis)
 
 
-def members(rules: Sequence[Formalized]) -> dict[str, Member]:
+def members(rules: Sequence[FormalizedRequirement]) -> dict[str, Member]:
     """Requirements, or assumptions, as they are now, by their ids."""
     return {rule.id: Member(printed(rule.written), _digest(rule)) for rule in rules}
 
 
-def _digest(rule: Formalized) -> str:
+def _digest(rule: FormalizedRequirement) -> str:
     """Of all that the analysis reads of a requirement."""
     declared = rule.declarations
     return canonical.digest(
@@ -100,7 +100,9 @@ def _digest(rule: Formalized) -> str:
 
 
 def suspicions(
-    known: Document, rules: Sequence[Formalized], assumptions: Sequence[Formalized]
+    known: Document,
+    rules: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement],
 ) -> Iterator[str]:
     """Why an analysis says nothing of these: what was added, was taken out, or has changed.
 
@@ -115,7 +117,9 @@ def suspicions(
 
 
 def changes(
-    known: Document, rules: Sequence[Formalized], assumptions: Sequence[Formalized]
+    known: Document,
+    rules: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement],
 ) -> Iterator[str]:
     """What was added, was taken out, or has changed since an analysis."""
     yield from _changes(known.requirements, members(rules), "")
@@ -132,7 +136,7 @@ def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -
             yield f"{what}{id} has changed since"
 
 
-def remarks(analysis: Analysis, rules: Sequence[Formalized]) -> Iterator[Diagnostic]:
+def remarks(analysis: Analysis, rules: Sequence[FormalizedRequirement]) -> Iterator[Diagnostic]:
     """F561 for each conflict; F562 where nobody knows."""
     places = {rule.id: rule.requirement.wording for rule in rules}
     for each in analysis.conflicts:
@@ -182,7 +186,7 @@ def read(path: str) -> AnalyzedSet | Diagnostic:
         found = decoded(parsed(source.text).value, Document)
     except json.JSONDecodeError as error:
         return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
-    except MisshapenError as error:
+    except SchemaError as error:
         return _wrong(source, f"is not what `fretc analyze` writes: {error}")
     except RecursionError:
         return _wrong(source, "is not JSON that fretc can read: it is nested too deeply")
@@ -196,11 +200,11 @@ def read(path: str) -> AnalyzedSet | Diagnostic:
 
 def known(path: str | None) -> AnalyzedSet | Diagnostic | None:
     """The file; None: that at its usual place, where there is one."""
-    place = path or written()
+    place = path or default_path()
     return read(place) if place is not None else None
 
 
-def written() -> str | None:
+def default_path() -> str | None:
     """The file of `fretc analyze` at its usual place, if there is one."""
     return DEFAULT if Path(DEFAULT).exists() else None
 

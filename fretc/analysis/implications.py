@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from itertools import combinations
 from operator import attrgetter
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vacuity
 from fretc.analysis.games.cores import minimal
+from fretc.analysis.realizability_problem import RealizabilityProblem
 from fretc.analysis.reasons import listed
-from fretc.analysis.stage import Stage
 
 MOST_TRIPLES = 500
 """Of requirements that hang together; of more none is looked at."""
@@ -46,7 +46,9 @@ class Removable:
     requirements: tuple[str, ...]
 
 
-def consistency(setting: Stage, budget: Budget) -> Iterator[Consistency | OpenQuestion]:
+def consistency(
+    setting: RealizabilityProblem, budget: Budget
+) -> Iterator[Consistency | OpenQuestion]:
     """Whether any run keeps all requirements."""
     ids = tuple(rule.id for rule in setting.rules)
     question = f"whether any run keeps {listed(ids)}"
@@ -69,7 +71,7 @@ def consistency(setting: Stage, budget: Budget) -> Iterator[Consistency | OpenQu
         yield Consistency(ids, is_possible)
 
 
-def constants(setting: Stage, budget: Budget) -> Iterator[Constant | OpenQuestion]:
+def constants(setting: RealizabilityProblem, budget: Budget) -> Iterator[Constant | OpenQuestion]:
     """Requirements that say nothing, or ask for what cannot be."""
     for counter in setting.arena.counters:
         try:
@@ -81,7 +83,9 @@ def constants(setting: Stage, budget: Budget) -> Iterator[Constant | OpenQuestio
             yield OpenQuestion(f"whether {counter.id} says anything", str(error))
 
 
-def redundancies(setting: Stage, budget: Budget) -> Iterator[Redundancy | Removable | OpenQuestion]:
+def redundancies(
+    setting: RealizabilityProblem, budget: Budget
+) -> Iterator[Redundancy | Removable | OpenQuestion]:
     """Requirements that others imply, one at a time; then those that go together."""
     counters = setting.arena.counters
     found: list[str] = []
@@ -101,7 +105,9 @@ def redundancies(setting: Stage, budget: Budget) -> Iterator[Redundancy | Remova
         yield OpenQuestion(f"which of {listed(found)} may go together", str(error))
 
 
-def _removable(setting: Stage, redundant: Sequence[str], budget: Budget) -> tuple[str, ...]:
+def _removable(
+    setting: RealizabilityProblem, redundant: Sequence[str], budget: Budget
+) -> tuple[str, ...]:
     gone: list[str] = []
     for id in redundant:
         (counter,) = setting.counters([id])
@@ -112,7 +118,7 @@ def _removable(setting: Stage, redundant: Sequence[str], budget: Budget) -> tupl
 
 
 def _implying(
-    setting: Stage, counter: Counter, others: Sequence[Counter], budget: Budget
+    setting: RealizabilityProblem, counter: Counter, others: Sequence[Counter], budget: Budget
 ) -> tuple[str, ...] | None:
     """A minimal set of others that imply a counter, one of them if that is enough; None: none."""
 
@@ -127,7 +133,7 @@ def _implying(
 
 
 def _is_implied(
-    setting: Stage, counter: Counter, others: Sequence[Counter], budget: Budget
+    setting: RealizabilityProblem, counter: Counter, others: Sequence[Counter], budget: Budget
 ) -> bool:
     """Whether there are runs that keep the others, and none of them breaks the counter."""
     setting = setting.close((each.id for each in (counter, *others)), budget)
@@ -140,7 +146,7 @@ def _is_implied(
     return not runs.can_break(counter, lasting)
 
 
-def vacuities(setting: Stage, budget: Budget) -> Iterator[Vacuity | OpenQuestion]:
+def vacuities(setting: RealizabilityProblem, budget: Budget) -> Iterator[Vacuity | OpenQuestion]:
     """Requirements of which a scope or a trigger never comes, in runs that keep the others."""
     rules = {rule.id: rule for rule in setting.rules}
     for counter in setting.arena.counters:
@@ -155,7 +161,11 @@ def vacuities(setting: Stage, budget: Budget) -> Iterator[Vacuity | OpenQuestion
 
 
 def _vacuity(
-    setting: Stage, rule: Formalized, counter: Counter, others: Sequence[str], budget: Budget
+    setting: RealizabilityProblem,
+    rule: FormalizedRequirement,
+    counter: Counter,
+    others: Sequence[str],
+    budget: Budget,
 ) -> Vacuity | None:
     def excluded(ids: Sequence[str], ticks: Callable[[Counter], Function]) -> bool:
         there = setting.close([*ids, counter.id], budget)
@@ -177,7 +187,9 @@ def _vacuity(
     return None
 
 
-def inconsistencies(setting: Stage, budget: Budget) -> Iterator[Inconsistency | OpenQuestion]:
+def inconsistencies(
+    setting: RealizabilityProblem, budget: Budget
+) -> Iterator[Inconsistency | OpenQuestion]:
     """Pairs and triples that can be led to where they cannot be kept; the whole, where none is.
 
     Source: Post, Hoenicke, Podelski, rt-Inconsistency: a new property for real-time requirements,
@@ -210,7 +222,9 @@ def inconsistencies(setting: Stage, budget: Budget) -> Iterator[Inconsistency | 
         yield OpenQuestion(question, str(error))
 
 
-def _candidates(setting: Stage, counters: Sequence[Counter]) -> Iterator[tuple[Counter, ...]]:
+def _candidates(
+    setting: RealizabilityProblem, counters: Sequence[Counter]
+) -> Iterator[tuple[Counter, ...]]:
     """Pairs and triples that share variables, and all of them."""
     read = {rule.id: frozenset(rule.variables) for rule in setting.rules}
 
@@ -230,7 +244,10 @@ def _candidates(setting: Stage, counters: Sequence[Counter]) -> Iterator[tuple[C
 
 
 def _inconsistency(
-    setting: Stage, members: Sequence[Counter], alone: Mapping[str, Function], budget: Budget
+    setting: RealizabilityProblem,
+    members: Sequence[Counter],
+    alone: Mapping[str, Function],
+    budget: Budget,
 ) -> Inconsistency | None:
     ids = sorted(each.id for each in members)
     there = setting.close(ids, budget)

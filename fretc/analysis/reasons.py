@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import assert_never
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import TRAITS, Kind, Trait
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
@@ -14,7 +14,7 @@ from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.games.game import Game
-from fretc.analysis.games.plays import Play
+from fretc.analysis.games.game_traces import GameTrace
 from fretc.analysis.games.replay import broken, columns
 from fretish.printer import expression
 from fretish.syntax import Timing, ends_with_run, stop
@@ -26,7 +26,7 @@ _LONGEST = 1_000
 
 
 def because(
-    rules: Sequence[Formalized], counters: Sequence[Counter], game: Game, play: Play
+    rules: Sequence[FormalizedRequirement], counters: Sequence[Counter], game: Game, play: GameTrace
 ) -> str:
     """What the requirements ask for where the play is lost.
 
@@ -56,7 +56,7 @@ def because(
     return f"at tick {last} {_joined(parts)}{''.join(f'; {each}' for each in before)}"
 
 
-def _asked_last(counters: Sequence[Counter], game: Game, play: Play) -> dict[str, str]:
+def _asked_last(counters: Sequence[Counter], game: Game, play: GameTrace) -> dict[str, str]:
     """What outputs each requirement asks for at the last tick, in words; those that ask."""
     inputs = {number: play.runs[-1][0][number] for number in game.alphabet.inputs}
     known = bdd.point({**play.state, **inputs})
@@ -64,7 +64,9 @@ def _asked_last(counters: Sequence[Counter], game: Game, play: Play) -> dict[str
     return {id: each for id, each in words.items() if each}
 
 
-def _asked(counters: Sequence[Counter], game: Game, play: Play) -> Mapping[str, tuple[str, ...]]:
+def _asked(
+    counters: Sequence[Counter], game: Game, play: GameTrace
+) -> Mapping[str, tuple[str, ...]]:
     """What outputs each requirement asks for, tick by tick, in words; nothing of a long play."""
     if not counters or play.ticks > _LONGEST:
         return {}
@@ -97,7 +99,7 @@ def _joined(parts: Sequence[str]) -> str:
     return ", and ".join(part for part in (", ".join(parts[:-1]), *parts[-1:]) if part)
 
 
-def _details(rule: Formalized, alphabet: Alphabet, play: Play) -> str:
+def _details(rule: FormalizedRequirement, alphabet: Alphabet, play: GameTrace) -> str:
     """` (since tick 3, by tick 5)`: of the demand that is open at the last tick; or nothing."""
     begun, last = _begun(rule, alphabet, play), play.ticks - 1
     words = [] if begun in (None, last) else [f"since tick {begun}"]
@@ -106,7 +108,9 @@ def _details(rule: Formalized, alphabet: Alphabet, play: Play) -> str:
     return f" ({', '.join(words)})" if words else ""
 
 
-def _limit(rule: Formalized, alphabet: Alphabet, begun: int | None, last: int) -> Iterator[str]:
+def _limit(
+    rule: FormalizedRequirement, alphabet: Alphabet, begun: int | None, last: int
+) -> Iterator[str]:
     """How long the demand is open that began then, if that is known."""
     scope = rule.sentence.scope
     demand = rule.demanded.demand
@@ -140,7 +144,7 @@ def _stop(timing: Timing) -> str:
     return expression(condition)
 
 
-def _begun(rule: Formalized, alphabet: Alphabet, play: Play) -> int | None:
+def _begun(rule: FormalizedRequirement, alphabet: Alphabet, play: GameTrace) -> int | None:
     """When the demand began that is open at the last tick; None: there is none, or no condition."""
     if rule.sentence.condition is None:
         return None
@@ -160,9 +164,9 @@ def _begun(rule: Formalized, alphabet: Alphabet, play: Play) -> int | None:
 
 
 def _for_ever(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     game: Game,
-    play: Play,
+    play: GameTrace,
     asked: Mapping[str, Sequence[str]],
     details: Mapping[str, str],
 ) -> str:

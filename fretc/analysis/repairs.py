@@ -13,15 +13,15 @@ from itertools import combinations, islice, permutations
 from typing import assert_never, cast
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.findings import Conflict, OpenQuestion, Repair
-from fretc.analysis.stage import Stage, stage
+from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
 from fretish.clock import in_unit
@@ -49,7 +49,7 @@ MOST_INPUTS = 8
 """Of a conflict with more no assumption is looked for."""
 _ROOM = 8
 """Ticks beyond twice the bounds of a conflict, within which another bound is looked for."""
-Rules = tuple[Formalized, ...]
+Rules = tuple[FormalizedRequirement, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ class _Known:
 class _Setting:
     """A component, one of its conflicts, and the time that is left."""
 
-    whole: Stage
+    whole: RealizabilityProblem
     rules: Rules
     """Those of the conflict."""
     fought: Sequence[frozenset[str]]
@@ -83,7 +83,7 @@ class _Setting:
 
 
 def repairs(
-    setting: Stage, conflicts: Sequence[Conflict], budget: Budget
+    setting: RealizabilityProblem, conflicts: Sequence[Conflict], budget: Budget
 ) -> Iterator[Repair | OpenQuestion]:
     """What would settle each conflict of a component.
 
@@ -102,7 +102,7 @@ def repairs(
                 yield from family(
                     _Setting(setting, rules, fought, share, known), conflict.requirements
                 )
-            except (OutOfTimeError, BeyondError) as error:
+            except (OutOfTimeError, UnsupportedError) as error:
                 ids = ", ".join(conflict.requirements)
                 yield OpenQuestion(f"what else would settle {ids}", str(error))
 
@@ -126,7 +126,7 @@ def _promises(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
         yield Repair(tuple(conflict), None, sentences, settles)
 
 
-def _with(rules: Rules, changed: Formalized) -> Rules:
+def _with(rules: Rules, changed: FormalizedRequirement) -> Rules:
     return tuple(changed if rule.id == changed.id else rule for rule in rules)
 
 
@@ -154,7 +154,9 @@ def _is_shown_to_fit(setting: _Setting, rules: Rules, assumed: Rules) -> bool:
     return there.game(counters, setting.budget).solution().is_realizable
 
 
-def _staged(setting: _Setting, rules: Rules, assumed: Rules) -> tuple[Stage, tuple[Counter, ...]]:
+def _staged(
+    setting: _Setting, rules: Rules, assumed: Rules
+) -> tuple[RealizabilityProblem, tuple[Counter, ...]]:
     """Where the rules are under the assumptions, and their counters.
 
     It is that of the component, where all are counted there and the assumptions count nothing: to
@@ -169,7 +171,7 @@ def _staged(setting: _Setting, rules: Rules, assumed: Rules) -> tuple[Stage, tup
         and not whole.of_outputs
         and not any(rule.ticks for rule in assumed)
     ):
-        with suppress(BeyondError):
+        with suppress(UnsupportedError):
             there = whole.assuming(assumed).close(ids, budget)
             return there, there.counters(ids)
     near = (*whole.assumptions, *assumed)
@@ -187,7 +189,9 @@ def _triggered_now(setting: _Setting, rules: Rules) -> frozenset[str]:
     return known[key]
 
 
-def _triggered(setting: _Setting, there: Stage, counters: Sequence[Counter]) -> frozenset[str]:
+def _triggered(
+    setting: _Setting, there: RealizabilityProblem, counters: Sequence[Counter]
+) -> frozenset[str]:
     """The ids of the rules whose triggers can come, in a run that keeps the assumptions."""
     found: set[str] = set()
     for counter in counters:
@@ -203,7 +207,7 @@ def _triggered(setting: _Setting, there: Stage, counters: Sequence[Counter]) -> 
 # Bounds ----------------------------------------------------------------------------------------
 
 
-def _least_change(setting: _Setting, rule: Formalized) -> Formalized | None:
+def _least_change(setting: _Setting, rule: FormalizedRequirement) -> FormalizedRequirement | None:
     """The rule with another bound: as little later, or as little shorter, as will do."""
     scope, timing = rule.sentence.scope, rule.sentence.timing
     if rule.ticks is None or (scope is not None and scope.kind.negates):
@@ -247,7 +251,7 @@ def _first(setting: _Setting, is_enough: Callable[[int], bool], low: int, high: 
     return low
 
 
-def _bounded(rule: Formalized, ticks: int) -> Formalized | None:
+def _bounded(rule: FormalizedRequirement, ticks: int) -> FormalizedRequirement | None:
     timing = cast("Within | For", rule.written.timing)
     duration = in_unit(ticks, timing.duration.unit, rule.clock)
     changed = replace(rule.written, timing=replace(timing, duration=duration))
@@ -348,7 +352,7 @@ def _assumed(setting: _Setting, wordings: Sequence[str]) -> Rules | None:
     return known[key]
 
 
-def _formalized(id: str, text: str, like: Formalized) -> Formalized | None:
+def _formalized(id: str, text: str, like: FormalizedRequirement) -> FormalizedRequirement | None:
     """A sentence among the declarations of another rule; None where it is none there."""
     rule, _ = formalize(Requirement(id, Source("repair", text).span()), like.declarations)
     return rule

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from compiler.files.records import replace as altered
-from compiler.formalization.formalized import Formalized
-from fretc.analysis.arena.alphabet import BeyondError
+from compiler.formalization.formalized import FormalizedRequirement
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.controllers.circuit import Circuit, circuit
@@ -16,11 +16,11 @@ from fretc.analysis.controllers.machine import NoMachineError, machine
 from fretc.analysis.controllers.moves import Mealy, mealy
 from fretc.analysis.findings import Component, Conflict, OpenQuestion, Verdict
 from fretc.analysis.games.cores import Members, cores, minimal
-from fretc.analysis.games.plays import Counterstrategy, NoPlayError
+from fretc.analysis.games.game_traces import Counterstrategy, NoPlayError
 from fretc.analysis.games.replay import broken
 from fretc.analysis.games.switches import switched
+from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.reasons import because, listed
-from fretc.analysis.stage import Stage, stage
 from fretish.bindings.declarations import Role
 
 
@@ -31,7 +31,9 @@ class Completeness:
     requirements: tuple[str, ...]
 
 
-def verdict(setting: Stage, budget: Budget) -> tuple[Component, Stage]:
+def verdict(
+    setting: RealizabilityProblem, budget: Budget
+) -> tuple[Component, RealizabilityProblem]:
     """Whether the requirements of a component can be kept together, and the stage that tells.
 
     Where that depends on numbers of earlier ticks, more and more of them is remembered.
@@ -41,7 +43,7 @@ def verdict(setting: Stage, budget: Budget) -> tuple[Component, Stage]:
     while answer is Verdict.NOT_CHECKED and _has_room(budget):
         try:
             finer = there.finer(budget)
-        except (BeyondError, OutOfTimeError):
+        except (UnsupportedError, OutOfTimeError):
             break
         if finer is None:
             break
@@ -58,15 +60,19 @@ def _has_room(budget: Budget) -> bool:
     return budget.spent < budget.seconds / 8
 
 
-def _answer(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
+def _answer(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str]:
     try:
         return _verdict(setting, budget)
-    except (BeyondError, OutOfTimeError) as error:
+    except (UnsupportedError, OutOfTimeError) as error:
         return Verdict.NOT_CHECKED, str(error)
 
 
 def component(
-    rules: Sequence[Formalized], roles: Roles, answer: Verdict, why: str, seconds: float = 0.0
+    rules: Sequence[FormalizedRequirement],
+    roles: Roles,
+    answer: Verdict,
+    why: str,
+    seconds: float = 0.0,
 ) -> Component:
     """A component with its verdict."""
     names = (name for rule in rules for name in rule.variables if roles[name] is Role.OUTPUT)
@@ -74,7 +80,7 @@ def component(
     return Component(ids, tuple(dict.fromkeys(names)), answer, why, seconds)
 
 
-def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
+def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str]:
     """The verdict, and how it is known, or why it is not."""
     _check_assumptions(setting, budget)
     if not _is_lost(setting, [each.id for each in setting.arena.counters], budget):
@@ -97,7 +103,7 @@ def _verdict(setting: Stage, budget: Budget) -> tuple[Verdict, str]:
 _WHATEVER = "whatever is taken for what is not known"
 
 
-def _unrolled(setting: Stage, budget: Budget) -> tuple[Verdict, str] | None:
+def _unrolled(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str] | None:
     """What a run shows where there are no inputs: it keeps all, or there is none."""
     from fretc.analysis.games.lassos import Impossible, lasso
 
@@ -114,14 +120,14 @@ def _unrolled(setting: Stage, budget: Budget) -> tuple[Verdict, str] | None:
     return Verdict.REALIZABLE, f"there are no inputs, and {run} keeps all of them"
 
 
-def _is_lost(setting: Stage, ids: Sequence[str], budget: Budget) -> bool:
+def _is_lost(setting: RealizabilityProblem, ids: Sequence[str], budget: Budget) -> bool:
     """Whether the environment wins against some requirements."""
     there = setting.close(ids, budget)
     return not there.game(there.counters(ids), budget).solution().is_realizable
 
 
 def strategy(
-    setting: Stage, budget: Budget, *, number: int, form: Form
+    setting: RealizabilityProblem, budget: Budget, *, number: int, form: Form
 ) -> Iterator[Circuit | Mealy | OpenQuestion]:
     """How a component that can be kept is kept.
 
@@ -139,21 +145,23 @@ def strategy(
             yield circuit(found, ids, number)
         else:
             yield mealy(found, ids, budget)
-    except (BeyondError, NoMachineError, OutOfTimeError) as error:
+    except (UnsupportedError, NoMachineError, OutOfTimeError) as error:
         yield OpenQuestion(f"how can {', '.join(ids)} be kept?", str(error))
 
 
-def _check_assumptions(setting: Stage, budget: Budget) -> None:
-    """Raise BeyondError where no run keeps the assumptions: everything would follow from them."""
+def _check_assumptions(setting: RealizabilityProblem, budget: Budget) -> None:
+    """Raise UnsupportedError where no run keeps the assumptions: all would follow from them."""
     if not setting.assumptions:
         return
     runs = setting.runs((), budget)
     if not runs.is_possible():
         ids = ", ".join(each.id for each in setting.assumptions)
-        raise BeyondError(f"no run keeps the assumptions {ids}")
+        raise UnsupportedError(f"no run keeps the assumptions {ids}")
 
 
-def conflicts(setting: Stage, budget: Budget) -> Iterator[Conflict | Completeness | OpenQuestion]:
+def conflicts(
+    setting: RealizabilityProblem, budget: Budget
+) -> Iterator[Conflict | Completeness | OpenQuestion]:
     """Every minimal conflict; at the end a question, where there may be more.
 
     Where something is not known, a conflict is certain if the environment wins whatever it is taken
@@ -165,7 +173,7 @@ def conflicts(setting: Stage, budget: Budget) -> Iterator[Conflict | Completenes
     found = _Fights(setting, setting)
     try:
         _check_assumptions(setting, budget)
-        there: Stage | None = setting
+        there: RealizabilityProblem | None = setting
         while there is not None:
             now = _Fights(there, there.generous(budget))
             for core in now.minimal(budget):
@@ -181,7 +189,7 @@ def conflicts(setting: Stage, budget: Budget) -> Iterator[Conflict | Completenes
             yield _perhaps_larger(Conflict(core, (), "the environment wins"))
         yield OpenQuestion(question, f"{error}{_hint(setting, budget.again())}")
         return
-    except BeyondError as error:
+    except UnsupportedError as error:
         yield OpenQuestion(question, str(error))
         return
     if (doubt := found.doubt) is None:
@@ -198,9 +206,9 @@ def _perhaps_larger(conflict: Conflict) -> Conflict:
 class _Fights:
     """The minimal conflicts of a stage, as far as what is not known lets them be told."""
 
-    strict: Stage
+    strict: RealizabilityProblem
     """Where the environment is favoured."""
-    generous: Stage
+    generous: RealizabilityProblem
     """Where the system is."""
     larger: list[tuple[str, ...]] = field(default_factory=list)
     """Conflicts of which it is not certain that they are minimal."""
@@ -227,7 +235,7 @@ class _Fights:
                 if not _is_lost(self.generous, core, budget):
                     self.smaller.append(core)
 
-    def sure(self, ids: Sequence[str]) -> Stage:
+    def sure(self, ids: Sequence[str]) -> RealizabilityProblem:
         """The stage whose plays of these requirements are certain."""
         known = {each.id for each in self.strict.certain}
         return self.strict if known.issuperset(ids) else self.generous
@@ -242,7 +250,9 @@ class _Fights:
         return doubt
 
 
-def _minimal(there: Stage, ids: Sequence[str], budget: Budget) -> Iterator[tuple[str, ...]]:
+def _minimal(
+    there: RealizabilityProblem, ids: Sequence[str], budget: Budget
+) -> Iterator[tuple[str, ...]]:
     """The minimal conflicts of some requirements."""
     read = {rule.id: frozenset(rule.variables) for rule in there.rules}
 
@@ -264,7 +274,7 @@ _SHORT = 200
 """Ticks of the longest duration where durations are scaled."""
 
 
-def _hint(setting: Stage, budget: Budget) -> str:
+def _hint(setting: RealizabilityProblem, budget: Budget) -> str:
     """What fights where all durations are a fraction of what they are: a clue, and no finding."""
     longest = max((rule.ticks or 0 for rule in setting.rules), default=0)
     factor = -(-longest // _SHORT)
@@ -295,7 +305,7 @@ _LONGEST = 200_000
 """Ticks of a play that is written down."""
 
 
-def _conflict(whole: Stage, members: Sequence[str], budget: Budget) -> Conflict:
+def _conflict(whole: RealizabilityProblem, members: Sequence[str], budget: Budget) -> Conflict:
     """A minimal conflict, with a play that the formulas of its monitors confirm."""
     ids, setting = sorted(members), whole.close(members, budget)
     counters = setting.counters(ids)

@@ -19,7 +19,7 @@ from typing import Any, TypeVar
 from compiler.files.processes import ignore_interrupts, reply, stops_blocked
 from fretc.analysis.arena.budget import guard
 from fretc.analysis.games.job import Job
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 F = TypeVar("F")
 MEMORY = 4 * 2**30
@@ -128,7 +128,7 @@ def _answer(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) 
             connection.send(error)
 
 
-@deep
+@with_recursion_limit
 def _answer_all(connection: Connection, jobs: Sequence[Job[F]], found: Sequence[F]) -> None:
     known = list(found)
     for job in jobs:

@@ -12,7 +12,7 @@ from fretc.audit.evidence.schema import Result
 from fretc.audit.log_paths import logs as logs_of
 from fretc.audit.many_logs import Audit as Run
 from fretc.audit.many_logs import audit_logs as audited
-from fretc.audit.many_logs import locally
+from fretc.audit.many_logs import local_executor
 from fretc.audit.outputs.totals import Marks
 from fretc.audit.plan import Plan, planned
 from fretc.logs.signals.integrity import Integrity
@@ -71,7 +71,7 @@ def audit_logs(
     plan = planned(project, integrity=Integrity(integrity), confidence=confidence)
     if not isinstance(plan, Plan):
         raise Refusal(plan)
-    return _audit(plan, accepted(audited(plan, named, locally(jobs))))
+    return _audit(plan, accepted(audited(plan, named, local_executor(jobs))))
 
 
 def _audit(plan: Plan, run: Run) -> Audit:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Protocol, cast
 
-from compiler.formalization.formalize import clashes, duplicates
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalize import duplicate_ids, name_collisions
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor as python
 from fretc.api.refusal import Refusal, bounded
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -55,7 +55,7 @@ class Monitor(Protocol):
 
 
 @bounded
-def monitor_text(*rules: Formalized) -> str:
+def monitor_text(*rules: FormalizedRequirement) -> str:
     """The text of one monitor for all of the requirements: a file that needs Python alone.
 
     Args:
@@ -67,10 +67,10 @@ def monitor_text(*rules: Formalized) -> str:
     if not rules:
         raise Refusal((_nothing(),))
     rules = tuple({id(rule): rule for rule in rules}.values())
-    same_id = duplicates([rule.requirement for rule in rules]).values()
+    same_id = duplicate_ids([rule.requirement for rule in rules]).values()
     errors = [
         *filter(None, map(python.refuse, rules)),
-        *clashes(rules),
+        *name_collisions(rules),
         *dict.fromkeys(same_id),
         *_several_clocks(rules),
     ]
@@ -79,7 +79,7 @@ def monitor_text(*rules: Formalized) -> str:
     return python.text(*rules)
 
 
-def load_monitor(*rules: Formalized) -> Monitor:
+def load_monitor(*rules: FormalizedRequirement) -> Monitor:
     """The monitor of the requirements, compiled and ready to be stepped.
 
     Args, raises: as for `monitor_text`.
@@ -87,7 +87,7 @@ def load_monitor(*rules: Formalized) -> Monitor:
     return cast(Monitor, load("monitor.py", monitor_text(*rules)))
 
 
-def _several_clocks(rules: tuple[Formalized, ...]) -> Iterable[Diagnostic]:
+def _several_clocks(rules: tuple[FormalizedRequirement, ...]) -> Iterable[Diagnostic]:
     first, *others = rules
     for rule in others:
         if rule.clock != first.clock:

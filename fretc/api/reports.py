@@ -7,13 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from compiler.project.folder import Project
-from compiler.project.paths import beside
-from fretc.analysis.evidence import written as analysis_file
+from compiler.project.paths import sibling_path
+from fretc.analysis.evidence import default_path as analysis_file
 from fretc.api.refusal import Refusal, bounded
 from fretc.attestation.signatures import SIGNERS
 from fretc.report.make import ReportBuild, make
-from fretc.verification.ajpf_results import written as ajpf_results
-from fretc.verification.reader import written as verification_file
+from fretc.verification.ajpf_results import default_paths as ajpf_results
+from fretc.verification.reader import default_path as verification_file
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 Path = str | os.PathLike[str]
@@ -74,11 +74,11 @@ def make_report(
     build = make(
         project,
         os.fspath(evidence),
-        lock=_path(lock) or beside(first, "fretc.lock"),
-        waivers=_path(waivers) or beside(first, "waivers.toml"),
+        lock=_path(lock) or sibling_path(first, "fretc.lock"),
+        waivers=_path(waivers) or sibling_path(first, "waivers.toml"),
         verification=_path(verification) or verification_file(),
         ajpf=[os.fspath(path) for path in ajpf] or ajpf_results(),
-        signers=_path(signers) or beside(first, SIGNERS),
+        signers=_path(signers) or sibling_path(first, SIGNERS),
         analysis=_path(analysis) or analysis_file(),
     )
     if build.report is None:

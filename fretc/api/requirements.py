@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from compiler.files.text_files import read
 from compiler.formalization.formalize import formalize as formalized
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
-from compiler.project.folder import Project, whole
+from compiler.project.folder import Project, load_folder
 from fretc.api.refusal import Refusal, accepted, bounded
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
@@ -39,14 +39,14 @@ def read_project(
     Raises:
         Refusal: there is no requirement, or no part of the bindings or the hazards can be used.
     """
-    project = accepted(whole(os.fspath(requirements), _path(bindings), _path(hazards)))
+    project = accepted(load_folder(os.fspath(requirements), _path(bindings), _path(hazards)))
     if has_errors(project.general):
         raise Refusal(each for each in project.general if each.is_error)
     return project
 
 
 @bounded
-def formalize(sentence: str, bindings: Path | None = None, id: str = "R1") -> Formalized:
+def formalize(sentence: str, bindings: Path | None = None, id: str = "R1") -> FormalizedRequirement:
     """Parse and formalize one sentence of FRETish.
 
     Args:
@@ -92,7 +92,7 @@ class Formulas:
     """The sentence in plain English."""
 
 
-def formulas(rule: Formalized, notation: str = "plain") -> Formulas:
+def formulas(rule: FormalizedRequirement, notation: str = "plain") -> Formulas:
     """The formulas of a requirement.
 
     Args:

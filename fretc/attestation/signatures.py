@@ -14,7 +14,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from compiler.files.text_files import read as read_text
 from fretc.attestation import statement as attestation
 from fretc.attestation.statement import Statement, Subject
@@ -22,7 +22,7 @@ from fretc.attestation.statement import read as read_statement
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import unless_installed
 from fretish.diagnostics.source import Source, Span
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 
 if TYPE_CHECKING:
     from fretc.attestation.keys import DsseEnvelope
@@ -58,7 +58,7 @@ def read(path: str) -> tuple[Envelope, ...] | Diagnostic:
     source = read_text(beside(path))
     if isinstance(source, Diagnostic):
         return () if source.code is Code.NO_SUCH_FILE else source
-    return within(len(source.text), source.span(), lambda: _envelopes(source))
+    return with_budget(len(source.text), source.span(), lambda: _envelopes(source))
 
 
 def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
@@ -74,7 +74,7 @@ def _envelopes(source: Source) -> tuple[Envelope, ...] | Diagnostic:
         try:
             dsse = read_envelope(line)
             envelopes.append(Envelope(dsse, read_statement(dsse.payload), place))
-        except MisshapenError as error:
+        except SchemaError as error:
             return _wrong(place, f"the line is no signed statement of fretc: {error}")
     return tuple(envelopes)
 

@@ -15,7 +15,7 @@ from compiler.files.text_files import sha256
 from fretc.attestation.keys import KEY_TYPES, PublicKey, UnusableKeyError, public_key
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source, Span
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 
 NAMESPACE = "fretc"
 """A line with `namespaces="..."` counts where this is one of them."""
@@ -68,7 +68,7 @@ def read(path: str) -> Signers | Diagnostic:
     source = read_text(path)
     if isinstance(source, Diagnostic):
         return source
-    return within(len(source.text), source.span(), lambda: _read(source))
+    return with_budget(len(source.text), source.span(), lambda: _read(source))
 
 
 def trusted(path: str) -> Signers | Diagnostic:

@@ -15,8 +15,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from compiler.files.checked_json import MisshapenError, Shape, plain
-from compiler.files.edition import __version__, edition
+from compiler.files.build_id import __version__, build_id
+from compiler.files.checked_json import SchemaError, Shape, plain
 from compiler.files.records import UNSET
 from compiler.files.shell_quoting import is_sha256
 from compiler.logic.claims import Proof
@@ -93,7 +93,7 @@ def text(statement: Statement) -> bytes:
 
 def _tool() -> dict[str, str]:
     python = platform.python_version()
-    return {"fretc": __version__, "edition": edition(), "python": python}
+    return {"fretc": __version__, "edition": build_id(), "python": python}
 
 
 def _uri(about: str) -> str:
@@ -104,12 +104,12 @@ def read(payload: bytes) -> Statement:
     """A statement from its JSON.
 
     Raises:
-        MisshapenError: it is none that fretc makes.
+        SchemaError: it is none that fretc makes.
     """
     try:
         shape = Shape(plain(payload.decode()))
     except UnicodeDecodeError:
-        raise MisshapenError("the payload is not UTF-8 text") from None
+        raise SchemaError("the payload is not UTF-8 text") from None
     shape.only("_type", "subject", "predicateType", "predicate")
     shape.field("_type").one_of((TYPE,))
     uri = shape.field("predicateType").one_of(tuple(map(_uri, _KINDS)))

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from compiler.project.folder import Project
 from fretc.audit.evidence.basis import Basis, basis
-from fretc.audit.refusals import in_force, refusals
+from fretc.audit.refusals import active_requirements, refusals
 
 
 def audited_topics(project: Project) -> frozenset[str]:
@@ -16,7 +16,9 @@ def audited_topics(project: Project) -> frozenset[str]:
     if declarations is None:
         return frozenset()
     refused = {id(requirement) for requirement, _ in refusals(project)}
-    auditable = [rule for rule in in_force(project) if id(rule.requirement) not in refused]
+    auditable = [
+        rule for rule in active_requirements(project) if id(rule.requirement) not in refused
+    ]
     used = declarations.reading(name for rule in auditable for name in rule.watched)
     return frozenset(signal.path.topic for signal in used.signals.values())
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.measurements.violations import Demand
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.printer import expression, timing
 
 
-def demand(rule: Formalized) -> Demand:
+def demand(rule: FormalizedRequirement) -> Demand:
     """What the sentence demands at each trigger.
 
     The response alone where it is all that can be missing; with its timing where more can be.

@@ -15,14 +15,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import UNSET, replace
 from compiler.files.text_files import destination, write
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Result
 from fretc.audit.many_logs import (
     Engine,
-    LogAudit,
+    LogResult,
     diagnostics_of_all,
     document,
     estimates_of,
@@ -103,7 +103,7 @@ class _Some:
     count: int
 
 
-class Earlier:
+class ReusableResults:
     """What earlier audits of this plan have shown, and this user's key vouches for."""
 
     def __init__(self, folder: Path, plan: Plan, key: bytes | None, *, rehash: bool) -> None:
@@ -217,7 +217,7 @@ def _results(plan: Plan, known: _Known) -> tuple[Result, ...]:
     places = range(known.place, known.place + known.results)
     own = known.entry.labels or UNSET
     results = (replace(one, labels=own) for _, one in known.store.details(places))
-    return labelled(plan, LogAudit(tuple(results), (), read=True)).results
+    return labelled(plan, LogResult(tuple(results), (), read=True)).results
 
 
 # What is written ---------------------------------------------------------------------------------
@@ -251,7 +251,7 @@ class _WriteError(Exception):
         self.diagnostic = diagnostic
 
 
-class Session:
+class StoreWriter:
     """An audit into a store, from its beginning to its end."""
 
     def __init__(
@@ -276,7 +276,7 @@ class Session:
         self._lock = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            self.earlier = Earlier(folder, plan, key, rehash=rehash)
+            self.earlier = ReusableResults(folder, plan, key, rehash=rehash)
         except BaseException:
             os.close(self._lock)
             raise
@@ -296,7 +296,7 @@ class Session:
         self._read = 0
         self._next = time.monotonic() + _PATIENCE
 
-    def __enter__(self) -> Session:
+    def __enter__(self) -> StoreWriter:
         """For as long as its results are read."""
         return self
 
@@ -363,7 +363,7 @@ class Session:
             else:
                 self._complete(draft)
 
-    def _take(self, log: str, own: LogAudit) -> None:
+    def _take(self, log: str, own: LogResult) -> None:
         """A log that was audited."""
         audited = labelled(self._plan, own)
         source = self._plan.declarations.source

@@ -8,18 +8,18 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from types import MappingProxyType
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import UNSET
 from compiler.files.records import replace as record_with
 from compiler.files.text_files import Stamp, file_sha256, stamp
 from fretc.audit.constancy import never_changed, tallies_of, totals
 from fretc.audit.evidence.basis import BINDINGS, SENTENCE, of_all
 from fretc.audit.evidence.briefs import Brief, EvidenceSource, brief
-from fretc.audit.evidence.claim import Claim
+from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.courses import course, no_way
 from fretc.audit.evidence.estimates import estimates, warnings
 from fretc.audit.evidence.probabilities import Estimated
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.schema import (
     SCHEMA,
     Bindings,
@@ -43,14 +43,14 @@ from fretc.audit.one_log import (
 )
 from fretc.audit.phases.advice import findings
 from fretc.audit.plan import Plan, monitored_requirements
-from fretc.audit.pool import ENDLESS, Killed, Late, Limits, each, was_killed, was_late
-from fretc.audit.store.recordings import Kept, KnownBy
+from fretc.audit.pool import ENDLESS, Limits, TimedOut, WorkerDied, each, was_killed, was_late
+from fretc.audit.store.recordings import KnownBy, SampleCache
 from fretc.logs.labels import NO_METADATA, labels, over
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.storage.log_names import STDIN, name_of
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.reading.memory import remembered
+from fretish.reading.caching import cache_by_identity
 from monitors import kernel
 
 
@@ -81,7 +81,7 @@ class Audit:
     @property
     def source(self) -> EvidenceSource:
         """The results, to be read from."""
-        return Evidence("", "", self.document)
+        return EvidenceFile("", "", self.document)
 
 
 EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": kernel.stepped}
@@ -89,7 +89,7 @@ EVALUATIONS: Mapping[str, Evaluation] = {"columns": kernel.evaluate, "online": k
 
 
 @dataclass(frozen=True, slots=True)
-class LogAudit:
+class LogResult:
     """The outcome of the audit of one log."""
 
     results: tuple[Result, ...]
@@ -103,7 +103,7 @@ class LogAudit:
     """Whether the log was read, or by what it is known to be what it was when it was."""
 
 
-LogAudits = Generator[tuple[str, LogAudit] | Diagnostic, None, None]
+LogAudits = Generator[tuple[str, LogResult] | Diagnostic, None, None]
 """Each log with its audit, as soon as that is complete; a diagnostic where the engine gives up."""
 
 Engine = Callable[[Plan, Sequence[str]], LogAudits]
@@ -114,9 +114,9 @@ def _nothing(_: str) -> Sequence[Result]:
     return ()
 
 
-def locally(
+def local_executor(
     jobs: int,
-    kept: Kept | None = None,
+    kept: SampleCache | None = None,
     known: Callable[[str], Sequence[Result]] = _nothing,
     limits: Limits = ENDLESS,
 ) -> Engine:
@@ -129,7 +129,7 @@ def locally(
         limits: of time; standard input only where there are none.
     """
 
-    def judged(plan: Plan, log: str) -> LogAudit:
+    def judged(plan: Plan, log: str) -> LogResult:
         return audited(plan, log, known(log), kept)
 
     def engine(plan: Plan, logs: Sequence[str]) -> LogAudits:
@@ -140,9 +140,9 @@ def locally(
         with closing(each(partial(judged, plan), files, jobs, limits)) as done:
             for place, result in done:
                 log = files[place]
-                if isinstance(result, Killed):
+                if isinstance(result, WorkerDied):
                     yield log, given_up(plan, log, str(result))
-                elif isinstance(result, Late):
+                elif isinstance(result, TimedOut):
                     yield log, _unaudited(plan, log, was_late(log, result, limits))
                 else:
                     yield log, result
@@ -150,16 +150,16 @@ def locally(
     return engine
 
 
-IN_TURN = locally(1)
+SEQUENTIAL = local_executor(1)
 """One after the other."""
 
 
 def audit_logs(
     plan: Plan,
     logs: Sequence[str],
-    engine: Engine = IN_TURN,
-    finished: Mapping[str, LogAudit] = MappingProxyType({}),
-    tell: Callable[[str, LogAudit], None] = lambda log, audited: None,
+    engine: Engine = SEQUENTIAL,
+    finished: Mapping[str, LogResult] = MappingProxyType({}),
+    tell: Callable[[str, LogResult], None] = lambda log, audited: None,
 ) -> Audit | Diagnostic:
     """Audit every log against every claim.
 
@@ -186,7 +186,7 @@ def audit_logs(
     return gathered(plan, [labelled(plan, done[log]) for log in logs])
 
 
-def gathered(plan: Plan, audits: Sequence[LogAudit]) -> Audit:
+def gathered(plan: Plan, audits: Sequence[LogResult]) -> Audit:
     """One audit of the audits of single logs, in their order."""
     results = [result for one in audits for result in one.results]
     of_all_runs = estimates_of(plan, map(brief, results))
@@ -243,8 +243,8 @@ def _of(diagnostic: Diagnostic, runs: Sequence[str], count: int) -> Diagnostic:
 
 
 def audited(
-    plan: Plan, log: str, known: Sequence[Result] = (), kept: Kept | None = None
-) -> LogAudit:
+    plan: Plan, log: str, known: Sequence[Result] = (), kept: SampleCache | None = None
+) -> LogResult:
     """Audit one log; all that is needed for it is in the plan.
 
     Args:
@@ -269,7 +269,7 @@ def audited(
     first, *others = (of_claim[claim.id] for claim in plan.claims)
     records = (record_with(first, course=course(recording, declarations) or UNSET), *others)
     phased = {each.requirement: phases_of(each.phases) for each in records if each.phases}
-    own = LogAudit(
+    own = LogResult(
         (*records, *_refused_results(plan, first)),
         (*recording.findings, *findings(phased, declarations), *no_way(recording, declarations)),
         read=True,
@@ -279,13 +279,13 @@ def audited(
     return _with_own_labels(plan, own, recording.described)
 
 
-@remembered
+@cache_by_identity
 def _propositions(requirements: Sequence[MonitoredRequirement]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for each in requirements for name in each.propositions))
 
 
 def _read(
-    plan: Plan, log: str, names: Sequence[str], kept: Kept | None, before: Stamp | None
+    plan: Plan, log: str, names: Sequence[str], kept: SampleCache | None, before: Stamp | None
 ) -> tuple[Recording | Diagnostic, KnownBy]:
     """The recording of a log with all signals of the propositions, read or kept."""
     declarations, integrity = plan.declarations, plan.integrity
@@ -325,8 +325,8 @@ def _taken_over(known: Sequence[Result], recording: Recording) -> Iterator[Resul
 
 
 def _with_own_labels(
-    plan: Plan, one: LogAudit, described: Mapping[str, tuple[str, ...]] = NO_METADATA
-) -> LogAudit:
+    plan: Plan, one: LogResult, described: Mapping[str, tuple[str, ...]] = NO_METADATA
+) -> LogResult:
     """The audit of a log with the labels that the bindings ask for."""
     declared = plan.declarations.labels
     if not declared:
@@ -335,7 +335,7 @@ def _with_own_labels(
     return _with_labels(one, found, notes)
 
 
-def labelled(plan: Plan, one: LogAudit) -> LogAudit:
+def labelled(plan: Plan, one: LogResult) -> LogResult:
     """The audit of a log with the labels that the command gives all runs."""
     if not plan.labels:
         return one
@@ -344,7 +344,9 @@ def labelled(plan: Plan, one: LogAudit) -> LogAudit:
     return _with_labels(one, found, notes)
 
 
-def _with_labels(one: LogAudit, found: Mapping[str, str], notes: Sequence[Diagnostic]) -> LogAudit:
+def _with_labels(
+    one: LogResult, found: Mapping[str, str], notes: Sequence[Diagnostic]
+) -> LogResult:
     of_run = dict(sorted(found.items())) or UNSET
     return replace(
         one,
@@ -371,7 +373,7 @@ def _refused_results(plan: Plan, sibling: Result) -> Iterator[Result]:
         )
 
 
-def given_up(plan: Plan, log: str, how: str) -> LogAudit:
+def given_up(plan: Plan, log: str, how: str) -> LogResult:
     """The results of a log whose audit killed its process twice: no data.
 
     Args:
@@ -382,7 +384,7 @@ def given_up(plan: Plan, log: str, how: str) -> LogAudit:
     return _unread(plan, log, was_killed(log, how), None)
 
 
-def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogAudit:
+def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogResult:
     """The results of a log that cannot be read.
 
     Args:
@@ -393,13 +395,13 @@ def _unread(plan: Plan, log: str, why: Diagnostic, before: Stamp | None) -> LogA
     """
     hashes = _hash_of(log, before)
     records = [unread(name_of(log), each.id, why, {**hashes, **each.basis}) for each in plan.named]
-    return _with_own_labels(plan, LogAudit(tuple(records), (why,), read=False))
+    return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
 
 
-def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogAudit:
+def _unaudited(plan: Plan, log: str, why: Diagnostic) -> LogResult:
     """The results of a log for which there was no time: no data. It is not even hashed."""
     records = [unread(name_of(log), each.id, why, each.basis) for each in plan.named]
-    return _with_own_labels(plan, LogAudit(tuple(records), (why,), read=False))
+    return _with_own_labels(plan, LogResult(tuple(records), (why,), read=False))
 
 
 def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
@@ -409,7 +411,7 @@ def _hash_of(log: str, before: Stamp | None) -> dict[str, str]:
     return {} if digest is None or changed else {"log": digest}
 
 
-def named_situations(claim: Claim) -> tuple[Situation, ...]:
+def named_situations(claim: AuditedRequirement) -> tuple[Situation, ...]:
     """What evidence says of the situations of a claim."""
     return tuple(Situation(each.key, each.words) for each in claim.situations)
 
@@ -428,7 +430,9 @@ def document(plan: Plan, results: Sequence[Result], of_all_runs: Sequence[Estima
                 each.id,
                 each.sentence,
                 each.basis[SENTENCE],
-                situations=named_situations(each) if isinstance(each, Claim) else UNSET,
+                situations=named_situations(each)
+                if isinstance(each, AuditedRequirement)
+                else UNSET,
             )
             for each in plan.named
         ),

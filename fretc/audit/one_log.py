@@ -12,7 +12,7 @@ import numpy as np
 from compiler.situations.situations import Situation
 from compiler.situations.thresholds import Place
 from fretc.audit.evidence.schema import Health, Situations
-from fretc.audit.evidence.writer import Evidence, health
+from fretc.audit.evidence.writer import RunResult, health
 from fretc.audit.measurements.judgement import WITHOUT_VIOLATION, Engine, judged
 from fretc.audit.measurements.margins import Margin, margins, worst
 from fretc.audit.measurements.situations import Near, encounters, nowhere_known
@@ -22,12 +22,12 @@ from fretc.audit.measurements.trials import Count, Trials
 from fretc.audit.measurements.violations import Demand, Moment, violations
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.logs import log_diagnostics
-from fretc.logs.likeness import fingerprint
+from fretc.logs.sample_fingerprint import fingerprint
 from fretc.logs.signals.rates import late_topics, slow_topics
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.signals import blind_zones
 from fretc.logs.signals.traces import Timeline, Trace, timeline, trace
-from fretc.logs.signals.words import Foreign, shown
+from fretc.logs.signals.words import UnmappedSamples, shown
 from fretc.logs.watch_records import clock_text
 from fretish import expressions as e
 from fretish.bindings.amounts import duration, scaled, seconds, shared_unit
@@ -35,7 +35,7 @@ from fretish.bindings.amounts import margin as margin_text
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.printer import expression
-from fretish.reading.memory import remembered
+from fretish.reading.caching import cache_by_identity
 from fretish.units import base_name
 from monitors import kernel
 from monitors.kernel import Column, Monitor
@@ -62,17 +62,17 @@ class MonitoredRequirement:
         return _needed(self)
 
 
-@remembered
+@cache_by_identity
 def _needed(requirement: MonitoredRequirement) -> tuple[str, ...]:
     return tuple(dict.fromkeys((*requirement.monitor.PROPOSITIONS, *requirement.counted)))
 
 
-@remembered
+@cache_by_identity
 def _assumed(declarations: Declarations, requirement: MonitoredRequirement) -> tuple[str, ...]:
     return declarations.reading(requirement.propositions).assumptions
 
 
-@remembered
+@cache_by_identity
 def signals_of(declarations: Declarations, propositions: Sequence[str]) -> tuple[str, ...]:
     """The names of the signals that the propositions read, in the order of their first use."""
     return tuple(
@@ -116,7 +116,7 @@ def _untrue(signal: Signal, recording: Recording) -> Diagnostic | None:
     (rows,) = np.nonzero(~np.isnan(values) & (values != 0) & (values != 1))
     if not len(rows):
         return None
-    foreign = Foreign(len(rows), int(rows[0]), shown(values[rows[0]]))
+    foreign = UnmappedSamples(len(rows), int(rows[0]), shown(values[rows[0]]))
     after = int(samples.times[rows[0]]) - recording.start_ns
     return log_diagnostics.no_truth(signal, foreign, len(values), after)
 
@@ -126,7 +126,7 @@ def audit(
     declarations: Declarations,
     requirements: Sequence[MonitoredRequirement],
     engine: Engine = kernel.evaluate,
-) -> tuple[Evidence, ...]:
+) -> tuple[RunResult, ...]:
     """The evidence of one run for each requirement, in their order.
 
     Args:
@@ -153,7 +153,7 @@ def audit(
     return tuple(_phased(each, phases_of.get(each.requirement)) for each in evidence)
 
 
-def _phased(evidence: Evidence, phases: Phases | None) -> Evidence:
+def _phased(evidence: RunResult, phases: Phases | None) -> RunResult:
     """The evidence, with what other phases of the ticks make of the run."""
     if phases is None:
         return evidence
@@ -173,7 +173,7 @@ def _evidence(
     requirement: MonitoredRequirement,
     engine: Engine,
     found: Health,
-) -> Evidence:
+) -> RunResult:
     monitor = requirement.monitor
     columns = {name: truths.columns[name] for name in requirement.propositions}
     ticks = len(truths.timeline.times)
@@ -189,7 +189,7 @@ def _evidence(
     outcome = judgement.outcome
     signals = signals_of(declarations, requirement.propositions)
     answers = tuple((at(t), at(k)) for t, k in outcome.answers)
-    evidence = Evidence(
+    evidence = RunResult(
         run=recording.name,
         requirement=monitor.REQUIREMENTS[0].id,
         verdict=judgement.verdict,
@@ -253,7 +253,7 @@ def _situations(
     )
 
 
-def _counted(evidence: Evidence, trials: Trials) -> Evidence:
+def _counted(evidence: RunResult, trials: Trials) -> RunResult:
     """The evidence, where one run decides nothing: the triggers of it are counted.
 
     A trigger may have failed where the monitor still waits: `finally` asks nothing of an endless
@@ -298,7 +298,7 @@ def _moments(timeline: Timeline) -> Callable[[int], Moment]:
     return at
 
 
-def _reason(evidence: Evidence, recording: Recording, declarations: Declarations) -> str:
+def _reason(evidence: RunResult, recording: Recording, declarations: Declarations) -> str:
     """Why the verdict is what it is, in one sentence."""
     outcome = evidence.outcome
     match evidence.verdict:
@@ -321,7 +321,7 @@ def _reason(evidence: Evidence, recording: Recording, declarations: Declarations
             )
 
 
-def _broken(evidence: Evidence) -> str:
+def _broken(evidence: RunResult) -> str:
     first = evidence.violations[0]
     trigger = f", triggered at {seconds(first.trigger.seconds)}" if first.trigger else ""
     return (
@@ -334,7 +334,7 @@ def _more(count: int) -> str:
     return f", and {_times(count - 1, 'more stretch', 'more stretches')}" if count > 1 else ""
 
 
-def _unknown(evidence: Evidence, recording: Recording) -> str:
+def _unknown(evidence: RunResult, recording: Recording) -> str:
     errors = [finding.message for finding in recording.findings if finding.is_error]
     if errors:
         return errors[0]
@@ -349,7 +349,7 @@ def _unknown(evidence: Evidence, recording: Recording) -> str:
     return f"unknown at {_times(ticks, 'tick')}, first at tick {runs[0][0]}"
 
 
-def _of_whom(evidence: Evidence) -> str:
+def _of_whom(evidence: RunResult) -> str:
     """The propositions that were unknown at all."""
     parts = [
         f"`{name}` at {_times(tally.unknown, 'tick')}"
@@ -359,7 +359,7 @@ def _of_whom(evidence: Evidence) -> str:
     return f": {', '.join(parts)}" if parts else ""
 
 
-def _latency(evidence: Evidence) -> str:
+def _latency(evidence: RunResult) -> str:
     latencies = evidence.latencies
     if not latencies:
         return ""
@@ -369,7 +369,7 @@ def _latency(evidence: Evidence) -> str:
     return f", answered after {middle} (median), {longest} (longest)"
 
 
-def _margin(evidence: Evidence, signals: Mapping[str, Signal]) -> str:
+def _margin(evidence: RunResult, signals: Mapping[str, Signal]) -> str:
     """The threshold that was nearest, as a part of its bound; those that were crossed have none."""
     least = worst(evidence.margins)
     if least is None:

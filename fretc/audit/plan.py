@@ -9,27 +9,27 @@ from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass, field
 from functools import lru_cache, partial
 
-from compiler.files.edition import edition
+from compiler.files.build_id import build_id
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from compiler.project.folder import Project
 from compiler.situations.situations import situations
 from compiler.targets.python import monitor as monitors
 from fretc.audit.bases import bases
 from fretc.audit.evidence.basis import Basis
-from fretc.audit.evidence.claim import Claim
+from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.schema import SCHEMA, Selection
 from fretc.audit.expected_response import demand
 from fretc.audit.measurements import confidence_intervals as odds
 from fretc.audit.measurements.count_trials import chance, trials
 from fretc.audit.one_log import MonitoredRequirement
-from fretc.audit.refusals import RefusedRequirement, in_force, refusals
+from fretc.audit.refusals import RefusedRequirement, active_requirements, refusals
 from fretc.logs.signals.integrity import Integrity
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.documents import Requirement
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from monitors.loading import load
 
 
@@ -37,7 +37,7 @@ from monitors.loading import load
 class Plan:
     """The claims and what their propositions mean: all that an audit depends on beside the logs."""
 
-    claims: tuple[Claim, ...]
+    claims: tuple[AuditedRequirement, ...]
     declarations: Declarations = field(compare=False, repr=False)
     """Only the signals that the claims read: no log is judged by another one."""
     evaluation: str
@@ -58,10 +58,10 @@ class Plan:
     @property
     def key(self) -> str:
         """SHA-256 of that, and of the fretc that judges by it."""
-        return sha256(f"{edition()} {self.digest}")
+        return sha256(f"{build_id()} {self.digest}")
 
     @property
-    def named(self) -> tuple[Claim | RefusedRequirement, ...]:
+    def named(self) -> tuple[AuditedRequirement | RefusedRequirement, ...]:
         """Every requirement in force: those that are judged, then those that cannot be."""
         return (*self.claims, *self.refused)
 
@@ -91,7 +91,7 @@ def planned(
     declarations = project.declarations
     unauditable = refusals(project)
     left_out = {id(requirement) for requirement, _ in unauditable}
-    rules = [rule for rule in in_force(project) if id(rule.requirement) not in left_out]
+    rules = [rule for rule in active_requirements(project) if id(rule.requirement) not in left_out]
     errors = tuple(dict.fromkeys(reason for _, why in unauditable for reason in why))
     if declarations is None or not rules:
         return errors or (Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit"),)
@@ -113,8 +113,8 @@ def _refused(
     return RefusedRequirement(requirement.id, wording(requirement), basis_of[id(requirement)], why)
 
 
-def _claim(rule: Formalized, basis: Basis, monitor: str) -> Claim:
-    return Claim(
+def _claim(rule: FormalizedRequirement, basis: Basis, monitor: str) -> AuditedRequirement:
+    return AuditedRequirement(
         rule.id,
         wording(rule.requirement),
         basis,
@@ -125,9 +125,9 @@ def _claim(rule: Formalized, basis: Basis, monitor: str) -> Claim:
     )
 
 
-@deep
+@with_recursion_limit
 def _digest(
-    claims: Sequence[Claim],
+    claims: Sequence[AuditedRequirement],
     refused: Sequence[RefusedRequirement],
     declarations: Declarations,
     evaluation: str,
@@ -143,7 +143,7 @@ def _digest(
 
 
 @lru_cache(maxsize=4)
-@deep
+@with_recursion_limit
 def keys(plan: Plan) -> Mapping[str, str]:
     """Of each claim SHA-256 of all that its result in a log rests on beside the log, to the letter.
 
@@ -152,7 +152,7 @@ def keys(plan: Plan) -> Mapping[str, str]:
     """
     clock, signals = plan.declarations.clock, plan.declarations.signals.values()
     topics = sorted({signal.path.topic for signal in signals})
-    common = [SCHEMA, edition(), plan.evaluation, plan.integrity, repr(clock), topics]
+    common = [SCHEMA, build_id(), plan.evaluation, plan.integrity, repr(clock), topics]
     requirements = zip(plan.claims, monitored_requirements(plan), strict=True)
     return {
         claim.id: sha256(json.dumps([*common, _letters(plan, claim, each.propositions)]))
@@ -160,7 +160,7 @@ def keys(plan: Plan) -> Mapping[str, str]:
     }
 
 
-def _letters(plan: Plan, claim: Claim, propositions: Sequence[str]) -> list[object]:
+def _letters(plan: Plan, claim: AuditedRequirement, propositions: Sequence[str]) -> list[object]:
     """All that a claim says, and what its propositions mean; places have no part in `repr`."""
     read = plan.declarations.reading(propositions)
     return [
@@ -176,13 +176,13 @@ def _letters(plan: Plan, claim: Claim, propositions: Sequence[str]) -> list[obje
     ]
 
 
-@deep
+@with_recursion_limit
 def packed(plan: Plan) -> bytes:
     """The plan as bytes, for a process that trusts this one."""
     return pickle.dumps(plan, protocol=5)
 
 
-@deep
+@with_recursion_limit
 def unpacked(data: bytes) -> Plan:
     """The plan again."""
     plan = pickle.loads(data)

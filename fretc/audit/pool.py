@@ -27,7 +27,7 @@ R = TypeVar("R")
 
 
 @dataclass(frozen=True, slots=True)
-class Killed:
+class WorkerDied:
     """The process that worked on a thing was killed, twice: the second time it was alone."""
 
     status: int
@@ -38,7 +38,7 @@ class Killed:
         return f"signal {-self.status}" if self.status < 0 else f"exit status {self.status}"
 
 
-class Late(Enum):
+class TimedOut(Enum):
     """There was no time for a thing: its process was ended, or never began."""
 
     OWN = "own"
@@ -60,7 +60,7 @@ class Limits:
 ENDLESS = Limits()
 
 
-def was_late(log: str, how: Late, limits: Limits) -> Diagnostic:
+def was_late(log: str, how: TimedOut, limits: Limits) -> Diagnostic:
     """F440, F441: a log that was not audited to its end, for want of time.
 
     Args:
@@ -68,7 +68,7 @@ def was_late(log: str, how: Late, limits: Limits) -> Diagnostic:
         how: which time was over.
         limits: those of the audit.
     """
-    if how is Late.OWN and limits.each is not None:
+    if how is TimedOut.OWN and limits.each is not None:
         return Diagnostic(
             Code.LOG_OUT_OF_TIME,
             f"the audit of `{name_of(log)}` was ended after {exact_duration(limits.each)}",
@@ -103,18 +103,18 @@ def was_killed(log: str, how: str) -> Diagnostic:
 @overload
 def each(
     function: Callable[[T], R], things: Sequence[T], jobs: int
-) -> Generator[tuple[int, R | Killed], None, None]: ...
+) -> Generator[tuple[int, R | WorkerDied], None, None]: ...
 
 
 @overload
 def each(
     function: Callable[[T], R], things: Sequence[T], jobs: int, limits: Limits
-) -> Generator[tuple[int, R | Killed | Late], None, None]: ...
+) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]: ...
 
 
 def each(
     function: Callable[[T], R], things: Sequence[T], jobs: int, limits: Limits = ENDLESS
-) -> Generator[tuple[int, R | Killed | Late], None, None]:
+) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]:
     """The function of each thing with the thing's place, in the order in which they are done.
 
     Whoever stops to iterate ends the processes, whatever they are at.
@@ -135,7 +135,7 @@ def each(
     again: list[int] = []
     with closing(_shared(function, things, range(len(things)), jobs, clock)) as done:
         for place, result in done:
-            if isinstance(result, Killed):
+            if isinstance(result, WorkerDied):
                 again.append(place)
             else:
                 yield place, result
@@ -172,14 +172,14 @@ def _shared(
     places: Sequence[int],
     jobs: int,
     clock: _Clock,
-) -> Generator[tuple[int, R | Killed | Late], None, None]:
-    crew = _Crew(function, things, clock)
+) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]:
+    crew = _WorkerPool(function, things, clock)
     waiting = deque(places)
     try:
         while waiting or crew.busy:
             if clock.is_over:
                 for place in (*crew.places, *waiting):
-                    yield place, Late.ALL
+                    yield place, TimedOut.ALL
                 return
             while waiting and len(crew.busy) < jobs:
                 crew.hire(waiting.popleft())
@@ -191,7 +191,7 @@ def _shared(
         crew.dismiss()
 
 
-class _Crew:
+class _WorkerPool:
     """Processes, each at one thing or idle."""
 
     def __init__(
@@ -225,7 +225,7 @@ class _Crew:
             except (EOFError, OSError):
                 connection.close()
                 process.join()
-                yield place, Killed(process.exitcode or 0)
+                yield place, WorkerDied(process.exitcode or 0)
                 continue
             self._idle.append((connection, process))
             if not fine:
@@ -235,7 +235,7 @@ class _Crew:
             if self._clock.is_late(since):
                 del self.busy[connection]
                 _end(connection, process)
-                yield place, Late.OWN
+                yield place, TimedOut.OWN
 
     def dismiss(self) -> None:
         """End all processes at once: they only read."""

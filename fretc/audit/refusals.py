@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 from compiler.formalization.binding_agreement import unbound
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.evidence.basis import Basis
@@ -31,7 +31,7 @@ def refusals(project: Project) -> tuple[tuple[Requirement, tuple[Diagnostic, ...
     Those of the project, and what a log needs beside: a binding of each proposition, a clock, and
     a monitor.
     """
-    rules = in_force(project)
+    rules = active_requirements(project)
     own = {id(rule.requirement): rule for rule in rules}
     refused = {id(each.requirement): each.why for each in project.refused}
     unusable = _unusable(project, rules[0]) if rules and not has_errors(project.general) else None
@@ -48,12 +48,12 @@ def refusals(project: Project) -> tuple[tuple[Requirement, tuple[Diagnostic, ...
     return tuple(found)
 
 
-def in_force(project: Project) -> list[Formalized]:
+def active_requirements(project: Project) -> list[FormalizedRequirement]:
     """The rules of all requirements that are not retired."""
     return [rule for rule in project.rules if rule.requirement.status != "retired"]
 
 
-def _unusable(project: Project, first: Formalized) -> Diagnostic | None:
+def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | None:
     """Why the bindings cannot be used for any requirement, given once; None where they can."""
     declarations = project.declarations
     if declarations is None:
@@ -73,7 +73,9 @@ def _unusable(project: Project, first: Formalized) -> Diagnostic | None:
     return None
 
 
-def _not_auditable(rule: Formalized, declarations: Declarations) -> tuple[Diagnostic, ...]:
+def _not_auditable(
+    rule: FormalizedRequirement, declarations: Declarations
+) -> tuple[Diagnostic, ...]:
     """Why no log can be judged by a rule; empty where one can."""
     refused = monitors.refuse(replace(rule, pctl=None))
     return (*([refused] if refused else []), *unbound(rule, declarations))

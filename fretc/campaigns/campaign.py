@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.targets.interceptor_options import ticks
 from fretc.audit.many_logs import audited
 from fretc.audit.measurements.binomial import highest, lowest
 from fretc.audit.plan import monitored_requirements
-from fretc.audit.pool import Killed, each
+from fretc.audit.pool import WorkerDied, each
 from fretc.campaigns.experiment import interceptor, plan, safety_function
 from monitors import kernel
 from monitors.interceptor import Options
@@ -151,7 +151,7 @@ def campaign(
         function = partial(_one, logs, folder is not None)
         with closing(each(function, things, jobs)) as done:
             for place, run in done:
-                if isinstance(run, Killed):
+                if isinstance(run, WorkerDied):
                     raise RuntimeError(f"the process of a mission was killed: {run}")
                 runs[place] = run
                 tell(len(runs))

@@ -36,7 +36,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from compiler.formalization.formalized import Formalized
+    from compiler.formalization.formalized import FormalizedRequirement
     from compiler.project.folder import Project
     from fretc.analysis.analysis import Options
     from fretc.analysis.arena.roles import Roles
@@ -102,7 +102,7 @@ def analyze(
     from fretish.printer import sentence as printed
 
     project, first = project_of(files, requirements, bindings, ("environment",))
-    rules = in_force(project, component)
+    rules = active_requirements(project, component)
     assumed, remarks = assumptions(rules, project.declarations)
     say_briefly(remarks, first)
     if has_errors(remarks):
@@ -133,8 +133,8 @@ def analyze(
 
 
 def asked(
-    rules: Sequence[Formalized],
-    assumed: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
+    assumed: Sequence[FormalizedRequirement],
     chosen: Roles,
     options: Options,
 ) -> tuple[Analysis, bool]:
@@ -155,8 +155,8 @@ def asked(
 
 def _emit(
     analysis: Analysis,
-    rules: Sequence[Formalized],
-    assumed: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
+    assumed: Sequence[FormalizedRequirement],
     chosen: Roles,
     options: Options,
     emitted: str,
@@ -204,7 +204,9 @@ def _smaller(form: str) -> str:
     return "`--emit python` has no states, and writes far larger strategies"
 
 
-def in_force(project: Project, component: str | None) -> tuple[Formalized, ...]:
+def active_requirements(
+    project: Project, component: str | None
+) -> tuple[FormalizedRequirement, ...]:
     """The rules that are asked about: those that are in force."""
     rules = tuple(rule for rule in project.rules if rule.requirement.status != "retired")
     if component is not None:
@@ -214,7 +216,9 @@ def in_force(project: Project, component: str | None) -> tuple[Formalized, ...]:
     return rules
 
 
-def _of_component(rules: Sequence[Formalized], component: str) -> tuple[Formalized, ...]:
+def _of_component(
+    rules: Sequence[FormalizedRequirement], component: str
+) -> tuple[FormalizedRequirement, ...]:
     chosen = tuple(rule for rule in rules if rule.sentence.component == component)
     if not chosen:
         known = tuple(dict.fromkeys(rule.sentence.component for rule in rules))

@@ -51,12 +51,12 @@ from fretish.diagnostics.rendering import visible
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from fretc.audit.into_store import Earlier, Session
+    from fretc.audit.into_store import ReusableResults, StoreWriter
     from fretc.audit.many_logs import Engine
     from fretc.audit.outputs.totals import Marks
     from fretc.audit.plan import Plan
     from fretc.audit.pool import Limits
-    from fretc.audit.store.recordings import Kept
+    from fretc.audit.store.recordings import SampleCache
     from fretc.commands.audit_outputs import Outcome, Target
 
 
@@ -216,7 +216,7 @@ def audit(
     if resume:
         say_line("`--resume` is not needed any more: what a stopped audit has finished is known")
     from compiler.project.folder import load
-    from compiler.project.paths import beside, companions, requirement_files
+    from compiler.project.paths import companions, requirement_files, sibling_path
     from fretc.audit.log_paths import files_of
     from fretc.audit.outputs.totals import Marks
     from fretc.audit.plan import Plan, planned
@@ -237,7 +237,7 @@ def audit(
         stop(files)
     inputs = (*files_of(logs), *files, *companions(files), *([bindings] if bindings else []))
     protect([target.path, *([Path(parquet)] if parquet else [])], inputs)
-    project = load(files, bindings or beside(requirements, "bindings.toml"), reads=OF_AUDITS)
+    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
     say_briefly(project.diagnostics, requirements)
     plan = planned(project, evaluation, Integrity(integrity), confidence)
     if not isinstance(plan, Plan):
@@ -296,16 +296,16 @@ def _status(marks: Marks) -> int:
     return VIOLATION if marks.violated else SHOWN if marks.shown else NOT_SHOWN
 
 
-def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> Session:
+def _session(folder: Path, plan: Plan, logs: Sequence[str], *, rehash: bool) -> StoreWriter:
     from compiler.files.user_key import user_key
-    from fretc.audit.into_store import Session, busy
+    from fretc.audit.into_store import StoreWriter, busy
 
     key = user_key()
     if isinstance(key, Diagnostic):
         say([key])
     known = None if isinstance(key, Diagnostic) else key
     try:
-        return Session(folder, plan, logs, known, rehash=rehash)
+        return StoreWriter(folder, plan, logs, known, rehash=rehash)
     except BlockingIOError:
         stop(busy(folder))
     except OSError as error:
@@ -331,10 +331,10 @@ def _deliver(
     remove_other(target)
 
 
-def _samples(target: Target, *, rehash: bool) -> Kept | None:
+def _samples(target: Target, *, rehash: bool) -> SampleCache | None:
     """Where samples are kept; None where there is no key of the user, which says who kept them."""
     from compiler.files.user_key import user_key
-    from fretc.audit.store.recordings import SUFFIX, Kept
+    from fretc.audit.store.recordings import SUFFIX, SampleCache
 
     if str(target.path) == "-":
         stop(_no_place_for_columns("evidence is printed", "name a file with `-o`"))
@@ -342,7 +342,7 @@ def _samples(target: Target, *, rehash: bool) -> Kept | None:
     if isinstance(key, Diagnostic):
         say([key])
         return None
-    return Kept(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
+    return SampleCache(target.path.with_name(f"{target.path.name}{SUFFIX}"), key, rehash)
 
 
 def _no_place_for_columns(why: str, fix: str) -> Diagnostic:
@@ -351,20 +351,24 @@ def _no_place_for_columns(why: str, fix: str) -> Diagnostic:
 
 
 def _engine(
-    name: str, jobs: int, limits: Limits, kept: Kept | None, earlier: Earlier | None = None
+    name: str,
+    jobs: int,
+    limits: Limits,
+    kept: SampleCache | None,
+    earlier: ReusableResults | None = None,
 ) -> Engine:
     if name == "local":
-        from fretc.audit.many_logs import locally
+        from fretc.audit.many_logs import local_executor
 
         if earlier is None:
-            return locally(jobs, kept, limits=limits)
-        return locally(jobs, kept, earlier.results, limits)
+            return local_executor(jobs, kept, limits=limits)
+        return local_executor(jobs, kept, earlier.results, limits)
     if kept is not None:
         why = f"`--engine {name}` reads the logs elsewhere"
         stop(_no_place_for_columns(why, "leave out one of the two"))
-    from fretc.audit import fleet
+    from fretc.audit import dask_executor
 
-    engine = fleet.engine(name, jobs)
+    engine = dask_executor.engine(name, jobs)
     if isinstance(engine, Diagnostic):
         stop(engine)
     return engine

@@ -12,7 +12,7 @@ from fretc.terminal.progress import progress
 from fretish.diagnostics.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
-    from fretc.audit.into_store import Session, StoredAudit
+    from fretc.audit.into_store import StoredAudit, StoreWriter
     from fretc.audit.many_logs import Audit, Engine
     from fretc.audit.plan import Plan
 
@@ -32,7 +32,7 @@ def audit_in_memory(plan: Plan, logs: Sequence[str], engine: Engine) -> Audit:
     return result
 
 
-def audit_into(session: Session, engine: Engine) -> StoredAudit:
+def audit_into(session: StoreWriter, engine: Engine) -> StoredAudit:
     """Audit the logs of a session; whatever ends that early, what is finished is in its store."""
     if session.known:
         count = len(session.known) + len(session.new)
@@ -64,7 +64,7 @@ def audit_into(session: Session, engine: Engine) -> StoredAudit:
     return result
 
 
-def _kept(session: Session) -> str:
+def _kept(session: StoreWriter) -> str:
     """What is not lost, and how to go on; nothing where nothing is kept."""
     if not session.kept:
         return ""

@@ -98,14 +98,14 @@ def _project(requirements: str, bindings: str | None, replaced: str | None = Non
         replaced: a file that the command will write; mistakes in what it holds now do not count.
     """
     from compiler.project.folder import load
-    from compiler.project.paths import beside, requirement_files
+    from compiler.project.paths import requirement_files, sibling_path
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         if is_given("requirements"):
             stop(files)
         files = []
-    project = load(files, bindings or beside(requirements, "bindings.toml"), reads=OF_AUDITS)
+    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
     relevant = [d for d in project.diagnostics if replaced is None or not _is_in(d, replaced)]
     if has_errors(relevant):
         fail_at_the_end()

@@ -74,8 +74,8 @@ def check(
     Exit status: 0 no warning but accepted ones, 3 warnings, 2 mistakes.
     """
     from compiler.files.dates import today
-    from compiler.project.folder import whole
-    from compiler.project.paths import beside
+    from compiler.project.folder import load_folder
+    from compiler.project.paths import sibling_path
     from compiler.project.stated_numbers import first_unit
     from fretc.analysis.evidence import known as known_analysis
     from fretc.audit.evidence.briefs import Briefs
@@ -92,7 +92,7 @@ def check(
     (requirements,) = places([folder] if folder is not None else [], requirements)
     if fix:
         _fix(requirements)
-    project = whole(requirements, bindings, hazards)
+    project = load_folder(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
         stop(project)
     units = first_unit(project.rules)
@@ -110,12 +110,12 @@ def check(
         analyzed = None
     results = None if isinstance(audited, Diagnostic) else audited
     briefs = Briefs.of(results) if results else None
-    lock, path = None, beside(requirements, "fretc.lock")
+    lock, path = None, sibling_path(requirements, "fretc.lock")
     if path is not None:
         known = read_lock(path)
         lock = known if isinstance(known, Lock) else None
         diagnostics.extend([] if isinstance(known, Lock) else [known])
-    waivers, waived = {}, beside(requirements, "waivers.toml")
+    waivers, waived = {}, sibling_path(requirements, "waivers.toml")
     if waived is not None:
         found, wrong = read_waivers(waived, [r.id for r in project.requirements], today())
         waivers = {id: waiver for id, waiver in found.items() if waiver.covers(today())}

@@ -152,13 +152,13 @@ def _audited(
 
     Nothing is written.
     """
-    from fretc.audit.many_logs import locally
+    from fretc.audit.many_logs import local_executor
     from fretc.commands.audit_logs import selected
     from fretc.commands.audit_progress import audit_in_memory
 
     project, plan = planned_project(requirements, bindings)
     logs, _ = selected(paths, None, None, 0)
-    audit = audit_in_memory(plan, logs, locally(jobs))
+    audit = audit_in_memory(plan, logs, local_executor(jobs))
     diagnostics = project.answered(audit.diagnostics)
     say_also(diagnostics, project.diagnostics)
     if not audit.read:
@@ -170,10 +170,10 @@ def _audited(
 def planned_project(requirements: str, bindings: str | None) -> tuple[Project, Plan]:
     """The project, and the plan to audit what of it can be judged."""
     from compiler.project.folder import load
-    from compiler.project.paths import beside, requirement_files
+    from compiler.project.paths import requirement_files, sibling_path
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-    project = load(files, bindings or beside(requirements, "bindings.toml"), reads=OF_AUDITS)
+    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
     return project, plan_of(project, requirements)

@@ -25,7 +25,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors, suggest
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from compiler.formalization.formalized import Formalized
+    from compiler.formalization.formalized import FormalizedRequirement
     from compiler.project.folder import Project
     from fretish.documents import Requirement
 
@@ -86,7 +86,7 @@ _MOST_TICKS = 100_000
 """Of a duration: a picture has a column for each of them."""
 
 
-def _too_long(rule: Formalized) -> Diagnostic:
+def _too_long(rule: FormalizedRequirement) -> Diagnostic:
     return Diagnostic(
         Code.TOO_LARGE,
         f"the picture of {rule.id} would have more than {_MOST_TICKS} ticks",
@@ -95,7 +95,7 @@ def _too_long(rule: Formalized) -> Diagnostic:
     )
 
 
-def _explain_rules(rules: Sequence[Formalized], form: str, picture: str | None) -> None:
+def _explain_rules(rules: Sequence[FormalizedRequirement], form: str, picture: str | None) -> None:
     from compiler.explanation import explain as explanation
     from compiler.explanation.drawing import svg
     from compiler.files.templating import to_json
@@ -114,16 +114,16 @@ def _explain_rules(rules: Sequence[Formalized], form: str, picture: str | None) 
         deliver({Path(picture): svg(explained[0].picture)}, protected=sources)
 
 
-def _typed(sentence: str, folder: str, bindings: str | None) -> list[Formalized]:
+def _typed(sentence: str, folder: str, bindings: str | None) -> list[FormalizedRequirement]:
     """The rule of a sentence; the project's clock, if there is one, says what a second is."""
     from compiler.formalization.binding_agreement import broken_tables
     from compiler.formalization.formalize import formalize
     from compiler.project.folder import load
-    from compiler.project.paths import BINDINGS, beside
+    from compiler.project.paths import BINDINGS, sibling_path
     from fretish.diagnostics.source import Source
     from fretish.documents import Requirement
 
-    project = load([], bindings or beside(folder, BINDINGS), reads=())
+    project = load([], bindings or sibling_path(folder, BINDINGS), reads=())
     requirement = Requirement("sentence", Source("<sentence>", sentence.strip()).span())
     rule, remarks = formalize(requirement, project.declarations)
     say([*project.diagnostics, *remarks])
@@ -136,7 +136,9 @@ def _typed(sentence: str, folder: str, bindings: str | None) -> list[Formalized]
     return [rule]
 
 
-def _rules(what: str, folder: str, bindings: str | None, *, is_file: bool) -> list[Formalized]:
+def _rules(
+    what: str, folder: str, bindings: str | None, *, is_file: bool
+) -> list[FormalizedRequirement]:
     """The rules asked for; exits where there is none."""
     from compiler.project.folder import load
     from compiler.project.paths import listed, requirement_files

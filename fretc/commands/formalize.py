@@ -29,7 +29,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
-    from compiler.formalization.formalized import Formalized
+    from compiler.formalization.formalized import FormalizedRequirement
     from compiler.project.folder import Project
     from compiler.project.refusals import Refused
     from compiler.targets.target import Options, Target
@@ -116,7 +116,7 @@ def compile_(
         _print_formulas(project, options)
 
 
-def _undecided(rules: Sequence[Formalized]) -> list[Diagnostic]:
+def _undecided(rules: Sequence[FormalizedRequirement]) -> list[Diagnostic]:
     """F203 for each rule that no run decides: the same, whatever is made of it."""
     monitor = TARGETS["monitor"]
     remarks = [monitor.remark(rule) for rule in rules if monitor.refuse(rule) is None]
@@ -210,12 +210,12 @@ def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str
 
 def _emitted(
     target: Target, project: Project, options: Options
-) -> tuple[list[Formalized] | None, list[Diagnostic]]:
+) -> tuple[list[FormalizedRequirement] | None, list[Diagnostic]]:
     """The rules that the target can make files of, None: no file at all; and what it refuses.
 
     A file of all rules is made of all of them or not at all.
     """
-    from compiler.formalization.formalize import clashes
+    from compiler.formalization.formalize import name_collisions
 
     rules = project.rules
     answers = [(rule, target.refuse(rule)) for rule in rules]
@@ -223,7 +223,7 @@ def _emitted(
     whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
     one_file = target.together or (options.one_file and target.joins)
     if one_file:
-        whole += clashes(rules)
+        whole += name_collisions(rules)
     if target.together and any(
         each.is_error and each.code is Code.BAD_SETTINGS for each in project.diagnostics
     ):  # a package says who answers for it: the settings do

@@ -21,7 +21,7 @@ from fretc.terminal.output import BAD, SHOWN, deliver, say, stop
 from fretish.diagnostics.diagnostic import Diagnostic
 
 if TYPE_CHECKING:
-    from compiler.formalization.formalized import Formalized
+    from compiler.formalization.formalized import FormalizedRequirement
     from compiler.project.folder import Project
     from fretc.play.recorded import Recorded
     from fretc.play.starts import Start
@@ -74,7 +74,7 @@ def play(
     Exit status: 0 the page has all requirements, 2 bad use or input, or a requirement of which no
     monitor can be made: the page names it.
     """
-    from compiler.formalization.formalize import clashes
+    from compiler.formalization.formalize import name_collisions
     from compiler.project.paths import companions
     from fretc.play.page import html
     from fretc.play.starts import of_examples
@@ -92,7 +92,7 @@ def play(
     )
     changes = versions(now, _side(earlier)[0], _SECONDS) if earlier else Versions()
     shown = [*side_by_side(changes, known)]
-    clashing = [*clashes(shown)]
+    clashing = [*name_collisions(shown)]
     if clashing:
         stop(*clashing)
     say(refusals)
@@ -117,10 +117,10 @@ def play(
 def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
     """One version of a project, and why no monitor can be made of some sound requirements."""
     from compiler.targets.javascript.monitor import refuse
-    from fretc.commands.analyze import in_force
+    from fretc.commands.analyze import active_requirements
     from fretc.play.versions import Side
 
-    rules = in_force(project, None)
+    rules = active_requirements(project, None)
     refused = {rule.id: why for rule in rules if (why := refuse(rule)) is not None}
     known = [rule for rule in rules if rule.id not in refused]
     mistaken = {each.requirement.id: each.why[0] for each in project.refused if each.is_in_force}
@@ -129,7 +129,7 @@ def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
 
 
 def _recorded(
-    project: Project, known: Sequence[Formalized], logs: Sequence[str]
+    project: Project, known: Sequence[FormalizedRequirement], logs: Sequence[str]
 ) -> Iterator[Recorded]:
     """What some logs show; one that cannot be read, or judged, stops the command."""
     from fretc.audit.plan import Plan, planned
@@ -148,14 +148,14 @@ def _recorded(
 
 
 def of_files(
-    rules: Sequence[Formalized],
-    known: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
+    known: Sequence[FormalizedRequirement],
     tests: str | None,
     analysis: str | None,
 ) -> Iterator[Start]:
     """What other commands have found, as far as it is about the requirements as they are."""
+    from fretc.analysis.evidence import default_path
     from fretc.analysis.evidence import read as read_analysis
-    from fretc.analysis.evidence import written
     from fretc.play.starts import changed, of_analysis, of_suite, others, stale
     from fretc.testing.reader import DEFAULT
     from fretc.testing.reader import read as read_suite
@@ -167,7 +167,7 @@ def of_files(
         if old:
             say([stale(path, f"{', '.join(old)} changed since", "fretc test")])
         yield from of_suite(suite, known)
-    path = analysis or written()
+    path = analysis or default_path()
     if path is not None:
         found = _good(read_analysis(path)).document
         old = others(found, rules)

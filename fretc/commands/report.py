@@ -122,14 +122,14 @@ def report(
     All forms say the same. The same inputs give the same bytes; waivers count by the day of
     SOURCE_DATE_EPOCH, where that is set.
     """
-    from compiler.project.folder import whole
-    from compiler.project.paths import beside, companions, requirement_files
-    from fretc.analysis.evidence import written as analyzed
+    from compiler.project.folder import load_folder
+    from compiler.project.paths import companions, requirement_files, sibling_path
+    from fretc.analysis.evidence import default_path as analyzed
     from fretc.attestation.signatures import SIGNERS
     from fretc.audit.evidence.reader import not_audited
     from fretc.report.make import make
-    from fretc.verification.ajpf_results import written as results
-    from fretc.verification.reader import written
+    from fretc.verification.ajpf_results import default_paths as results
+    from fretc.verification.reader import default_path
 
     outputs = _outputs(form, output, places)
     for kind, _ in outputs:
@@ -141,13 +141,13 @@ def report(
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-    project = whole(requirements, bindings, hazards)
+    project = load_folder(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
         stop(project)
-    lock = lock or beside(requirements, "fretc.lock")
-    waivers = waivers or beside(requirements, "waivers.toml")
-    signers = signers or beside(requirements, SIGNERS)
-    verification = verification or written()
+    lock = lock or sibling_path(requirements, "fretc.lock")
+    waivers = waivers or sibling_path(requirements, "waivers.toml")
+    signers = signers or sibling_path(requirements, SIGNERS)
+    verification = verification or default_path()
     analysis = analysis or analyzed()
     ajpf_results = ajpf or results()
     outcome = make(
@@ -176,7 +176,7 @@ def report(
 
 def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | None) -> Inset | None:
     """The page to play with traces; None: no requirement can be on it."""
-    from compiler.formalization.formalize import clashes
+    from compiler.formalization.formalize import name_collisions
     from compiler.targets.javascript.monitor import refuse
     from fretc.audit.plan import Plan, planned
     from fretc.commands.play import of_files
@@ -188,7 +188,7 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
     project = project.sound
     refused |= {rule.id: said.message for rule in project.rules if (said := refuse(rule))}
     known = [rule for rule in project.rules if rule.id not in refused]
-    if not known or [*clashes(known)]:
+    if not known or [*name_collisions(known)]:
         return None
     plan = planned(project)
     recorded = Recorded((), ())

@@ -225,7 +225,7 @@ def _chains(
         analysis: of the requirements together.
         accept: all that is read will be accepted, so a store is held against its results in full.
     """
-    from compiler.project.folder import whole
+    from compiler.project.folder import load_folder
     from fretc.analysis.evidence import known as known_analysis
     from fretc.audit.evidence.briefs import Briefs
     from fretc.audit.measurements.confidence_intervals import REFUTED
@@ -233,7 +233,7 @@ def _chains(
     from fretc.report.traceability.chain import chains
     from fretc.verification.reader import known
 
-    project = whole(requirements)
+    project = load_folder(requirements)
     if isinstance(project, Diagnostic):
         stop(project)
     proofs = known(verification)

@@ -178,7 +178,7 @@ def _json(path: str, verification: str | None) -> Signable:
     from fretc.analysis import evidence as analyzed
     from fretc.audit.store.anywhere import read
     from fretc.report.model.views import SCHEMA
-    from fretc.verification.reader import written
+    from fretc.verification.reader import default_path
 
     if not os.path.isdir(path):
         source = read_text(path)
@@ -194,18 +194,18 @@ def _json(path: str, verification: str | None) -> Signable:
     audited = read(path)
     if isinstance(audited, Diagnostic):
         stop(_as_error(audited))
-    place = verification or written()
+    place = verification or default_path()
     return _evidence(audited, _proofs(place) if place is not None else None)
 
 
 def _schema(source: Source) -> object:
     """What the file says it is; whatever is wrong with it, its own reader says."""
-    from compiler.files.checked_json import MisshapenError, Shape, plain
+    from compiler.files.checked_json import SchemaError, Shape, plain
 
     try:
         whole = Shape(plain(source.text))
         return whole.field("schema").value
-    except MisshapenError as error:
+    except SchemaError as error:
         stop(
             Diagnostic(
                 Code.BAD_EVIDENCE,
@@ -423,7 +423,7 @@ def _public(path: str) -> str:
 # What must be signed ---------------------------------------------------------------------------
 
 
-def demand(evidence: EvidenceSource, by: str, others: Mapping[str, str | None]) -> None:
+def require(evidence: EvidenceSource, by: str, others: Mapping[str, str | None]) -> None:
     """Stop, with exit status 1, where a key has not signed exactly this evidence.
 
     Args:

@@ -194,7 +194,7 @@ def _record(
     encoding: str,
     pictures: Mapping[str, str | None],
 ) -> None:
-    from compiler.files.edition import __version__
+    from compiler.files.build_id import __version__
     from fretc.campaigns.campaign import intercepted
     from fretc.campaigns.experiment import safety_function
     from simulation.mission import record

@@ -38,7 +38,7 @@ from fretish.diagnostics.rendering import visible
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from compiler.formalization.formalized import Formalized
+    from compiler.formalization.formalized import FormalizedRequirement
     from fretc.analysis.text_output import Line
     from fretc.testing.suite import Suite
 
@@ -142,10 +142,10 @@ def test(
     from compiler.project.paths import companions
     from fretc.analysis.assumptions import assumptions
     from fretc.commands import test_against, test_staging
-    from fretc.commands.analyze import in_force
+    from fretc.commands.analyze import active_requirements
 
     project, first = project_of(files, requirements, bindings, ("environment", *OF_AUDITS))
-    rules = in_force(project, component)
+    rules = active_requirements(project, component)
     if show is not None:
         _check_shown(show, [rule.id for rule in rules])
     assumed, remarks = assumptions(rules, project.declarations)
@@ -199,7 +199,7 @@ def _check_shown(id: str, known: Sequence[str]) -> None:
         stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
 
 
-def _of(path: str, rules: Sequence[Formalized]) -> Suite:
+def _of(path: str, rules: Sequence[FormalizedRequirement]) -> Suite:
     """The suite of a file, as far as it is about requirements as they are."""
     from fretc.testing.exports.saved import WrongError
     from fretc.testing.exports.saved import saved as checked
@@ -223,7 +223,7 @@ def _of(path: str, rules: Sequence[Formalized]) -> Suite:
 
 
 def _made(
-    rules: Sequence[Formalized], assumed: Sequence[Formalized], seconds: float
+    rules: Sequence[FormalizedRequirement], assumed: Sequence[FormalizedRequirement], seconds: float
 ) -> tuple[Suite, bool]:
     """The suite, and whether Ctrl-C has stopped it."""
     from fretc.analysis.worker import Stopped, findings
@@ -242,7 +242,7 @@ def _made(
 
 def _files(
     suite: Suite,
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     emitted: str,
     output: str,
     languages: Sequence[str],
@@ -263,7 +263,7 @@ def _files(
 
 
 def _lines(
-    suite: Suite, rules: Sequence[Formalized], show: str | None, *, of_file: bool
+    suite: Suite, rules: Sequence[FormalizedRequirement], show: str | None, *, of_file: bool
 ) -> Iterator[Line]:
     from fretc.testing.bench import demands
     from fretc.testing.text_output import lines, lines_of_file, shown

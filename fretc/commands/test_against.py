@@ -26,14 +26,14 @@ from fretc.terminal.output import (
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 if TYPE_CHECKING:
-    from compiler.formalization.formalized import Formalized
+    from compiler.formalization.formalized import FormalizedRequirement
     from fretc.testing.conformance.findings import Conformance
 
 
 def against(
     command: str,
-    rules: Sequence[Formalized],
-    assumed: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
+    assumed: Sequence[FormalizedRequirement],
     seconds: float,
     line_time: float,
     form: str,
@@ -54,11 +54,11 @@ def against(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from fretc.analysis.arena.alphabet import BeyondError
+    from fretc.analysis.arena.alphabet import UnsupportedError
     from fretc.analysis.arena.budget import OutOfTimeError
     from fretc.analysis.arena.roles import roles
     from fretc.terminal.progress import at_work
-    from fretc.testing.conformance.campaign import Campaign
+    from fretc.testing.conformance.conformance_run import ConformanceRun
     from fretc.testing.conformance.program import Program, ProgramError
     from fretc.testing.conformance.text_output import lines
 
@@ -69,7 +69,7 @@ def against(
     wrong: Diagnostic | None = None
     stopped = False
     try:
-        campaign = Campaign(rules, assumed, chosen, seconds)
+        campaign = ConformanceRun(rules, assumed, chosen, seconds)
         referee = campaign.referee
         try:
             campaign.run(
@@ -79,7 +79,7 @@ def against(
             wrong = error.diagnostic
         except KeyboardInterrupt:
             stopped = True
-    except (BeyondError, OutOfTimeError) as error:
+    except (UnsupportedError, OutOfTimeError) as error:
         stop(Diagnostic(Code.BAD_USAGE, f"no program can be tested against these: {error}"))
     found = campaign.findings(words)
     evidence = f"{to_json(plain(found))}\n"

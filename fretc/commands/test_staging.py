@@ -16,8 +16,8 @@ from fretish.diagnostics.rendering import visible
 
 if TYPE_CHECKING:
     from compiler.project.folder import Project
-    from fretc.testing.staging.logs import StagedTest
-    from fretc.testing.staging.scenarios import Aim, Found
+    from fretc.testing.log_synthesis.logs import StagedTest
+    from fretc.testing.log_synthesis.scenarios import Aim, Found
     from fretc.testing.suite import Suite
 
 FORMS = ("mcap", "scenario")
@@ -50,7 +50,7 @@ def staged(project: Project, suite: Suite, emitted: str, emit_to: str, runs: int
 
 
 def _logs(project: Project, suite: Suite, folder: Path) -> int:
-    from fretc.testing.staging.logs import logs
+    from fretc.testing.log_synthesis.logs import logs
 
     done: list[StagedTest] = []
     interrupted = False
@@ -91,7 +91,7 @@ def _listed(what: str, reasons: Iterable[tuple[str, str]]) -> None:
 
 
 def _scenarios(project: Project, suite: Suite, folder: Path, runs: int, jobs: int) -> int:
-    from fretc.testing.staging.scenarios import Found, search, stageable
+    from fretc.testing.log_synthesis.scenarios import Found, search, stageable
 
     aims, why = stageable(suite, project)
     found, interrupted = Found(), False
@@ -115,7 +115,7 @@ def _written(
     project: Project, found: Found, folder: Path, words: Mapping[Aim, str]
 ) -> Collection[str]:
     """Write what does not come with fretc; what shows something else again is not written."""
-    from fretc.testing.staging.scenarios import confirmed, text
+    from fretc.testing.log_synthesis.scenarios import confirmed, text
     from simulation.world.scenario import names
 
     known, unlike = names(), []

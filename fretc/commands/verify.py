@@ -144,7 +144,7 @@ def verify(
     """Prove that what is made of requirements keeps them."""
     from compiler.project.paths import companions
     from fretc.terminal.progress import at_work
-    from fretc.verification.ajpf_results import written
+    from fretc.verification.ajpf_results import default_paths
     from fretc.verification.engines.sandbox import Limits
     from fretc.verification.layers.request import Request
     from fretc.verification.text_output import lines
@@ -157,7 +157,7 @@ def verify(
     if agent is not None:
         demanded = (*demanded, Layer.AGENT)
     project = _project(files, requirements, bindings)
-    results = ajpf or (written() if Layer.AJPF in layer_names else ())
+    results = ajpf or (default_paths() if Layer.AJPF in layer_names else ())
     request = Request(
         layers=layer_names,
         limits=Limits(seconds=limit),
@@ -320,7 +320,7 @@ def _print_and_write(
         traces: the folder for the tables; None: none are written.
         inputs: files that no output may replace.
     """
-    from compiler.files.edition import __version__
+    from compiler.files.build_id import __version__
     from compiler.files.records import plain
     from compiler.files.templating import to_json
     from compiler.logic.claims import SCHEMA, Document

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from fretc.commands.opening import plan_of
-from fretc.commands.sign import demand, installed
+from fretc.commands.sign import installed, require
 from fretc.terminal.options import (
     OF_LOGS,
     PATH,
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from compiler.project.folder import Project
     from fretc.analysis.evidence import AnalyzedSet
     from fretc.attestation.signatures import SignatureBook
-    from fretc.audit.evidence.reader import Evidence
+    from fretc.audit.evidence.reader import EvidenceFile
     from fretc.audit.evidence.schema import Document
     from fretc.audit.plan import Plan
     from fretc.report.traceability.lock import Lock
@@ -138,9 +138,9 @@ def verify_evidence(
     0 it stands, 1 something differs or is missing (with --strict a signature or a manifest, too),
     3 something was not checked, 2 bad use or bad input.
     """
-    from fretc.analysis.evidence import written as analyzed
+    from fretc.analysis.evidence import default_path as analyzed
     from fretc.audit.store.anywhere import required
-    from fretc.verification.reader import written
+    from fretc.verification.reader import default_path
 
     file = evidence_place(file)
     evidence = required(file)
@@ -149,10 +149,10 @@ def verify_evidence(
     whole = evidence.document
     if signed_by is not None:
         others = {"report": report, "proofs": verification, "analysis": analysis}
-        demand(evidence, signed_by, others)
+        require(evidence, signed_by, others)
     project, plan = _plan(requirements, bindings, labels)
     scope = _scope(plan, only, requirements)
-    verification = verification or written()
+    verification = verification or default_path()
     proofs = _proofs(verification)
     analysis = analysis or analyzed()
     known = _analyzed(analysis)
@@ -189,13 +189,13 @@ def _runs(whole: Document) -> list[str]:
 
 
 def _plan(requirements: str, bindings: str | None, labels: Sequence[str]) -> tuple[Project, Plan]:
-    from compiler.project.folder import whole
+    from compiler.project.folder import load_folder
     from fretc.logs.labels import given
 
     given_labels = given(labels)
     if isinstance(given_labels, Diagnostic):
         stop(given_labels)
-    project = whole(requirements, bindings)
+    project = load_folder(requirements, bindings)
     if isinstance(project, Diagnostic):
         stop(project)
     return project, replace(plan_of(project, requirements), labels=given_labels)
@@ -253,10 +253,10 @@ def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
 
 
 def _lock(requirements: str) -> Lock | None:
-    from compiler.project.paths import beside
+    from compiler.project.paths import sibling_path
     from fretc.report.traceability.lock import NAME, read
 
-    path = beside(requirements, NAME)
+    path = sibling_path(requirements, NAME)
     lock = read(path) if path is not None else None
     if isinstance(lock, Diagnostic):
         stop(lock)
@@ -304,7 +304,7 @@ def _against(scope: Scope, requirements: str, manifest: str | None) -> str:
 
 
 def _unmet(
-    evidence: Evidence,
+    evidence: EvidenceFile,
     scope: Scope,
     requirements: str,
     signed_by: str | None,
@@ -312,13 +312,13 @@ def _unmet(
     manifest: Manifest | None,
 ) -> Sequence[Recheck]:
     """What `--strict` demands and is missing."""
-    from compiler.project.paths import beside
+    from compiler.project.paths import sibling_path
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.traceability.lock import NAME
     from fretc.reproduction.strictness import unmet_demands
 
     installed()
-    listed, lock = (beside(requirements, name) for name in (SIGNERS, NAME))
+    listed, lock = (sibling_path(requirements, name) for name in (SIGNERS, NAME))
     there = {kind: path for kind, path in others.items() if path is not None}
     of_files = _signatures([evidence.file, *there.values()], signed_by or listed)
     of_reviews = _signatures([lock] if lock else [], listed or signed_by)
@@ -355,10 +355,10 @@ def _rechecked(
     manifest: Manifest | None,
     jobs: int,
 ) -> tuple[Recheck, ...]:
-    from fretc.audit.many_logs import locally
+    from fretc.audit.many_logs import local_executor
     from fretc.reproduction.results import recheck
 
-    results = recheck(whole, plan, places, locally(jobs), scope, manifest)
+    results = recheck(whole, plan, places, local_executor(jobs), scope, manifest)
     if isinstance(results, Diagnostic):
         stop(results)
     return results
@@ -426,14 +426,14 @@ def _report(
 ) -> bool:
     """Whether the report that is made now is the one in the file, byte for byte."""
     from compiler.files.text_files import read
-    from compiler.project.paths import beside
+    from compiler.project.paths import sibling_path
     from fretc.attestation.signatures import SIGNERS
     from fretc.report.make import make
 
     source = read(path)
     if isinstance(source, Diagnostic):
         stop(source)
-    names = [beside(requirements, name) for name in ("fretc.lock", "waivers.toml", SIGNERS)]
+    names = [sibling_path(requirements, name) for name in ("fretc.lock", "waivers.toml", SIGNERS)]
     current = make(
         project,
         evidence,

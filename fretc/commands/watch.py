@@ -155,12 +155,12 @@ def _opened(words: Sequence[str], source: Source) -> Sequence[Publisher]:
 def _planned(requirements: str, bindings: str | None) -> tuple[Project, Plan, Sequence[str]]:
     """The plan, which is that of an audit, and the files that it is made of."""
     from compiler.project.folder import load
-    from compiler.project.paths import beside, companions, requirement_files
+    from compiler.project.paths import companions, requirement_files, sibling_path
 
     files = requirement_files(requirements)
     if isinstance(files, Diagnostic):
         stop(files)
-    project = load(files, bindings or beside(requirements, "bindings.toml"), reads=OF_AUDITS)
+    project = load(files, bindings or sibling_path(requirements, "bindings.toml"), reads=OF_AUDITS)
     plan = plan_of(project, requirements)
     if plan.declarations.clock.patience is None:
         stop(_needs_lateness(plan))
@@ -178,12 +178,12 @@ def _audited(
     plan: Plan, logs: Sequence[str], evidence: str, inputs: Sequence[str], project: Project
 ) -> int:
     """Write what an audit says of the recordings, through its own door."""
-    from fretc.audit.many_logs import locally
+    from fretc.audit.many_logs import local_executor
     from fretc.commands.audit_progress import audit_in_memory
 
     if not logs:
         stop(Diagnostic(Code.NOTHING_TO_DO, "nothing was recorded: there is no evidence"))
-    result = audit_in_memory(plan, logs, locally(1))
+    result = audit_in_memory(plan, logs, local_executor(1))
     say_also(project.answered(result.diagnostics), ())
     deliver({Path(evidence): result.evidence}, [*inputs, *logs])
     return SHOWN if result.read == len(logs) else BAD

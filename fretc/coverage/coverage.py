@@ -18,7 +18,7 @@ from fretc.audit.evidence.schema import Situation as Named
 from fretc.coverage.least_runs import LeastRuns, least_runs
 
 
-class Standing(StrEnum):
+class CoverageStatus(StrEnum):
     """What all runs together show of a situation."""
 
     SEEN = "seen"
@@ -41,7 +41,7 @@ class RecordedSituation:
     """The first tick in each run, by the place of the run."""
     perhaps: Mapping[int, Moment]
     """The same of others, where it may have been."""
-    standing: Standing
+    standing: CoverageStatus
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class RequirementCoverage:
     unmeasured: tuple[int, ...]
     """Those of the others that have a result."""
 
-    def of(self, standing: Standing) -> tuple[RecordedSituation, ...]:
+    def of(self, standing: CoverageStatus) -> tuple[RecordedSituation, ...]:
         """The situations of which the runs show this."""
         return tuple(each for each in self.situations if each.standing is standing)
 
@@ -82,7 +82,7 @@ def coverage(source: EvidenceSource) -> Coverage:
         StoreError: it turns out not to be what it must be.
     """
     names, found = of_all_runs(source)
-    aims = [frozenset(each.seen) for one in found for each in one.of(Standing.SEEN)]
+    aims = [frozenset(each.seen) for one in found for each in one.of(CoverageStatus.SEEN)]
     return Coverage(names, found, least_runs(aims))
 
 
@@ -152,12 +152,12 @@ class _Ledger:
     def _situation(self, one: Named) -> RecordedSituation:
         seen, perhaps = self._seen[one.key], self._perhaps[one.key]
         perhaps = {run: moment for run, moment in perhaps.items() if run not in seen}
-        standing = Standing.NEVER if self._measured else Standing.NOT_MEASURED
+        standing = CoverageStatus.NEVER if self._measured else CoverageStatus.NOT_MEASURED
         if seen or perhaps:
-            standing = Standing.SEEN if seen else Standing.PERHAPS
+            standing = CoverageStatus.SEEN if seen else CoverageStatus.PERHAPS
         return RecordedSituation(one.key, one.words, seen, perhaps, standing)
 
 
-def counts(requirements: Iterable[RequirementCoverage]) -> Counter[Standing]:
+def counts(requirements: Iterable[RequirementCoverage]) -> Counter[CoverageStatus]:
     """How many situations of all requirements there are of each standing."""
     return Counter(each.standing for one in requirements for each in one.situations)

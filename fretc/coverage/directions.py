@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from fretc.coverage.coverage import Coverage, Standing
+from fretc.coverage.coverage import Coverage, CoverageStatus
 from fretc.testing.suite import Met, Obligation, Polarity, Repeat, Suite, Test
 from fretish.bindings.amounts import seconds
 from fretish.units import nanoseconds
@@ -130,7 +130,7 @@ def unseen(covered: Coverage, known: Directions) -> Iterator[tuple[str, str]]:
     for one in covered.requirements:
         for situation in one.situations:
             direction = known.get((one.id, situation.key))
-            if situation.standing is not Standing.SEEN and (
+            if situation.standing is not CoverageStatus.SEEN and (
                 direction is None or direction.way is Way.KEPT
             ):
                 yield one.id, situation.key

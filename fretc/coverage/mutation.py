@@ -12,14 +12,14 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 
-from compiler.formalization.formalized import Formalized, plain
+from compiler.formalization.formalized import FormalizedRequirement, plain
 from compiler.formalization.resolution import extended
 from compiler.project.folder import Project
 from compiler.situations.mutants import Mutant, mutants
 from compiler.targets.python import monitor as monitors
 from fretc.audit.measurements.judgement import Judgement, each_judged
 from fretc.audit.plan import Plan
-from fretc.audit.pool import Killed, each, was_killed
+from fretc.audit.pool import WorkerDied, each, was_killed
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.traces import Trace, trace
@@ -34,7 +34,7 @@ from monitors.loading import load
 
 
 @dataclass(frozen=True)
-class Suspects:
+class MutantBatch:
     """A requirement and its mutants, as one monitor: the requirement is the first in it."""
 
     id: str
@@ -48,10 +48,10 @@ class Suspects:
 
 
 @dataclass(frozen=True)
-class Inquiry:
+class MutationJob:
     """All that is needed beside a log to tell which mutants its run notices."""
 
-    suspects: tuple[Suspects, ...]
+    suspects: tuple[MutantBatch, ...]
     declarations: Declarations
     """With the signals of the audit, so that its ticks are those of the audit."""
     propositions: tuple[str, ...]
@@ -81,7 +81,7 @@ class RunSurvey:
     """Requirement and mutant → how it tells them apart."""
 
 
-def inquiry(project: Project, plan: Plan) -> Inquiry:
+def inquiry(project: Project, plan: Plan) -> MutationJob:
     """The mutants of each requirement that the plan audits.
 
     Args:
@@ -99,7 +99,7 @@ def inquiry(project: Project, plan: Plan) -> Inquiry:
     declarations = replace(declarations, signals=plan.declarations.signals)
     names = dict.fromkeys(name for one in found for name in one.monitor.PROPOSITIONS)
     known = tuple(name for name in names if _is_told(declarations, name))
-    return Inquiry(found, declarations, known, plan.integrity)
+    return MutationJob(found, declarations, known, plan.integrity)
 
 
 def _is_told(declarations: Declarations, name: str) -> bool:
@@ -108,7 +108,7 @@ def _is_told(declarations: Declarations, name: str) -> bool:
     return proposition is not None and declarations.signals.keys() >= {*proposition.signals}
 
 
-def suspects(rule: Formalized) -> Suspects:
+def suspects(rule: FormalizedRequirement) -> MutantBatch:
     """The mutants of a rule in one monitor, with the rule itself."""
     judged: list[Mutant] = []
     refused: list[tuple[Mutant, str]] = []
@@ -121,10 +121,10 @@ def suspects(rule: Formalized) -> Suspects:
     numbered = [_called(each.rule, f"M{n}") for n, each in enumerate(judged)]
     text = monitors.text(_called(rule, "R"), *numbered)
     watching = load(f"{rule.id}_mutants", text)
-    return Suspects(rule.id, rule.fingerprint, tuple(judged), tuple(refused), watching)
+    return MutantBatch(rule.id, rule.fingerprint, tuple(judged), tuple(refused), watching)
 
 
-def _called(rule: Formalized, id: str) -> Formalized:
+def _called(rule: FormalizedRequirement, id: str) -> FormalizedRequirement:
     """The rule under another id: in a monitor each has its own."""
     return replace(rule, requirement=replace(rule.requirement, id=id))
 
@@ -132,7 +132,7 @@ def _called(rule: Formalized, id: str) -> Formalized:
 # One run ----------------------------------------------------------------------------------------
 
 
-def of_run(asked: Inquiry, log: str) -> RunSurvey | Diagnostic:
+def of_run(asked: MutationJob, log: str) -> RunSurvey | Diagnostic:
     """What the run of a log tells apart, or why the log cannot be read.
 
     Args:
@@ -207,12 +207,12 @@ def _column(runs: Iterable[tuple[int, int]]) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Survey:
+class MutationResult:
     """What all runs tell apart."""
 
     runs: tuple[str, ...]
     """Those that could be read."""
-    suspects: tuple[Suspects, ...]
+    suspects: tuple[MutantBatch, ...]
     known: frozenset[str]
     """The requirements on which some run has a verdict."""
     noticed: Mapping[tuple[str, str], tuple[int, Difference]]
@@ -234,7 +234,7 @@ class Survey:
         """Whether every mutant is noticed that says something else."""
         return bool(self.runs) and len(self.noticed) == self.count
 
-    def with_proofs(self, suite: Suite) -> Survey:
+    def with_proofs(self, suite: Suite) -> MutationResult:
         """The same with what tests have proved, of requirements whose sentence they are of."""
         known = {each.id: each.fingerprint for each in suite.requirements}
         current = {each.id for each in self.suspects if known.get(each.id) == each.fingerprint}
@@ -247,11 +247,13 @@ class Survey:
         return replace(self, equivalent=frozenset(proved & keys - self.noticed.keys()))
 
 
-def _all(suspects: Suspects) -> tuple[Mutant, ...]:
+def _all(suspects: MutantBatch) -> tuple[Mutant, ...]:
     return (*suspects.mutants, *(mutant for mutant, _ in suspects.refused))
 
 
-def survey(asked: Inquiry, logs: Sequence[str], jobs: int, tell: Callable[[str], None]) -> Survey:
+def survey(
+    asked: MutationJob, logs: Sequence[str], jobs: int, tell: Callable[[str], None]
+) -> MutationResult:
     """What the runs of some logs tell apart, in the order of the logs.
 
     Args:
@@ -274,7 +276,7 @@ def survey(asked: Inquiry, logs: Sequence[str], jobs: int, tell: Callable[[str],
                 first[key] = place, apart
     runs = [place for place in range(len(logs)) if place not in unread]
     number = {place: run for run, place in enumerate(runs)}
-    return Survey(
+    return MutationResult(
         tuple(name_of(logs[place]) for place in runs),
         asked.suspects,
         frozenset(known),
@@ -284,7 +286,7 @@ def survey(asked: Inquiry, logs: Sequence[str], jobs: int, tell: Callable[[str],
 
 
 def _each_run(
-    asked: Inquiry, logs: Sequence[str], jobs: int
+    asked: MutationJob, logs: Sequence[str], jobs: int
 ) -> Iterator[tuple[int, RunSurvey | Diagnostic]]:
     """Each log, as it is done, by its place."""
     files = [place for place, log in enumerate(logs) if log != STDIN]
@@ -294,4 +296,4 @@ def _each_run(
         for number, one in done:
             place = files[number]
             log = name_of(logs[place])
-            yield place, was_killed(log, str(one)) if isinstance(one, Killed) else one
+            yield place, was_killed(log, str(one)) if isinstance(one, WorkerDied) else one

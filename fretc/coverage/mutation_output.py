@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from fretc.coverage.mutation import Difference, Survey, Suspects
+from fretc.coverage.mutation import Difference, MutantBatch, MutationResult
 from fretc.coverage.mutation_record import written
 from fretish.diagnostics import signs
 
@@ -12,7 +12,7 @@ Line = tuple[str, str | None]
 """A line and its colour."""
 
 
-def lines(survey: Survey, titles: Mapping[str, str], *, every: bool) -> Iterator[Line]:
+def lines(survey: MutationResult, titles: Mapping[str, str], *, every: bool) -> Iterator[Line]:
     """All of it.
 
     Args:
@@ -26,7 +26,9 @@ def lines(survey: Survey, titles: Mapping[str, str], *, every: bool) -> Iterator
     yield _totals(survey)
 
 
-def _requirement(suspects: Suspects, title: str, survey: Survey, *, every: bool) -> Iterator[Line]:
+def _requirement(
+    suspects: MutantBatch, title: str, survey: MutationResult, *, every: bool
+) -> Iterator[Line]:
     same = sum(id == suspects.id for id, _ in survey.equivalent)
     count = len(suspects.mutants) + len(suspects.refused) - same
     found = [(each, survey.noticed.get((suspects.id, each.key))) for each in suspects.mutants]
@@ -58,7 +60,7 @@ def _how(found: tuple[int, Difference], runs: tuple[str, ...]) -> str:
     return f"{difference.other}, and the requirement {difference.own}, in {runs[place]}{at}"
 
 
-def _totals(survey: Survey) -> Line:
+def _totals(survey: MutationResult) -> Line:
     """`1 run x 15 requirements: 120 of 259 wrong sentences noticed`."""
     same = len(survey.equivalent)
     refused = sum(len(each.refused) for each in survey.suspects)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any, Final, Literal, cast
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import Count, Name, Record, about, json_schema, plain
 from compiler.files.templating import to_json
 from compiler.situations.mutants import Mutant
 from fretc.audit.evidence.schema import Verdict
-from fretc.coverage.mutation import Difference, Survey, Suspects
+from fretc.coverage.mutation import Difference, MutantBatch, MutationResult
 from fretish.printer import sentence
 
 SCHEMA: Final = "fretc-mutation-1"
@@ -62,12 +62,12 @@ class Document(Record, frozen=True):
     requirements: tuple[Requirement, ...]
 
 
-def text(survey: Survey) -> str:
+def text(survey: MutationResult) -> str:
     """The whole file: the same values give the same bytes."""
     return f"{to_json(plain(document(survey)))}\n"
 
 
-def document(survey: Survey) -> Document:
+def document(survey: MutationResult) -> Document:
     """The record of what runs noticed."""
     return Document(
         schema=SCHEMA,
@@ -80,7 +80,7 @@ def document(survey: Survey) -> Document:
     )
 
 
-def _mutants(suspects: Suspects, survey: Survey) -> Iterator[Judged]:
+def _mutants(suspects: MutantBatch, survey: MutationResult) -> Iterator[Judged]:
     for mutant in suspects.mutants:
         key = suspects.id, mutant.key
         found = survey.noticed.get(key)

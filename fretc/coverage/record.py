@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Annotated, Any, Final, Literal
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import Count, Name, Record, Seconds, Whole, about, json_schema, plain
 from compiler.files.templating import to_json
 from fretc.audit.evidence.schema import Moment
@@ -93,7 +93,7 @@ def document(covered: c.Coverage, known: Directions) -> Document:
 
 def _situation(id: str, one: c.RecordedSituation, known: Directions) -> Situation:
     seen, perhaps = _sightings(one.seen), _sightings(one.perhaps)
-    found = None if one.standing is c.Standing.SEEN else known.get((id, one.key))
+    found = None if one.standing is c.CoverageStatus.SEEN else known.get((id, one.key))
     direction = None if found is None else found.text
     return Situation(one.key, one.words, one.standing.value, seen, perhaps, direction)
 

@@ -10,9 +10,9 @@ from typing import assert_never
 from fretc.audit.evidence.schema import Moment
 from fretc.coverage.coverage import (
     Coverage,
+    CoverageStatus,
     RecordedSituation,
     RequirementCoverage,
-    Standing,
     counts,
 )
 from fretc.coverage.directions import Directions, is_complete, unseen
@@ -58,7 +58,7 @@ def _requirement(
     *,
     every: bool,
 ) -> Iterator[Line]:
-    seen, of = len(one.of(Standing.SEEN)), len(one.situations)
+    seen, of = len(one.of(CoverageStatus.SEEN)), len(one.situations)
     sign = signs.GOOD if of and seen == of else signs.UNUSED
     if not of:
         yield f"{signs.UNKNOWN.glyph} {title}: situations not measured", signs.UNKNOWN.colour
@@ -66,10 +66,10 @@ def _requirement(
     unmeasured = f", not measured in {_times(len(one.unmeasured), 'run')}" if one.unmeasured else ""
     yield f"{sign.glyph} {title}: {seen} of {of} situations seen{unmeasured}", sign.colour
     for situation in one.situations:
-        if every or situation.standing is not Standing.SEEN:
+        if every or situation.standing is not CoverageStatus.SEEN:
             yield _situation(situation, runs)
         direction = directions.get((one.id, situation.key))
-        if direction is not None and situation.standing is not Standing.SEEN:
+        if direction is not None and situation.standing is not CoverageStatus.SEEN:
             yield f"        {direction.text}", None
 
 
@@ -79,14 +79,14 @@ def _situation(one: RecordedSituation, runs: tuple[str, ...]) -> Line:
     return text, sign.colour
 
 
-def sign_of(standing: Standing) -> Sign:
+def sign_of(standing: CoverageStatus) -> Sign:
     """How a standing looks."""
     match standing:
-        case Standing.SEEN:
+        case CoverageStatus.SEEN:
             return signs.GOOD
-        case Standing.PERHAPS | Standing.NOT_MEASURED:
+        case CoverageStatus.PERHAPS | CoverageStatus.NOT_MEASURED:
             return signs.UNKNOWN
-        case Standing.NEVER:
+        case CoverageStatus.NEVER:
             return signs.UNUSED
         case _:
             assert_never(standing)
@@ -94,12 +94,12 @@ def sign_of(standing: Standing) -> Sign:
 
 def _standing(one: RecordedSituation, runs: tuple[str, ...]) -> str:
     match one.standing:
-        case Standing.SEEN:
+        case CoverageStatus.SEEN:
             many = f"seen in {_times(len(one.seen), 'run')}, first" if len(runs) > 1 else "seen"
             return f"{many} {_first(one.seen, runs)}"
-        case Standing.PERHAPS:
+        case CoverageStatus.PERHAPS:
             return f"perhaps {_first(one.perhaps, runs)}, where something is unknown"
-        case Standing.NEVER | Standing.NOT_MEASURED:
+        case CoverageStatus.NEVER | CoverageStatus.NOT_MEASURED:
             return one.standing
         case _:
             assert_never(one.standing)
@@ -161,10 +161,10 @@ def totals(covered: Coverage, directions: Directions) -> Line:
 def in_counts(requirements: Sequence[RequirementCoverage]) -> str:
     """`84 of 190 situations seen, 12 perhaps, 94 never`."""
     found = counts(requirements)
-    rest = [f"{found[each]:,} {each}" for each in [*Standing][1:] if found[each]]
+    rest = [f"{found[each]:,} {each}" for each in [*CoverageStatus][1:] if found[each]]
     blank = sum(not each.situations for each in requirements)
     rest += [f"{_times(blank, 'requirement')} not measured"] if blank else []
-    seen = f"{found[Standing.SEEN]:,} of {found.total():,} situations seen"
+    seen = f"{found[CoverageStatus.SEEN]:,} of {found.total():,} situations seen"
     return ", ".join([seen, *rest])
 
 

@@ -18,7 +18,7 @@ from fretc.logs.storage.parts import Part
 from fretc.logs.storage.splits import unclosed_backup
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
-from fretish.reading.limits import grant
+from fretish.reading.limits import extend_budget
 
 
 def part(
@@ -36,7 +36,7 @@ def part(
     Raises:
         BrokenError: the file is not as its index says.
     """
-    grant(log.size)
+    extend_budget(log.size)
     found = _read(log, sink, integrity, place, wanted)
     return log_diagnostics.changed(place) if log.changed() else found
 

@@ -25,7 +25,7 @@ from fretc.logs.messages.vectorized import nearest, samples, siblings
 from fretc.logs.signals.samples import EXACT, Numbers, Times, Values, widest
 from fretc.logs.signals.signals import RANGE_MIN, FieldError, is_chosen, sample
 from fretc.logs.signals.signals import nearest as nearest_of_one
-from fretc.logs.signals.words import Foreign, shown, word, words
+from fretc.logs.signals.words import UnmappedSamples, shown, word, words
 from fretish.bindings.declarations import Reduce, Signal
 from fretish.diagnostics.diagnostic import Diagnostic
 
@@ -105,12 +105,12 @@ class Extract:
         if int(at[0]) < known:
             self.texts[signal.name] = int(at[0]), first
 
-    def foreign_of(self, name: str, usable: NDArray[np.bool_]) -> Foreign | None:
+    def foreign_of(self, name: str, usable: NDArray[np.bool_]) -> UnmappedSamples | None:
         """The values of a signal that are none of its words, among the usable messages."""
         rows = self.foreign[name][usable] if name in self.foreign else np.zeros(0, bool)
         if not rows.any():
             return None
-        return Foreign(int(rows.sum()), int(rows.argmax()), self.texts[name][1])
+        return UnmappedSamples(int(rows.sum()), int(rows.argmax()), self.texts[name][1])
 
     def is_foreign(self, name: str, row: int) -> bool:
         """Whether one message holds none of the words of a signal."""

@@ -10,7 +10,7 @@ _MOST, _MOST_BYTES = 20, 2**20
 """The most messages of a topic, and the most bytes of them."""
 
 
-class Examples:
+class FirstMessages:
     """A sink that passes every message on, and keeps the first ones of topics in JSON.
 
     Where a vocabulary is given it takes every message, too.

@@ -14,7 +14,7 @@ from fretc.logs.messages.decoding import MissingExtra
 from fretc.logs.signals.samples import Gap
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.topic_clocks import STILL_RUN
-from fretc.logs.signals.words import Foreign
+from fretc.logs.signals.words import UnmappedSamples
 from fretish.bindings.amounts import duration, seconds
 from fretish.bindings.declarations import Signal, short_type
 from fretish.bindings.words import listed
@@ -227,7 +227,7 @@ def _constant(word: str, known: Mapping[str, int]) -> str | None:
     return ends[0] if ends else suggestion(word, known)
 
 
-def foreign_value(signal: Signal, foreign: Foreign, count: int, after: int) -> Diagnostic:
+def foreign_value(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -> Diagnostic:
     """F423: some samples are none of the words; the first one came so long after the log began."""
     near = suggestion(foreign.text, signal.values)
     is_number = re.fullmatch(r"-?[\d.]+", foreign.text) is not None
@@ -247,7 +247,7 @@ def foreign_value(signal: Signal, foreign: Foreign, count: int, after: int) -> D
     )
 
 
-def no_truth(signal: Signal, foreign: Foreign, count: int, after: int) -> Diagnostic:
+def no_truth(signal: Signal, foreign: UnmappedSamples, count: int, after: int) -> Diagnostic:
     """F424: some samples of a signal that stands for a truth value are neither 0 nor 1."""
     return Diagnostic(
         Code.NO_TRUTH,

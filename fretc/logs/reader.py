@@ -15,7 +15,7 @@ from functools import partial, reduce
 from operator import add
 
 from fretc.logs import containers, log_diagnostics, watch_records
-from fretc.logs.first_messages import Examples
+from fretc.logs.first_messages import FirstMessages
 from fretc.logs.mcap.container import BrokenError
 from fretc.logs.mcap.damage import Damage
 from fretc.logs.mcap.messages import Sink
@@ -39,7 +39,7 @@ from fretish.bindings.declarations import Declarations, Signal
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source, Span
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 
 _MOST_TICKS = 20_000_000
 
@@ -94,7 +94,7 @@ def read(
     """
     signals = [declarations.signals[name] for name in dict.fromkeys(wanted)]
     reading = partial(_read_log, path, declarations, signals, integrity, beside)
-    return within(0, Source(name_of(path), "").span(), reading)
+    return with_budget(0, Source(name_of(path), "").span(), reading)
 
 
 def _read_log(
@@ -125,7 +125,7 @@ def look(path: str, *, words: bool = False) -> Overview | Diagnostic:
     Returns:
         The overview, by log times; or what keeps the whole file from being read.
     """
-    return within(0, Source(name_of(path), "").span(), partial(_look, path, words))
+    return with_budget(0, Source(name_of(path), "").span(), partial(_look, path, words))
 
 
 def _look(path: str, words: bool) -> Overview | Diagnostic:
@@ -164,7 +164,7 @@ class _Run:
     """What its metadata says, as far as it is asked for."""
 
 
-_Read = tuple[Span, _Run, Columns, Examples]
+_Read = tuple[Span, _Run, Columns, FirstMessages]
 """A log, and what has taken its messages."""
 
 
@@ -207,7 +207,7 @@ def _tried(
 ) -> _Read | Diagnostic:
     """Read a log; once more, in full, where it is not as its index says."""
     columns = new()
-    examples = Examples(columns, vocabulary)
+    examples = FirstMessages(columns, vocabulary)
     try:
         run = use(examples, integrity, place)
     except BrokenError:
@@ -346,7 +346,7 @@ def _recording(
     place: Span,
     run: _Run,
     columns: Columns,
-    examples: Examples,
+    examples: FirstMessages,
     wanted: Sequence[Signal],
     beside: Sequence[Signal] = (),
 ) -> Recording:

@@ -26,7 +26,7 @@ from fretc.logs.signals.propositions import truth_values
 from fretc.logs.signals.samples import EXACT, Gap, Late, Recording, Samples
 from fretc.logs.signals.signals import FieldError
 from fretc.logs.signals.traces import proposition_states
-from fretc.logs.signals.words import Foreign, shown
+from fretc.logs.signals.words import UnmappedSamples, shown
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal
 from fretish.bindings.expressions import ticks_back
@@ -417,7 +417,7 @@ class _Queue:
     """None: every sample is unknown."""
     count: int = 0
     """All samples so far."""
-    foreign: Foreign | None = None
+    foreign: UnmappedSamples | None = None
     """Those that are no value of the signal, or no truth value."""
     first_foreign: int = 0
     """When the first of them was."""
@@ -448,7 +448,7 @@ class _Queue:
             foreign = shown(value)
         if foreign:
             self.first_foreign = time if self.foreign is None else self.first_foreign
-            one = Foreign(1, self.count, foreign)
+            one = UnmappedSamples(1, self.count, foreign)
             self.foreign = self.foreign.followed(one) if self.foreign else one
         self.count += 1
         if kind is not None:

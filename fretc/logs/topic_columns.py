@@ -20,7 +20,7 @@ from fretc.logs.mcap.messages import FileTimes, Messages
 from fretc.logs.mcap.payloads import Payloads
 from fretc.logs.signals.samples import Gap, Late, Series, Times, Values
 from fretc.logs.signals.topic_clocks import JUMP, forward_fill, late, unset
-from fretc.logs.signals.words import Foreign
+from fretc.logs.signals.words import UnmappedSamples
 from fretish.bindings.declarations import Declarations, Signal, short_type
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -74,7 +74,7 @@ class Column:
     values: dict[str, Series] = field(default_factory=dict)
     diagnostics: dict[str, Diagnostic] = field(default_factory=dict)
     """Why there are no samples of a signal."""
-    foreign: dict[str, Foreign] = field(default_factory=dict)
+    foreign: dict[str, UnmappedSamples] = field(default_factory=dict)
     """Of a signal of words the samples that are none of them."""
     types: dict[str, None] = field(default_factory=dict)
     """The types of its messages, in the order in which they came."""

@@ -8,7 +8,7 @@ from statistics import median
 import numpy as np
 
 from fretc.logs import log_diagnostics
-from fretc.logs.first_messages import Examples
+from fretc.logs.first_messages import FirstMessages
 from fretc.logs.messages.json_messages import message_leaves
 from fretc.logs.messages.leaves import Kind
 from fretc.logs.signals.samples import Samples, Topic
@@ -19,7 +19,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 
 def never_stated(
-    samples: Mapping[str, Samples], examples: Examples, wanted: Sequence[Signal]
+    samples: Mapping[str, Samples], examples: FirstMessages, wanted: Sequence[Signal]
 ) -> list[Diagnostic]:
     """About signals that are unknown in all messages, in JSON that has no such field."""
     found = []

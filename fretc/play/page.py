@@ -9,14 +9,14 @@ from itertools import groupby, pairwise
 from math import floor, isfinite, log10
 from typing import Any
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import plain
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import TRAITS, Trait, Uninterpreted, boolean, obligation
 from compiler.logic import formula as f
 from compiler.targets.javascript.monitor import Body, body
-from compiler.targets.python.comparisons import NUMBER, Compared, Front, numbers, threshold
+from compiler.targets.python.comparisons import NUMBER, Compared, InputAdapter, numbers, threshold
 from compiler.targets.target import stem
 from fretc.play.starts import MOST, Start
 from fretc.report.model.phrases import visible
@@ -47,7 +47,7 @@ _WORDS: Mapping[str, str] = {
 
 
 def html(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     left_out: Sequence[tuple[str, str]],
     starts: Sequence[Start],
     before: Mapping[str, str] | None = None,
@@ -58,7 +58,7 @@ def html(
 
 
 def inset(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     left_out: Sequence[tuple[str, str]],
     starts: Sequence[Start],
     before: Mapping[str, str] | None = None,
@@ -123,9 +123,12 @@ def _grouped(starts: Sequence[Start]) -> Iterator[tuple[str, list[tuple[int, str
 
 
 def _data(
-    rules: Sequence[Formalized], made: Body, starts: Sequence[Start], before: Mapping[str, str]
+    rules: Sequence[FormalizedRequirement],
+    made: Body,
+    starts: Sequence[Start],
+    before: Mapping[str, str],
 ) -> dict[str, Any]:
-    front = made.front or Front({}, {})
+    front = made.front or InputAdapter({}, {})
     variables = [*front.inputs] or [*made.propositions]
     places = {name: place for place, name in enumerate(variables)}
     reads = {name: [places[name]] for name in made.propositions if name in places}
@@ -167,7 +170,7 @@ def _data(
 
 
 def _requirement(
-    rule: Formalized, propositions: Sequence[str], reads: Mapping[str, Sequence[int]]
+    rule: FormalizedRequirement, propositions: Sequence[str], reads: Mapping[str, Sequence[int]]
 ) -> dict[str, Any]:
     demand = obligation(rule.sentence, rule.ticks or 0).demand
     formula = boolean(rule.sentence.response, Uninterpreted().alone())
@@ -211,7 +214,7 @@ def _tree(formula: f.Formula, propositions: Sequence[str]) -> list[Any]:
 # Numbers --------------------------------------------------------------------------------------
 
 
-def _variable(name: str, front: Front) -> dict[str, Any]:
+def _variable(name: str, front: InputAdapter) -> dict[str, Any]:
     own = [each for each in front.comparisons.values() if name in each.inputs]
     found = front.inputs.get(name)
     unit = next((each.units[name][0] for each in own if name in each.units), "")
@@ -228,7 +231,7 @@ def _variable(name: str, front: Front) -> dict[str, Any]:
     }
 
 
-def _written(name: str, rules: Sequence[Formalized]) -> str:
+def _written(name: str, rules: Sequence[FormalizedRequirement]) -> str:
     """A comparison as the first sentence that has it writes it."""
     return next((found for rule in rules if (found := rule.wordings.get(name))), name)
 
@@ -262,7 +265,7 @@ def _step(value: float) -> float:
 
 
 def _groups(
-    propositions: Sequence[str], front: Front, places: Mapping[str, int]
+    propositions: Sequence[str], front: InputAdapter, places: Mapping[str, int]
 ) -> Iterator[dict[str, list[int]]]:
     """Comparisons that share variables, so that numbers of one bear upon the others."""
     groups: list[tuple[set[str], set[str]]] = []

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor as emitted
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.plan import Plan
@@ -51,7 +51,7 @@ class Recorded:
     """Of the one log that it is of."""
 
 
-def of_log(rules: Sequence[Formalized], plan: Plan, log: str) -> Recorded | Diagnostic:
+def of_log(rules: Sequence[FormalizedRequirement], plan: Plan, log: str) -> Recorded | Diagnostic:
     """The violations of a recorded run, or why the log cannot be read.
 
     Args:
@@ -82,7 +82,9 @@ def of_log(rules: Sequence[Formalized], plan: Plan, log: str) -> Recorded | Diag
     return Recorded(tuple(starts), tuple(notes), recording.findings, recording.sha256)
 
 
-def of_evidence(rules: Sequence[Formalized], plan: Plan, evidence: EvidenceSource) -> Recorded:
+def of_evidence(
+    rules: Sequence[FormalizedRequirement], plan: Plan, evidence: EvidenceSource
+) -> Recorded:
     """The violations of audited runs, as far as their logs are there as they were audited.
 
     Args:
@@ -116,7 +118,11 @@ class Run:
     """One requirement over one run."""
 
     def __init__(
-        self, rule: Formalized, columns: Mapping[str, Column], timeline: Timeline, name: str
+        self,
+        rule: FormalizedRequirement,
+        columns: Mapping[str, Column],
+        timeline: Timeline,
+        name: str,
     ) -> None:
         self._id, self._name, self._columns = rule.id, name, columns
         self._monitor: Monitor = load(f"{rule.id}.py", emitted.text(rule))

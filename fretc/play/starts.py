@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from compiler.explanation.explain import explanation
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.evidence import Document
 from fretc.testing.suite import Suite
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -39,7 +39,7 @@ class Start:
         return sum(count for count, _ in self.rows)
 
 
-def of_examples(rules: Sequence[Formalized]) -> Iterator[Start]:
+def of_examples(rules: Sequence[FormalizedRequirement]) -> Iterator[Start]:
     """The traces of `fretc explain`; what repeats comes twice."""
     for rule in rules:
         if (rule.ticks or 0) > MOST:
@@ -57,7 +57,7 @@ def of_examples(rules: Sequence[Formalized]) -> Iterator[Start]:
             yield Start("Examples", name, name, (rule.id,), (*rows, *again))
 
 
-def of_suite(suite: Suite, rules: Sequence[Formalized]) -> Iterator[Start]:
+def of_suite(suite: Suite, rules: Sequence[FormalizedRequirement]) -> Iterator[Start]:
     """The tests of requirements whose sentences are still the same."""
     fingerprints = {rule.id: rule.fingerprint for rule in rules}
     same = {each.id for each in suite.requirements if fingerprints.get(each.id) == each.fingerprint}
@@ -69,7 +69,7 @@ def of_suite(suite: Suite, rules: Sequence[Formalized]) -> Iterator[Start]:
             yield Start("Tests", name, about, (test.requirement,), rows)
 
 
-def changed(suite: Suite, rules: Sequence[Formalized]) -> tuple[str, ...]:
+def changed(suite: Suite, rules: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
     """The requirements that the tests are about as they were before."""
     fingerprints = {rule.id: rule.fingerprint for rule in rules}
     return tuple(
@@ -79,7 +79,7 @@ def changed(suite: Suite, rules: Sequence[Formalized]) -> tuple[str, ...]:
     )
 
 
-def others(document: Document, rules: Sequence[Formalized]) -> tuple[str, ...]:
+def others(document: Document, rules: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
     """The requirements of an analysis that are not those of the project, or have changed."""
     sentences = {rule.id: printed(rule.written) for rule in rules}
     members = document.requirements.items()

@@ -10,20 +10,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons
 from fretc.play.starts import MOST, Start
 from fretc.testing.runs import Absence, difference
 from fretish.bindings.canonical import bound, clock
 from fretish.bindings.declarations import Declarations
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 
 @dataclass(frozen=True, slots=True)
 class Side:
     """One version of a project."""
 
-    rules: Sequence[Formalized]
+    rules: Sequence[FormalizedRequirement]
     """Those that a monitor can be made of."""
     refused: Mapping[str, str]
     """The ids of the others, and why they are none."""
@@ -40,8 +40,8 @@ class Side:
 class Pair:
     """A requirement that is another sentence than before, over the same bindings."""
 
-    new: Formalized
-    old: Formalized
+    new: FormalizedRequirement
+    old: FormalizedRequirement
     """With an id of its own."""
     note: str
     """What became of it, in words."""
@@ -98,7 +98,10 @@ def versions(new: Side, old: Side, seconds: float) -> Versions:
 
 
 def _unlike(
-    new: Formalized, old: Formalized, now: Declarations | None, then: Declarations | None
+    new: FormalizedRequirement,
+    old: FormalizedRequirement,
+    now: Declarations | None,
+    then: Declarations | None,
 ) -> str:
     """Why a run of one version is none of the other; empty: it is one."""
     clocks = [clock(each.clock) if each else None for each in (now, then)]
@@ -110,7 +113,9 @@ def _unlike(
     return f"`{changed[0]}` means something else in the bindings now" if changed else ""
 
 
-def _meanings(rule: Formalized, declarations: Declarations | None) -> dict[tuple[str, str], Any]:
+def _meanings(
+    rule: FormalizedRequirement, declarations: Declarations | None
+) -> dict[tuple[str, str], Any]:
     """What the bindings say of each name that a rule reads; None: nothing."""
     found: dict[tuple[str, str], Any] = {("proposition", name): None for name in rule.watched}
     if declarations is not None:
@@ -119,7 +124,7 @@ def _meanings(rule: Formalized, declarations: Declarations | None) -> dict[tuple
     return found
 
 
-def _named(rule: Formalized, id: str, taken: set[str]) -> Formalized:
+def _named(rule: FormalizedRequirement, id: str, taken: set[str]) -> FormalizedRequirement:
     """Under an id of its own."""
     name = f"{id} before"
     while name in taken:
@@ -127,8 +132,8 @@ def _named(rule: Formalized, id: str, taken: set[str]) -> Formalized:
     return replace(rule, requirement=replace(rule.requirement, id=name))
 
 
-@deep
-def _pair(new: Formalized, old: Formalized, seconds: float) -> Pair:
+@with_recursion_limit
+def _pair(new: FormalizedRequirement, old: FormalizedRequirement, seconds: float) -> Pair:
     found = difference(new, old, seconds)
     if isinstance(found, Absence):
         if found.why:
@@ -150,7 +155,7 @@ def _pair(new: Formalized, old: Formalized, seconds: float) -> Pair:
     return Pair(new, old, about, start)
 
 
-def _has_numbers(rule: Formalized) -> bool:
+def _has_numbers(rule: FormalizedRequirement) -> bool:
     """Whether it compares some, itself or by what the bindings say of its propositions."""
     declared = rule.declarations.propositions if rule.declarations else {}
     return bool(comparisons(rule)) or any(
@@ -158,7 +163,9 @@ def _has_numbers(rule: Formalized) -> bool:
     )
 
 
-def side_by_side(versions: Versions, rules: Sequence[Formalized]) -> Iterator[Formalized]:
+def side_by_side(
+    versions: Versions, rules: Sequence[FormalizedRequirement]
+) -> Iterator[FormalizedRequirement]:
     """Each requirement, and behind it what it was."""
     before = {pair.new.id: pair.old for pair in versions.pairs}
     for rule in rules:

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.analysis.evidence import AnalyzedSet

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from compiler.files.dates import today
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import Project
 from fretc.analysis.evidence import read as read_analysis
 from fretc.attestation.signatures import read_signatures
@@ -38,7 +38,7 @@ class ReportBuild:
     waived is then open in the report, and the diagnostics say why.
     """
     diagnostics: tuple[Diagnostic, ...]
-    rules: tuple[Formalized, ...] = ()
+    rules: tuple[FormalizedRequirement, ...] = ()
     """The formalized requirements; the HTML page draws what they mean."""
     details: Details | None = None
     """What the report has in rows only; None where there is no report."""

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.verdicts import RETIRED
-from fretc.coverage.coverage import RequirementCoverage, Standing, of_requirements
+from fretc.coverage.coverage import CoverageStatus, RequirementCoverage, of_requirements
 from fretc.report.model.assessments import Assessment
 from fretc.report.model.views import SituationsView
 
@@ -36,10 +36,10 @@ def situations(
 def _view(one: RequirementCoverage) -> SituationsView:
     if not one.measured or not one.situations:
         return SituationsView("", "situations not measured", (), ())
-    seen, every = len(one.of(Standing.SEEN)), len(one.situations)
+    seen, every = len(one.of(CoverageStatus.SEEN)), len(one.situations)
     return SituationsView(
         f"{seen}/{every}",
         f"{seen} of {every} situations seen",
-        tuple(each.words for each in one.of(Standing.PERHAPS)),
-        tuple(each.words for each in one.of(Standing.NEVER)),
+        tuple(each.words for each in one.of(CoverageStatus.PERHAPS)),
+        tuple(each.words for each in one.of(CoverageStatus.NEVER)),
     )

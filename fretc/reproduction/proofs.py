@@ -12,14 +12,14 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import plain
 from compiler.logic.claims import ALL, METHODS, PROVERS, Layer, Proof, Result
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
 from fretc.reproduction.outcome import PROOFS, Finding, Recheck, differs, unknown
 from fretc.reproduction.texts import other_build, remade
-from fretc.verification.ajpf_results import ajpf_proofs, written
+from fretc.verification.ajpf_results import ajpf_proofs, default_paths
 from fretc.verification.engines.sandbox import Limits
 from fretc.verification.layers.request import Progress, Request
 from fretc.verification.reader import Proofs
@@ -117,7 +117,7 @@ def _prove(
         header=header,
         demanded=(Layer.AGENT,) if of_agent - plans_agent else (),
         provers=sorted({_prover(record.engine) for record in records} - {""}),
-        ajpf=ajpf_proofs(rules, written())[0] if Layer.AJPF in layers else (),
+        ajpf=ajpf_proofs(rules, default_paths())[0] if Layer.AJPF in layers else (),
         progress=progress,
     )
     return prove(replace(project, rules=tuple(rules)), request)

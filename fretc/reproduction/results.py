@@ -15,12 +15,12 @@ from dataclasses import replace as changed
 from functools import lru_cache, partial
 from pathlib import Path
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import plain, replace
 from compiler.files.text_files import file_sha256
 from fretc.audit.evidence.basis import BINDINGS, KINDS, SENTENCE, of_all, outdated, why
 from fretc.audit.evidence.briefs import brief
-from fretc.audit.evidence.claim import Claim
+from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.estimates import estimates
 from fretc.audit.evidence.probabilities import Estimated
 from fretc.audit.evidence.schema import Document, Requirement, Result
@@ -191,7 +191,7 @@ def _beginning(document: Document, plan: Plan, *, part: bool) -> Iterator[Rechec
             yield differs(FILE, requirement.id, "its situations are others")
 
 
-def _same_sentence(before: Requirement, now: Claim) -> bool:
+def _same_sentence(before: Requirement, now: AuditedRequirement) -> bool:
     """Whether the wording means the same; what its names stand for is in the hash alone."""
     return before.sha256 == now.basis[SENTENCE] and _wording(before.sentence) == _wording(
         now.sentence
@@ -229,7 +229,9 @@ def _estimates_again(document: Document, now: _Now, ids: Collection[str]) -> Ite
         yield differs(ALL_RUNS, id, "no probability is claimed of it any more")
 
 
-def _estimate_difference(before: Estimated, claim: Claim, results: Sequence[Result]) -> str:
+def _estimate_difference(
+    before: Estimated, claim: AuditedRequirement, results: Sequence[Result]
+) -> str:
     """How an estimate differs from the present one; empty where it does not."""
     least, most = _DOUBT
     if not least < before.confidence <= most:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from fretc.analysis.evidence import Document
 from fretc.analysis.findings import Analysis, Component, Conflict, Verdict
 from fretc.reproduction.outcome import TOGETHER, Finding, Recheck, differs, unknown

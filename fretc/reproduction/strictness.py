@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from compiler.files.text_files import file_sha256
 from fretc.attestation import statement
 from fretc.attestation.signatures import SignatureBook
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.reader import EvidenceFile
 from fretc.reproduction.completeness import Scope
 from fretc.reproduction.outcome import FILE, Recheck, differs
 
@@ -20,7 +20,7 @@ SIGNATURES = "signatures"
 
 
 def unmet_demands(
-    evidence: Evidence,
+    evidence: EvidenceFile,
     scope: Scope,
     of_files: SignatureBook,
     of_reviews: SignatureBook,

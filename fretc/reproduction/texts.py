@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof
 from compiler.targets.target import Options
 from fretc.verification.layers.languages import Row, language_of
@@ -21,7 +21,7 @@ class Remade(NamedTuple):
     header: Source | None
 
 
-def remade(records: Sequence[Proof], rules: Sequence[Formalized]) -> Remade:
+def remade(records: Sequence[Proof], rules: Sequence[FormalizedRequirement]) -> Remade:
     """What fretc writes now for some of the rules, letter for letter what the proofs are about.
 
     None where that is no such text, where there are several, and where its tool is not installed.
@@ -53,7 +53,7 @@ def _texts(record: Proof) -> Mapping[str, str]:
 
 
 def _written(
-    language: Row, records: Sequence[Proof], rules: Sequence[Formalized]
+    language: Row, records: Sequence[Proof], rules: Sequence[FormalizedRequirement]
 ) -> Iterator[Mapping[str, str]]:
     """The files of a monitor of all rules, of those that the proofs are of, and of each."""
     target, ids = TARGETS[language.emit], {record.requirement for record in records}

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import replace
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.arena.roles import role
 from fretc.analysis.components import about, by_variables
 from fretc.analysis.games.job import Job
@@ -17,7 +17,9 @@ from fretish.bindings.declarations import Role
 
 
 def jobs(
-    rules: Sequence[Formalized], assumptions: Sequence[Formalized], seconds: float
+    rules: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement],
+    seconds: float,
 ) -> tuple[Job[Batch], ...]:
     """The tests of each requirement, in the order of the files.
 
@@ -27,7 +29,7 @@ def jobs(
         seconds: of a processor, for each of them.
     """
     roles = {name: Role.OUTPUT for rule in (*rules, *assumptions) for name in rule.variables}
-    others: dict[str, list[Formalized]] = {}
+    others: dict[str, list[FormalizedRequirement]] = {}
     for group in by_variables(rules, assumptions, roles):
         near = about(group, assumptions, roles)
         for rule in group:
@@ -35,7 +37,9 @@ def jobs(
     return tuple(_job(rule, others[rule.id], seconds) for rule in rules)
 
 
-def _job(rule: Formalized, others: Sequence[Formalized], seconds: float) -> Job[Batch]:
+def _job(
+    rule: FormalizedRequirement, others: Sequence[FormalizedRequirement], seconds: float
+) -> Job[Batch]:
     def ask(known: Sequence[Batch]) -> Iterator[Batch]:
         yield batch(rule, others, seconds)
 
@@ -43,7 +47,9 @@ def _job(rule: Formalized, others: Sequence[Formalized], seconds: float) -> Job[
 
 
 def suite(
-    rules: Sequence[Formalized], assumptions: Sequence[Formalized], found: Iterable[Batch]
+    rules: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement],
+    found: Iterable[Batch],
 ) -> Suite:
     """All tests as one value; their names become unique."""
     made = tuple(_renamed(found))

@@ -11,20 +11,20 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import assert_never
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Obligation, obligation
 from compiler.formalization.predicates import Past as PastWords
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.formula import Formula, atoms
-from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers, numbers
+from fretc.analysis.arena.alphabet import Alphabet, Numbers, UnsupportedError, numbers
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter, counter
 from fretc.analysis.arena.memory import Bit, Memory, Past, side_by_side
 from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.runs import Runs
-from fretc.analysis.stage import alphabet_of
+from fretc.analysis.realizability_problem import alphabet_of
 from fretc.testing.search import Endings, Letter, Words
 from fretc.testing.suite import Polarity
 from fretish.bindings.declarations import Role
@@ -51,9 +51,9 @@ class Bench:
 
     def __init__(
         self,
-        rule: Formalized,
-        others: Sequence[Formalized],
-        more: Iterable[Formalized],
+        rule: FormalizedRequirement,
+        others: Sequence[FormalizedRequirement],
+        more: Iterable[FormalizedRequirement],
         budget: Budget,
         fresh: Numbers | None = None,
     ) -> None:
@@ -67,7 +67,7 @@ class Bench:
             fresh: variables, where their order matters.
 
         Raises:
-            BeyondError: the requirement has no counter.
+            UnsupportedError: the requirement has no counter.
         """
         every = [rule, *others, *more]
         roles = dict.fromkeys((name for each in every for name in each.variables), Role.OUTPUT)
@@ -81,7 +81,7 @@ class Bench:
         for each in near_each_other([rule, *others]):
             try:
                 self._counters[each.id] = counter(each, alphabet, self._fresh, self._shared)
-            except BeyondError as error:
+            except UnsupportedError as error:
                 if each is rule:
                     raise
                 self.beyond[each.id] = str(error)
@@ -89,10 +89,12 @@ class Bench:
             try:
                 for name in demands(each).atoms:
                     alphabet.atom(name)
-            except BeyondError as error:
+            except UnsupportedError as error:
                 if each not in others:
                     raise
-                raise BeyondError(f"its tests have to keep {each.id}, and there {error}") from None
+                raise UnsupportedError(
+                    f"its tests have to keep {each.id}, and there {error}"
+                ) from None
         numbers_before = alphabet.memory()
         self._always = () if numbers_before is None else (numbers_before,)
         self.alphabet = Fixed(alphabet)
@@ -106,7 +108,7 @@ class Bench:
         self._kept = cache(self._keeping)
         self._ends = cache(self._endings)
 
-    def _asked(self, rule: Formalized) -> Iterator[int]:
+    def _asked(self, rule: FormalizedRequirement) -> Iterator[int]:
         """The variables of condition, response and stop condition."""
         whole = demands(rule)
         for part in (whole.trigger, whole.demand.response, whole.demand.stop):
@@ -128,7 +130,7 @@ class Bench:
         """A formula of the past, over a state and a letter; all goals come before all searches.
 
         Raises:
-            BeyondError: it looks ahead, or too far back.
+            UnsupportedError: it looks ahead, or too far back.
         """
         return self._past.value(formula)
 
@@ -176,13 +178,13 @@ class Bench:
 
     # Two sentences side by side
 
-    def difference(self, mutant: Formalized, kept: Ids) -> tuple[Letter, ...] | None:
+    def difference(self, mutant: FormalizedRequirement, kept: Ids) -> tuple[Letter, ...] | None:
         """A shortest word that the requirement accepts and the mutant does not, or the reverse.
 
         None: there is none.
 
         Raises:
-            BeyondError: the mutant has no counter.
+            UnsupportedError: the mutant has no counter.
             OutOfTimeError: it takes too long.
         """
         memory = Memory(self._fresh, dict(self._shared))
@@ -227,7 +229,7 @@ class Bench:
         return found, next(tick for tick, letter in enumerate(found) if letter[number])
 
     def _beside(
-        self, rule: Formalized, alphabet: Alphabet, memory: Memory
+        self, rule: FormalizedRequirement, alphabet: Alphabet, memory: Memory
     ) -> tuple[Judgement, Counter]:
         """What another sentence says of a run, and its bits."""
         theirs = counter(rule, alphabet, self._fresh, memory.shared)
@@ -237,7 +239,9 @@ class Bench:
 
     # Both
 
-    def _judged(self, counter: Counter, rule: Formalized, past: Past, memory: Memory) -> Judgement:
+    def _judged(
+        self, counter: Counter, rule: FormalizedRequirement, past: Past, memory: Memory
+    ) -> Judgement:
         bit = memory.bit()
         was = bdd.variable(bit.now)
         broken = was | -counter.safe
@@ -276,7 +280,7 @@ class Bench:
         return self.alphabet.doubts.get(Role.OUTPUT, "")
 
 
-def demands(rule: Formalized) -> Obligation:
+def demands(rule: FormalizedRequirement) -> Obligation:
     """What a rule demands, as formulas of the past over what letters tell."""
     return obligation(rule.sentence, rule.ticks or 0, PastWords())
 

@@ -7,18 +7,18 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.situations.mutants import Mutant, mutants
 from compiler.situations.situations import Situation, situations
 from compiler.targets.python import monitor as emitted
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.testing.bench import Ids
 from fretc.testing.cover import cover
 from fretc.testing.runs import Absence, Answer, Need, Run, Runs
 from fretc.testing.suite import Fate, Met, Mutated, Obligation, Polarity, Test, Tested, unused
 from fretc.testing.words import Expected, expected, undecided
 from fretish.printer import sentence as printed
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel.verdicts import Verdict
 from monitors.loading import load
 
@@ -33,8 +33,10 @@ class Batch:
     mutants: tuple[Mutated, ...]
 
 
-@deep
-def batch(rule: Formalized, others: Sequence[Formalized], seconds: float) -> Batch:
+@with_recursion_limit
+def batch(
+    rule: FormalizedRequirement, others: Sequence[FormalizedRequirement], seconds: float
+) -> Batch:
     """The tests of a requirement.
 
     Args:
@@ -45,11 +47,11 @@ def batch(rule: Formalized, others: Sequence[Formalized], seconds: float) -> Bat
     """
     try:
         return _Generation(Runs(rule, others, seconds)).batch()
-    except BeyondError as error:
+    except UnsupportedError as error:
         return lost(rule, str(error))
 
 
-def lost(rule: Formalized, why: str) -> Batch:
+def lost(rule: FormalizedRequirement, why: str) -> Batch:
     """What stands there where nothing could be searched, for a reason."""
     return Batch(
         _tested(rule, (), ""),
@@ -63,12 +65,12 @@ def lost(rule: Formalized, why: str) -> Batch:
     )
 
 
-def _tested(rule: Formalized, kept: Ids, doubt: str) -> Tested:
+def _tested(rule: FormalizedRequirement, kept: Ids, doubt: str) -> Tested:
     return Tested(rule.id, printed(rule.written), rule.fingerprint, kept, doubt)
 
 
 def _obligation(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     situation: Situation,
     polarity: Polarity,
     outcome: Met,
@@ -81,7 +83,7 @@ def _obligation(
 
 
 def _mutated(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     mutant: Mutant,
     outcome: Fate,
     *,

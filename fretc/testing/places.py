@@ -11,11 +11,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.situations.situations import Situation
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.expressions import ticks_back
@@ -26,14 +26,14 @@ from fretish.printer import sentence as printed
 class Places:
     """The thresholds of one requirement."""
 
-    def __init__(self, rule: Formalized) -> None:
+    def __init__(self, rule: FormalizedRequirement) -> None:
         self._rule = rule
-        self._found: dict[e.Expression, Formalized | None] = {}
+        self._found: dict[e.Expression, FormalizedRequirement | None] = {}
         self.pinned: defaultdict[str, set[f.Formula]] = defaultdict(set)
         """Of a signal what says its number, and that propositions agree with it."""
 
     @property
-    def carriers(self) -> Iterator[Formalized]:
+    def carriers(self) -> Iterator[FormalizedRequirement]:
         """The sentences of all atoms that were asked for."""
         return (each for each in self._found.values() if each is not None)
 
@@ -41,7 +41,7 @@ class Places:
         """What a situation asks for, its number included.
 
         Raises:
-            BeyondError: the number cannot be said of signals.
+            UnsupportedError: the number cannot be said of signals.
         """
         place = situation.place
         if place is None:
@@ -63,7 +63,7 @@ class Places:
             if isinstance(expression, e.Persistence):  # true for a while: so it is true here
                 yield f.implies(f.Atom(name), self._carried(expression.arg))
             elif any(isinstance(each, e.Persistence) for each in e.parts(expression)):
-                raise BeyondError(f"`{name}` looks at more than one tick")
+                raise UnsupportedError(f"`{name}` looks at more than one tick")
             else:
                 yield f.iff(f.Atom(name), self._carried(expression))
 
@@ -73,10 +73,10 @@ class Places:
             self._found[expression] = self._carrier(expression)
         carrier = self._found[expression]
         if carrier is None or ticks_back(expression):
-            raise BeyondError("its number can be said in no sentence")
+            raise UnsupportedError("its number can be said in no sentence")
         return boolean(carrier.sentence.response, Uninterpreted().alone())
 
-    def _carrier(self, expression: e.Expression) -> Formalized | None:
+    def _carrier(self, expression: e.Expression) -> FormalizedRequirement | None:
         written = replace(
             self._rule.written,
             scope=None,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 
-from compiler.files.checked_json import MisshapenError, parsed
+from compiler.files.checked_json import SchemaError, parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from fretc.testing.suite import Suite
@@ -27,7 +27,7 @@ def read(path: str) -> Suite | Diagnostic:
         return decoded(parsed(source.text).value, Suite)
     except json.JSONDecodeError as error:
         return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
-    except (MisshapenError, ValueError) as error:
+    except (SchemaError, ValueError) as error:
         return _wrong(source, f"is not what `fretc test` writes: {error}")
     except RecursionError:
         return _wrong(source, "is not JSON that fretc can read: it is nested too deeply")

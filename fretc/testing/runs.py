@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TypeVar
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.resolution import candidates
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.evaluation import evaluate
 from compiler.logic.formula import Formula
 from compiler.situations.mutants import Mutant, mutants
 from compiler.situations.situations import Situation, situations
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.games.cores import minimal
 from fretc.testing.bench import Bench, Ids, demands
@@ -73,10 +73,12 @@ class Runs:
     """The runs of one requirement that were found so far.
 
     Raises:
-        BeyondError: the requirement has no counter.
+        UnsupportedError: the requirement has no counter.
     """
 
-    def __init__(self, rule: Formalized, others: Sequence[Formalized], seconds: float) -> None:
+    def __init__(
+        self, rule: FormalizedRequirement, others: Sequence[FormalizedRequirement], seconds: float
+    ) -> None:
         self.rule, self.others = rule, others
         self.situations, self.mutants = situations(rule), mutants(rule)
         places = Places(rule)
@@ -84,7 +86,7 @@ class Runs:
         for each in self.situations:
             try:
                 self._formulas[each.key] = places.formula(each)
-            except BeyondError as error:
+            except UnsupportedError as error:
                 self._formulas[each.key] = Absence(why=str(error))
         more = [*(each.rule for each in self.mutants), *places.carriers]
         budget = Budget(seconds)
@@ -103,7 +105,7 @@ class Runs:
             return formula
         try:
             return self.bench.goal(formula)
-        except BeyondError as error:
+        except UnsupportedError as error:
             return Absence(why=str(error))
 
     # Searches
@@ -142,7 +144,7 @@ class Runs:
             if found is not None:
                 return run(found)
             return Absence() if find(()) is None else Absence(by=self._excluding(find))
-        except (BeyondError, OutOfTimeError) as error:
+        except (UnsupportedError, OutOfTimeError) as error:
             return Absence(why=str(error))
 
     def _excluding(self, find: Find[F]) -> Ids:
@@ -157,7 +159,7 @@ class Runs:
         """The run of some letters.
 
         Raises:
-            BeyondError: it breaks another requirement, which has no counter.
+            UnsupportedError: it breaks another requirement, which has no counter.
         """
         made = word(letters, self.bench.alphabet, self._naming)
         key = (made.ticks, *made.columns.values())
@@ -170,7 +172,7 @@ class Runs:
         for each in self.others:
             if judged(each, made).breach:
                 why = self.bench.beyond[each.id]  # all others are kept
-                raise BeyondError(f"the shortest run breaks {each.id}, and of that {why}")
+                raise UnsupportedError(f"the shortest run breaks {each.id}, and of that {why}")
 
     def _judged(self, made: Word) -> Run:
         own = judged(self.rule, made)
@@ -223,7 +225,9 @@ class Difference:
     """Why nobody may be able to bring its values about; empty: they are real."""
 
 
-def difference(rule: Formalized, other: Formalized, seconds: float) -> Difference | Absence:
+def difference(
+    rule: FormalizedRequirement, other: FormalizedRequirement, seconds: float
+) -> Difference | Absence:
     """What tells two sentences apart; without it they judge all finite runs alike.
 
     Args:
@@ -235,7 +239,7 @@ def difference(rule: Formalized, other: Formalized, seconds: float) -> Differenc
     try:
         bench = Bench(rule, (), [other], Budget(seconds))
         letters = bench.difference(other, ())
-    except (BeyondError, OutOfTimeError) as error:
+    except (UnsupportedError, OutOfTimeError) as error:
         return Absence(why=str(error))
     if letters is None:
         return Absence()
@@ -246,7 +250,7 @@ def difference(rule: Formalized, other: Formalized, seconds: float) -> Differenc
     return Difference(made, bench.doubt)
 
 
-def _read(rules: Iterable[Formalized]) -> dict[str, frozenset[str]]:
+def _read(rules: Iterable[FormalizedRequirement]) -> dict[str, frozenset[str]]:
     """The signals or variables that each atom reads."""
     found: dict[str, frozenset[str]] = {}
     for each in rules:
@@ -257,5 +261,5 @@ def _read(rules: Iterable[Formalized]) -> dict[str, frozenset[str]]:
     return found
 
 
-def _atoms(rules: Iterable[Formalized]) -> tuple[str, ...]:
+def _atoms(rules: Iterable[FormalizedRequirement]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for rule in rules for name in demands(rule).atoms))

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from compiler.explanation.reasons import why
 from compiler.formalization import reference
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import boolean
 from compiler.formalization.predicates import Past
 from compiler.formalization.reference import Letter as Parts
@@ -124,7 +124,7 @@ class Judged:
     """FRET's verdict, were the word to end here."""
 
 
-def judged(rule: Formalized, word: Word) -> Judged:
+def judged(rule: FormalizedRequirement, word: Word) -> Judged:
     """By the formulas of the monitor, as columns."""
     every = (1 << word.ticks) - 1
     first = evaluate(rule.watch.breach, word.columns, word.ticks)
@@ -146,7 +146,7 @@ def is_killed(own: Judged, mutant: Judged, ticks: int) -> bool:
 # By the definition ------------------------------------------------------------------------------
 
 
-def letters(rule: Formalized, word: Word) -> tuple[Parts, ...]:
+def letters(rule: FormalizedRequirement, word: Word) -> tuple[Parts, ...]:
     """Mode, condition, response and stop condition of a sentence at each tick of a word."""
     sentence = rule.sentence
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
@@ -174,7 +174,7 @@ class Expected:
     because: str
 
 
-def expected(rule: Formalized, monitor: Monitor, word: Word) -> Expected:
+def expected(rule: FormalizedRequirement, monitor: Monitor, word: Word) -> Expected:
     """The verdict of a word in which all is known: definition, monitor and reasons agree on it.
 
     Args:
@@ -192,7 +192,7 @@ def expected(rule: Formalized, monitor: Monitor, word: Word) -> Expected:
     return found
 
 
-def undecided(rule: Formalized, monitor: Monitor, word: Word, atom: str) -> Expected:
+def undecided(rule: FormalizedRequirement, monitor: Monitor, word: Word, atom: str) -> Expected:
     """The verdict of a word in which an atom is unknown at one tick, where both values differ."""
     at, own = word.unknown[atom], word.columns[atom]
     finite: dict[bool, bool] = {}
@@ -240,7 +240,7 @@ def _row(monitor: Monitor, word: Word, tick: int) -> tuple[Truth, ...]:
     return tuple(column.at(tick) for column in columns)
 
 
-def defined(rule: Formalized, parts: Sequence[Parts]) -> tuple[int | None, bool]:
+def defined(rule: FormalizedRequirement, parts: Sequence[Parts]) -> tuple[int | None, bool]:
     """By the reference automaton: the tick at which a demand is broken, and FRET's verdict."""
     template = reference.template(rule.sentence, rule.ticks or 0)
     state = reference.initial(template)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.records import plain
 from compiler.files.templating import to_json
 from fretc.trends.comparisons import Comparison, by_finding

@@ -13,10 +13,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path, PurePath
 
-from compiler.files.checked_json import MisshapenError, Shape, plain
+from compiler.files.checked_json import SchemaError, Shape, plain
 from compiler.files.text_files import content, sha256
 from compiler.files.text_files import read as read_text
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import (
     Layer,
     Outcome,
@@ -35,7 +35,7 @@ from compiler.targets.ajpf.runner import ERROR, HOLDS, SCHEMA, VIOLATED, verdict
 from compiler.targets.target import DEFAULT, Options
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 PLACES = "build/*_ajpf/result.json"
 """Where `--emit ajpf-bundle -o build/` and `run.py` leave them."""
@@ -88,13 +88,13 @@ class AjpfResult:
     checks: tuple[Check, ...]
 
 
-def written() -> tuple[str, ...]:
+def default_paths() -> tuple[str, ...]:
     """The results at their usual place."""
     return tuple(sorted(map(str, Path().glob(PLACES))))
 
 
 def ajpf_proofs(
-    rules: Sequence[Formalized], paths: Sequence[str]
+    rules: Sequence[FormalizedRequirement], paths: Sequence[str]
 ) -> tuple[tuple[Proof, ...], tuple[Diagnostic, ...]]:
     """A proof for each result, in the order of the paths, and the diagnostics of the files.
 
@@ -154,7 +154,7 @@ def read(path: str) -> AjpfResult | Diagnostic:
         return source
     try:
         return _result(Shape(plain(source.text)), path)
-    except MisshapenError as error:
+    except SchemaError as error:
         return _wrong(source, f"is not what `run.py` writes: {error}")
     except (ValueError, AssertionError):
         return _wrong(source, "is not JSON that fretc can read")
@@ -232,8 +232,8 @@ def _trace(at: Shape) -> Trace:
 # What counts -----------------------------------------------------------------------------------
 
 
-@deep
-def _proof(rule: Formalized, result: AjpfResult) -> Proof:
+@with_recursion_limit
+def _proof(rule: FormalizedRequirement, result: AjpfResult) -> Proof:
     options = Options(weaken=True) if result.weakened else DEFAULT
     main = next((c for c in result.checks if c.role == "requirement"), None)
     stated = f": {main.text}" if main else ""
@@ -260,7 +260,7 @@ def _proof(rule: Formalized, result: AjpfResult) -> Proof:
     return proof(rule.id, Layer.AJPF, claim, outcome, result.engine, _ASSUMED, hashes)
 
 
-def _reason(rule: Formalized, result: AjpfResult, options: Options) -> str | None:
+def _reason(rule: FormalizedRequirement, result: AjpfResult, options: Options) -> str | None:
     """Why the result is not about the present texts; None: it is."""
     refused = bundle.refusal(rule, options)
     if refused is not None:

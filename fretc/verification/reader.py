@@ -9,7 +9,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from compiler.files.checked_json import MisshapenError, parsed
+from compiler.files.checked_json import SchemaError, parsed
 from compiler.files.records import decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
@@ -52,7 +52,7 @@ def read(path: str) -> Proofs | Diagnostic:
         return Proofs(source.name, sha256(source.text), document)
     except json.JSONDecodeError as error:
         return _wrong(source, f"is not JSON: {error.msg[:1].lower()}{error.msg[1:]}")
-    except MisshapenError as error:
+    except SchemaError as error:
         return _wrong(source, f"is not what `fretc verify` writes: {error}")
     except RecursionError:
         return _wrong(source, "is not JSON that fretc can read: it is nested too deeply")
@@ -62,14 +62,14 @@ def read(path: str) -> Proofs | Diagnostic:
 
 def known(path: str | None) -> tuple[Proof, ...] | Diagnostic:
     """The proofs of a file; None: of the one at its usual place, where there is one."""
-    place = path or written()
+    place = path or default_path()
     file = read(place) if place is not None else None
     if file is None or isinstance(file, Diagnostic):
         return file or ()
     return file.proofs
 
 
-def written() -> str | None:
+def default_path() -> str | None:
     """The file of `fretc verify` at its usual place, if there is one."""
     return DEFAULT if Path(DEFAULT).exists() else None
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from compiler.files import records
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Proof, Result
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
@@ -69,7 +69,7 @@ def refusals(project: Project, request: Request) -> Mapping[str, Diagnostic]:
     return _without_monitor(project.rules)
 
 
-def _without_monitor(rules: Sequence[Formalized]) -> Mapping[str, Diagnostic]:
+def _without_monitor(rules: Sequence[FormalizedRequirement]) -> Mapping[str, Diagnostic]:
     refused = ((rule.id, monitor.refuse(rule)) for rule in rules)
     return {id: why for id, why in refused if why is not None}
 

@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 
 from mcap.writer import CompressionType, Writer
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from fretc.logs.signals.samples import Gap
 from fretc.logs.watch_records import GRID, WATCH, grid_record, watch_record
 from fretc.watch.sources.source import Arrival, Channel

@@ -22,10 +22,10 @@ from fretish.bindings.declarations import (
     short_type,
 )
 from fretish.clock import Clock, TimeSource
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 
-@deep
+@with_recursion_limit
 def digest(value: Any) -> str:
     """SHA-256 of plain values; the order of keys does not count."""
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
@@ -106,7 +106,7 @@ def _values(signal: Signal) -> Any:
     return sorted([word, number] for word, number in zip(signal.values, numbers, strict=True))
 
 
-@deep
+@with_recursion_limit
 def expression(tree: e.Expression, *, plain: bool = True) -> Any:
     """An expression of the bindings as nested lists, numbers exact and in base units.
 

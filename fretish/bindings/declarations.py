@@ -18,7 +18,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
 from fretish.documents import Requirement
 from fretish.expressions import Expression, names
-from fretish.reading.memory import remembered
+from fretish.reading.caching import cache_by_identity
 from fretish.units import Unit
 
 
@@ -190,7 +190,7 @@ class Proposition:
         return _named(self.expression)
 
 
-@remembered
+@cache_by_identity
 def _named(expression: Expression) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name.id for name in names(expression)))
 

@@ -15,7 +15,7 @@ from fretish import syntax as s
 from fretish.checking import conditions, too_deep
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Span
-from fretish.reading.recursion import MOST, deep
+from fretish.reading.recursion import MOST, with_recursion_limit
 from fretish.syntax import Sentence
 
 Definitions = Mapping[str, e.Expression]
@@ -122,7 +122,7 @@ def _depth(tree: e.Expression, depths: Mapping[str, int]) -> int:
     return deepest
 
 
-@deep
+@with_recursion_limit
 def _put_in(tree: e.Expression, values: Definitions) -> e.Expression:
     """The expression with the values of its names, and of the names in these."""
     if isinstance(tree, e.Name):

@@ -19,8 +19,8 @@ from lark.visitors import Transformer_NonRecursive
 from fretish import expressions as e
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.source import Span
+from fretish.reading.caching import cache_by_identity
 from fretish.reading.grammars import Grammar
-from fretish.reading.memory import remembered
 from fretish.units import (
     DIMENSIONLESS,
     Dimension,
@@ -314,13 +314,13 @@ MOST_TICKS_BACK = 16
 _PRE = frozenset({"pre", "preReal", "preInt"})
 
 
-@remembered
+@cache_by_identity
 def looks_back(part: e.Expression) -> bool:
     """Whether it is a call of `pre`."""
     return isinstance(part, e.Call) and part.name in _PRE
 
 
-@remembered
+@cache_by_identity
 def ticks_back(expression: e.Expression) -> int:
     """By how many ticks its value looks back: calls of `pre` within each other.
 

@@ -15,13 +15,13 @@ from fretish.bindings.declarations import Signal
 from fretish.bindings.expressions import FUNCTIONS
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from fretish.diagnostics.source import Span
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 _MOST = 12
 """Words that a message lists."""
 
 
-@deep
+@with_recursion_limit
 def words(
     expression: e.Expression, signals: Mapping[str, Signal], place: Span | None = None
 ) -> e.Expression | Diagnostic:

@@ -69,11 +69,11 @@ def budget(size: int) -> Iterator[None]:
         yield
         return
     if _budgets:
-        grant(size)
+        extend_budget(size)
         yield
         return
     _budgets.append(_Budget(time.process_time() + SECONDS, _resident() + MEMORY))
-    grant(size)
+    extend_budget(size)
     signal.signal(signal.SIGPROF, _look)  # stays: a signal that comes late finds no budget
     signal.siginterrupt(signal.SIGPROF, False)
     signal.setitimer(signal.ITIMER_PROF, _LOOK, _LOOK)
@@ -84,14 +84,14 @@ def budget(size: int) -> Iterator[None]:
         _budgets.clear()
 
 
-def grant(size: int) -> None:
+def extend_budget(size: int) -> None:
     """So many bytes more are read within the present budget, if there is one."""
     for current in _budgets:
         current.seconds += size / _BYTES_A_SECOND
         current.memory += size * _MEMORY_A_BYTE
 
 
-def within(size: int, place: Span, reading: Callable[[], R]) -> R | Diagnostic:
+def with_budget(size: int, place: Span, reading: Callable[[], R]) -> R | Diagnostic:
     """The result of the call; F930 where it costs more than reading so many bytes may.
 
     Args:

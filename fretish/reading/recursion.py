@@ -15,7 +15,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def deep(function: Callable[P, R]) -> Callable[P, R]:
+def with_recursion_limit(function: Callable[P, R]) -> Callable[P, R]:
     """Let the function recurse over trees of `MOST` levels; the limit is put back after it."""
 
     @functools.wraps(function)

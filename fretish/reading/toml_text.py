@@ -13,7 +13,7 @@ import tomli_w
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic, suggestion
 from fretish.diagnostics.source import Span
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 
 _VALUE = re.compile(
     r"""["']?[ \t]*=[ \t]*(?P<value>
@@ -119,7 +119,7 @@ def read(text: Span, code: Code, name: str) -> Tables | Diagnostic:
         code: what to give where it is not TOML.
         name: the name of the thing for the message: `the header`.
     """
-    return within(len(text.text), text.part(0, 0), lambda: _read(text, code, name))
+    return with_budget(len(text.text), text.part(0, 0), lambda: _read(text, code, name))
 
 
 def _read(text: Span, code: Code, name: str) -> Tables | Diagnostic:

@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from compiler.project.folder import whole
+from compiler.project.folder import load_folder
 from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.roles import roles
 from fretc.analysis.assumptions import assumptions
@@ -27,7 +27,7 @@ def printed(subject: str) -> str:
 
 def of_project(folder: str) -> str:
     """What is printed of the requirements of a folder of this repository."""
-    project = whole(folder)
+    project = load_folder(folder)
     assert not isinstance(project, Diagnostic)
     assumed, _ = assumptions(project.rules, project.declarations)
     named = roles([*project.rules, *assumed])

@@ -10,11 +10,11 @@ import pytest
 
 from compiler.project.folder import Project, load
 from compiler.project.paths import requirement_files
-from fretc.audit.many_logs import IN_TURN, Audit, audit_logs
+from fretc.audit.many_logs import SEQUENTIAL, Audit, audit_logs
 from fretc.audit.plan import Plan, planned
 from fretc.coverage import mutation_output, mutation_record, record, text_output
 from fretc.coverage.coverage import Coverage, coverage
-from fretc.coverage.mutation import Survey, inquiry, survey
+from fretc.coverage.mutation import MutationResult, inquiry, survey
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.docs.pages import FOLDER, is_current
 
@@ -40,13 +40,13 @@ def mission() -> tuple[Project, Plan]:
 @cache
 def covered() -> Coverage:
     _, plan = mission()
-    audit = audit_logs(plan, [LOG], IN_TURN)
+    audit = audit_logs(plan, [LOG], SEQUENTIAL)
     assert isinstance(audit, Audit)
     return coverage(audit.source)
 
 
 @cache
-def surveyed() -> Survey:
+def surveyed() -> MutationResult:
     return survey(inquiry(*mission()), [LOG], 1, lambda _: None)
 
 

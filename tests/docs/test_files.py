@@ -49,7 +49,7 @@ REVIEW = lock.Review(
     "first review",
     {Node("sentence", "R1"): "0" * 64},
     {"traces/a.mcap": "satisfied"},
-    texts.Texts(
+    texts.ReviewedTexts(
         sentence="whenever too_close the rover shall within 200 milliseconds satisfy stopped",
         canonical="whenever too_close rover shall within 200 milliseconds satisfy stopped",
         title="Stop near obstacles",
@@ -174,7 +174,7 @@ def test_each_field_has_its_row(name: str) -> None:
 def test_the_fields_of_a_lock_are_those_that_are_written() -> None:
     written = tomllib.loads(lock.text(lock.Lock({"R1": REVIEW})))
     found = {row[0].strip("`") for row in rows(section(TEXT, "## `fretc.lock`"))}
-    kept = {f"texts.{name}" for name in texts.Texts.__struct_fields__}
+    kept = {f"texts.{name}" for name in texts.ReviewedTexts.__struct_fields__}
     assert found == {"schema", *written["review"]["R1"], *kept}
 
 

@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 
 from compiler.files.records import replace
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Demand, Kind, dual
 from compiler.logic import formula as f
 from compiler.project.folder import load
 from compiler.project.paths import requirement_files
-from compiler.situations.facts import facts
 from compiler.situations.mutants import OPERATORS
 from compiler.situations.situations import MEANINGS, situations
+from compiler.situations.tick_predicates import facts
 from fretc.analysis.text_output import Line
 from fretc.testing.assembly import jobs, suite
 from fretc.testing.conformance.text_output import lines as lines_of
@@ -169,7 +169,7 @@ def drawn(sentence: str) -> str:
     return _printed("fretc test --show R1", shown(_suite([subject]), "R1", lanes, roles, words))
 
 
-def _suite(rules: Sequence[Formalized]) -> Suite:
+def _suite(rules: Sequence[FormalizedRequirement]) -> Suite:
     return suite(rules, (), [batch for job in jobs(rules, (), 60) for batch in job.ask(())])
 
 

@@ -14,7 +14,7 @@ from typing import Protocol, TypeVar
 
 import z3
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons, exclusion_in_words
 from compiler.formalization.numbers.terms import NoTermError, Term, Terms
 from compiler.logic.orders import Exclusion
@@ -59,7 +59,7 @@ Answer = Possible | Impossible | Undecided
 class Reals:
     """The comparisons of a rule, to be asked about."""
 
-    def __init__(self, rule: Formalized) -> None:
+    def __init__(self, rule: FormalizedRequirement) -> None:
         """Nothing is asked yet."""
         compared = comparisons(rule)
         terms = Terms([rule], is_linear=False)
@@ -160,7 +160,7 @@ def only_rounded(exclusion: Exclusion) -> str:
 
 
 def by_numbers(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     atoms: Sequence[str],
     kind: type[Found],
     compare: Callable[[Sequence[Exclusion]], Found | Other],

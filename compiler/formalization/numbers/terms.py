@@ -12,13 +12,13 @@ from typing import Any
 
 import z3
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretish import expressions as e
 from fretish import units
 from fretish.bindings import constants
 from fretish.bindings.types import Kind, kind
 from fretish.printer import expression as printed
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 Term = Any
 """A number or a truth value of z3, which has no types."""
@@ -40,7 +40,7 @@ class Before:
 class Terms:
     """The variables of some rules, and what is said of them."""
 
-    def __init__(self, rules: Sequence[Formalized], *, is_linear: bool = True) -> None:
+    def __init__(self, rules: Sequence[FormalizedRequirement], *, is_linear: bool = True) -> None:
         """No variable is known yet.
 
         Args:
@@ -61,7 +61,7 @@ class Terms:
         self.before: dict[str, Before] = {}
         """What variables for numbers of the tick before are."""
 
-    @deep
+    @with_recursion_limit
     def holds(self, part: e.Expression, value: bool, known: Callable[[Term], Term]) -> Term:
         """When a part is true, or when it is false, for certain: Kleene's logic.
 

@@ -17,10 +17,10 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render, to_json
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Proof, Result
 from compiler.targets.ajpf import names
 from compiler.targets.ajpf import properties as ajpf
@@ -30,14 +30,14 @@ from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Modality
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.expressions import MIRRORED
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 SCHEMA = "fretc-ajpf-bundle-1"
 _WEAKEN = Options(weaken=True)
 
 
-@deep
-def refusal(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
+@with_recursion_limit
+def refusal(rule: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """F601 for what AJPF or the agent cannot express; F614 where the agent is not proved right."""
     refused = ajpf.refusal(rule, options)
     if refused is not None:
@@ -59,7 +59,7 @@ class CheckedAgent:
         return all(line.result is Result.PROVED for line in self.evidence)
 
 
-def forms(rule: Formalized) -> tuple[Sif, ...] | Diagnostic:
+def forms(rule: FormalizedRequirement) -> tuple[Sif, ...] | Diagnostic:
     """The possible agents: one that checks the whole condition, and one that does not.
 
     Only one where both are the same; F601 where there is none.
@@ -72,9 +72,9 @@ def forms(rule: Formalized) -> tuple[Sif, ...] | Diagnostic:
     return (asking, bare)
 
 
-@deep
+@with_recursion_limit
 def checked_agent(
-    rule: Formalized, options: Options = DEFAULT, limit: int | None = None
+    rule: FormalizedRequirement, options: Options = DEFAULT, limit: int | None = None
 ) -> CheckedAgent | Diagnostic:
     """The first form of the agent that is proved to keep its requirement, the guarded one first.
 
@@ -102,7 +102,7 @@ def checked_agent(
     return agents[0]
 
 
-def _not_kept(rule: Formalized, evidence: Sequence[Proof]) -> Diagnostic | None:
+def _not_kept(rule: FormalizedRequirement, evidence: Sequence[Proof]) -> Diagnostic | None:
     for line in evidence:
         if line.result is Result.PROVED:
             continue
@@ -116,13 +116,15 @@ def _not_kept(rule: Formalized, evidence: Sequence[Proof]) -> Diagnostic | None:
     return None
 
 
-@deep
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+@with_recursion_limit
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """A folder `<id>_ajpf/` for each rule."""
     return tuple(artifact for rule in rules for artifact in _bundle(rule, options))
 
 
-def _bundle(rule: Formalized, options: Options) -> Iterator[Artifact]:
+def _bundle(rule: FormalizedRequirement, options: Options) -> Iterator[Artifact]:
     agent = checked_agent(rule, options)
     assert isinstance(agent, CheckedAgent), f"{rule.id} was to be refused"
     assert agent.is_proved, f"{rule.id} was to be refused"
@@ -138,13 +140,13 @@ def _bundle(rule: Formalized, options: Options) -> Iterator[Artifact]:
         yield Artifact(PurePosixPath(package(rule)) / name, text)
 
 
-def package(rule: Formalized) -> str:
+def package(rule: FormalizedRequirement) -> str:
     """The name of the folder, which is that of the Java package: neither has room for more."""
     name = re.sub(r"[^a-z0-9]+", "_", stem(rule)).strip("_")
     return f"{name if name[:1].isalpha() else f'r{name}'}_ajpf"
 
 
-def texts(rule: Formalized, form: Sif, options: Options = DEFAULT) -> dict[str, str]:
+def texts(rule: FormalizedRequirement, form: Sif, options: Options = DEFAULT) -> dict[str, str]:
     """The texts that the model examines and the bundle contains, by the names of the files."""
     return {
         "SIF.gwen": _agent(rule, form, form.plans, "the agent of"),
@@ -155,11 +157,11 @@ def texts(rule: Formalized, form: Sif, options: Options = DEFAULT) -> dict[str, 
     }
 
 
-def _sentence(rule: Formalized) -> str:
+def _sentence(rule: FormalizedRequirement) -> str:
     return " ".join(rule.requirement.wording.text.split())
 
 
-def _agent(rule: Formalized, form: Sif, plans: Sequence[Reaction], title: str) -> str:
+def _agent(rule: FormalizedRequirement, form: Sif, plans: Sequence[Reaction], title: str) -> str:
     return render(
         "ajpf-bundle/agent.gwen.j2",
         title=f"{title} {rule.id}",
@@ -176,7 +178,7 @@ def _plan(plan: Reaction) -> str:
     return f"{plan.event} : {{{', '.join(guards)}}}{deeds};"
 
 
-def _configuration(rule: Formalized, form: Sif, options: Options) -> dict[str, str]:
+def _configuration(rule: FormalizedRequirement, form: Sif, options: Options) -> dict[str, str]:
     """The further files for MCAPL and Java PathFinder."""
     name = package(rule)
     texts = {
@@ -197,7 +199,7 @@ def _configuration(rule: Formalized, form: Sif, options: Options) -> dict[str, s
     return texts
 
 
-def _checks(rule: Formalized, options: Options) -> list[dict[str, str]]:
+def _checks(rule: FormalizedRequirement, options: Options) -> list[dict[str, str]]:
     """The checks for AJPF, each with its expected answer."""
     main, *controls = ajpf.properties(rule, options)
     return [
@@ -229,7 +231,7 @@ def _check(
 
 
 def _manifest(
-    rule: Formalized, form: Sif, options: Options, texts: Mapping[str, str]
+    rule: FormalizedRequirement, form: Sif, options: Options, texts: Mapping[str, str]
 ) -> dict[str, Any]:
     from compiler.logic import printing
 
@@ -256,7 +258,7 @@ def _manifest(
     }
 
 
-def _atom(rule: Formalized, form: Sif, name: str) -> dict[str, Any]:
+def _atom(rule: FormalizedRequirement, form: Sif, name: str) -> dict[str, Any]:
     declared = rule.glossary.get(name)
     return {
         "proposition": name,
@@ -301,16 +303,16 @@ def _comparisons(declarations: Declarations, expression: e.Expression) -> Iterat
         yield from _comparisons(declarations, part)
 
 
-def _refuse(rule: Formalized) -> Diagnostic | None:
+def _refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     return refusal(rule)
 
 
-def _refuse_weak(rule: Formalized) -> Diagnostic | None:
+def _refuse_weak(rule: FormalizedRequirement) -> Diagnostic | None:
     return refusal(rule, _WEAKEN)
 
 
-@deep
-def remark(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
+@with_recursion_limit
+def remark(rule: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """A warning about the properties (F605, F606, F607); else about the agent (F615)."""
     warning = ajpf.remark(rule, options)
     agent = checked_agent(rule, options) if warning is None else warning
@@ -327,11 +329,11 @@ def remark(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
     )
 
 
-def _remark(rule: Formalized) -> Diagnostic | None:
+def _remark(rule: FormalizedRequirement) -> Diagnostic | None:
     return remark(rule)
 
 
-def _remark_weak(rule: Formalized) -> Diagnostic | None:
+def _remark_weak(rule: FormalizedRequirement) -> Diagnostic | None:
     return remark(rule, _WEAKEN)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from compiler.agents.psl_grammar import AGENT
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of
 from compiler.logic.identifiers import legal_names
 from compiler.logic.printing import identifier
@@ -14,7 +14,7 @@ from compiler.targets.comparison_names import comparison_names
 from compiler.targets.comparison_names import definitions as meanings
 
 
-def spelt(rule: Formalized) -> Mapping[str, str]:
+def spelt(rule: FormalizedRequirement) -> Mapping[str, str]:
     """A functor for each proposition: it begins with a small letter, and is no key word."""
     spoken = comparison_names(rule)
     atoms = tuple(dict.fromkeys((*rule.propositions, *atoms_of(rule.sentence))))
@@ -26,20 +26,20 @@ def _functor(name: str) -> str:
     return name if name[0].islower() else f"v_{name}"
 
 
-def agent(rule: Formalized) -> str:
+def agent(rule: FormalizedRequirement) -> str:
     """The agent's name: the component's, where it can be one."""
     component = rule.sentence.component
     name = component if AGENT.fullmatch(component) else None
     return legal_names([component], AJPF, names={component: name} if name else None)[component]
 
 
-def definitions(rule: Formalized) -> Mapping[str, str]:
+def definitions(rule: FormalizedRequirement) -> Mapping[str, str]:
     """What each name means that is not the user's own."""
     component, own = rule.sentence.component, agent(rule)
     found = meanings(rule, spelt(rule))
     return found if own == component else {**found, own: f"the agent `{component}`"}
 
 
-def everything(rule: Formalized) -> Mapping[str, str]:
+def everything(rule: FormalizedRequirement) -> Mapping[str, str]:
     """Names of propositions and of the agent; a proposition counts where one has both names."""
     return {rule.sentence.component: agent(rule), **spelt(rule)}

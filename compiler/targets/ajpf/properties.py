@@ -19,7 +19,7 @@ from typing import Literal, assert_never
 from compiler.agents.psl_printing import property_text
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Uninterpreted, boolean, obligation
 from compiler.formalization.resolution import candidates
 from compiler.logic import formula as f
@@ -42,7 +42,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.expressions import Comparison
 from fretish.expressions import names as names_of
 from fretish.printer import timing as printing_of
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 HOLDS: Literal["HOLDS"] = "HOLDS"
 VIOLATED: Literal["VIOLATED"] = "VIOLATED"
@@ -76,8 +76,10 @@ class ExpectedProperty:
     why: str
 
 
-@deep
-def properties(rule: Formalized, options: Options = DEFAULT) -> tuple[ExpectedProperty, ...]:
+@with_recursion_limit
+def properties(
+    rule: FormalizedRequirement, options: Options = DEFAULT
+) -> tuple[ExpectedProperty, ...]:
     """The requirement, and the controls that make a verdict about it mean something.
 
     Args:
@@ -99,7 +101,7 @@ def properties(rule: Formalized, options: Options = DEFAULT) -> tuple[ExpectedPr
     )
 
 
-def weakened(rule: Formalized, options: Options = DEFAULT) -> str | None:
+def weakened(rule: FormalizedRequirement, options: Options = DEFAULT) -> str | None:
     """The loss in words, where the property is weaker than the requirement; None: no loss."""
     if not options.weaken or not _can_be_weakened(rule):
         return None
@@ -113,7 +115,7 @@ def weakened(rule: Formalized, options: Options = DEFAULT) -> str | None:
     return f"{loss}, and so does a stretch of the scope that ends without one, however long"
 
 
-def _can_be_weakened(rule: Formalized) -> bool:
+def _can_be_weakened(rule: FormalizedRequirement) -> bool:
     """`within` only: without their numbers the other timings say nothing, or something else.
 
     Nor in the `only` scopes, where the demand is that the response is missed for that long.
@@ -126,8 +128,8 @@ def _can_be_weakened(rule: Formalized) -> bool:
 # Refusals ---------------------------------------------------------------------------------------
 
 
-@deep
-def refusal(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
+@with_recursion_limit
+def refusal(rule: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """F601 for the first part of the rule that AJPF's language cannot say; F604."""
     return (
         _refused_timing(rule, options)
@@ -136,7 +138,7 @@ def refusal(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
     )
 
 
-def _refused_timing(rule: Formalized, options: Options) -> Diagnostic | None:
+def _refused_timing(rule: FormalizedRequirement, options: Options) -> Diagnostic | None:
     if rule.pctl is not None:
         return _not(rule, "the probability", "leave it out, or use a probabilistic tool")
     for expression in conditions(rule.sentence):
@@ -172,7 +174,7 @@ def _counts_states(timing: s.Timing) -> bool:
             assert_never(extent)
 
 
-def _refused_name(rule: Formalized) -> Diagnostic | None:
+def _refused_name(rule: FormalizedRequirement) -> Diagnostic | None:
     spoken = comparison_names(rule)
     compared = {
         atom
@@ -186,7 +188,7 @@ def _refused_name(rule: Formalized) -> Diagnostic | None:
     return None
 
 
-def _refused_form(rule: Formalized, formula: f.Formula | None) -> Diagnostic | None:
+def _refused_form(rule: FormalizedRequirement, formula: f.Formula | None) -> Diagnostic | None:
     if formula is None:
         return Diagnostic(
             Code.NOT_PROVED,
@@ -206,7 +208,7 @@ def _refused_form(rule: Formalized, formula: f.Formula | None) -> Diagnostic | N
     return None
 
 
-def _not(rule: Formalized, part: str, fix: str) -> Diagnostic:
+def _not(rule: FormalizedRequirement, part: str, fix: str) -> Diagnostic:
     return not_expressible("AJPF", rule, part, fix)
 
 
@@ -221,7 +223,7 @@ def _levels(text: str) -> int:
 # The formulas -----------------------------------------------------------------------------------
 
 
-def _formula(rule: Formalized, options: Options) -> f.Formula | None:
+def _formula(rule: FormalizedRequirement, options: Options) -> f.Formula | None:
     """The rule's own formula where it has no X, else its next-free form; None: not proved."""
     duty = obligation(rule.sentence, rule.ticks or 0)
     condition = duty.condition
@@ -233,7 +235,7 @@ def _formula(rule: Formalized, options: Options) -> f.Formula | None:
     return nextfree.next_free(duty) if proved else None
 
 
-def _controls(rule: Formalized, key: str) -> Iterator[tuple[str, f.Formula, str]]:
+def _controls(rule: FormalizedRequirement, key: str) -> Iterator[tuple[str, f.Formula, str]]:
     """Name, formula and reason of each control; it may be constant where an expression is."""
     duty = obligation(rule.sentence, rule.ticks or 0)
     response = boolean(rule.sentence.response, Uninterpreted().alone())
@@ -254,7 +256,7 @@ def _controls(rule: Formalized, key: str) -> Iterator[tuple[str, f.Formula, str]
         yield "stop", f.globally(f.not_(duty.demand.stop)), reason
 
 
-def _text(formula: f.Formula, rule: Formalized) -> str:
+def _text(formula: f.Formula, rule: FormalizedRequirement) -> str:
     agent, functors = names.agent(rule), names.spelt(rule)
 
     def spell(name: str) -> str:
@@ -273,7 +275,7 @@ def _key(id: str) -> str:
 # What a user should know ------------------------------------------------------------------------
 
 
-def remark(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
+def remark(rule: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """F605, F606, F607: limits of AJPF's verdict on the property."""
     loss = weakened(rule, options)
     if loss is not None:
@@ -299,20 +301,22 @@ def remark(rule: Formalized, options: Options = DEFAULT) -> Diagnostic | None:
     )
 
 
-def _warning(rule: Formalized, code: Code, message: str, fix: str) -> Diagnostic:
+def _warning(rule: FormalizedRequirement, code: Code, message: str, fix: str) -> Diagnostic:
     place = rule.sentence.timing_span or rule.requirement.wording
     return Diagnostic(code, message, place, fix, Severity.WARNING)
 
 
-@deep
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+@with_recursion_limit
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>.psl` for each rule: the property, its key the requirement's id, and its controls."""
     return tuple(
         Artifact(PurePosixPath(f"{stem(rule)}.psl"), text(rule, options)) for rule in rules
     )
 
 
-def text(rule: Formalized, options: Options = DEFAULT) -> str:
+def text(rule: FormalizedRequirement, options: Options = DEFAULT) -> str:
     """The property file of one rule."""
     return render(
         "ajpf/properties.psl.j2",
@@ -324,19 +328,19 @@ def text(rule: Formalized, options: Options = DEFAULT) -> str:
     )
 
 
-def _refuse(rule: Formalized) -> Diagnostic | None:
+def _refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     return refusal(rule)
 
 
-def _refuse_weak(rule: Formalized) -> Diagnostic | None:
+def _refuse_weak(rule: FormalizedRequirement) -> Diagnostic | None:
     return refusal(rule, _WEAKEN)
 
 
-def _remark(rule: Formalized) -> Diagnostic | None:
+def _remark(rule: FormalizedRequirement) -> Diagnostic | None:
     return remark(rule)
 
 
-def _remark_weak(rule: Formalized) -> Diagnostic | None:
+def _remark_weak(rule: FormalizedRequirement) -> Diagnostic | None:
     return remark(rule, _WEAKEN)
 
 

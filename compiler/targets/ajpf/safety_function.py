@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from compiler.agents.gwendolen import Action, Change, Deed, Guard
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.spelling.reserved_words import AJPF_ACTIONS
 from compiler.targets.ajpf import names
 from compiler.targets.comparison_names import comparison_names
@@ -67,7 +67,7 @@ Term = tuple[tuple[str, bool], ...]
 """A conjunction: propositions, each true or false."""
 
 
-def sif(rule: Formalized, guarded: bool = True) -> Sif | Diagnostic:
+def sif(rule: FormalizedRequirement, guarded: bool = True) -> Sif | Diagnostic:
     """The agent that reacts as the rule demands; or F601 for what no such agent can be made of.
 
     Args:
@@ -111,7 +111,7 @@ def sif(rule: Formalized, guarded: bool = True) -> Sif | Diagnostic:
     return Sif(agent, percepts, responses, spelt, plans, mutant, released, bare)
 
 
-def _terms(rule: Formalized, condition: e.Expression) -> tuple[Term, ...] | Diagnostic:
+def _terms(rule: FormalizedRequirement, condition: e.Expression) -> tuple[Term, ...] | Diagnostic:
     """The condition as a disjunction; each term has a proposition that has to be true."""
     parts = condition.args if isinstance(condition, e.Or) else (condition,)
     terms: list[Term] = []
@@ -143,7 +143,7 @@ def _literal(expression: e.Expression) -> tuple[str, bool] | None:
             return None
 
 
-def _responses(rule: Formalized) -> tuple[str, ...] | Diagnostic:
+def _responses(rule: FormalizedRequirement) -> tuple[str, ...] | Diagnostic:
     response = rule.sentence.response
     parts = response.args if isinstance(response, e.And) else (response,)
     ids = [part.id for part in parts if isinstance(part, e.Name)]
@@ -166,7 +166,7 @@ def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
 
 
 def _wrong_name(
-    rule: Formalized, percepts: tuple[str, ...], responses: tuple[str, ...]
+    rule: FormalizedRequirement, percepts: tuple[str, ...], responses: tuple[str, ...]
 ) -> Diagnostic | None:
     for name in percepts:
         if name in responses:
@@ -187,29 +187,29 @@ def _wrong_name(
     return None
 
 
-def _spelt(rule: Formalized) -> Mapping[str, str]:
+def _spelt(rule: FormalizedRequirement) -> Mapping[str, str]:
     """The names in the texts, also by names as the syntax tree has them: without quotes."""
     spelt = names.spelt(rule)
     return {**spelt, **{atom[1:-1]: spelt[atom] for atom in spelt if atom.startswith('"')}}
 
 
-def _modality(rule: Formalized, name: str) -> Modality:
+def _modality(rule: FormalizedRequirement, name: str) -> Modality:
     declared = rule.glossary.get(name)
     return declared.modality if declared else Modality.BELIEF
 
 
-def _is_belief(rule: Formalized, *names: str) -> bool:
+def _is_belief(rule: FormalizedRequirement, *names: str) -> bool:
     return all(_modality(rule, name) is Modality.BELIEF for name in names)
 
 
-def _answer(rule: Formalized, name: str) -> tuple[Deed, ...]:
+def _answer(rule: FormalizedRequirement, name: str) -> tuple[Deed, ...]:
     """An action and the belief that it was done; only the action where that is the response."""
     if not _is_belief(rule, name):
         return (Action(_spelt(rule)[name]),)
     return Action(_action(rule, name)), Change("+", _spelt(rule)[name])
 
 
-def _action(rule: Formalized, name: str) -> str:
+def _action(rule: FormalizedRequirement, name: str) -> str:
     """What the agent does to make it true, as the bindings call it."""
     declared = rule.glossary.get(name)
     return (declared.action if declared else "") or f"do_{_spelt(rule)[name]}"

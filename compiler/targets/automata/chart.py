@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import assert_never
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import occurring, parts
 from compiler.formalization.obligation import Kind, obligation
 from compiler.formalization.reference import (
@@ -29,7 +29,7 @@ from compiler.formalization.reference import (
 )
 from compiler.logic import formula as f
 from compiler.logic.implicants import Term, cover
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ScopeKind
 
 MOST_STATES = 100_000
@@ -86,8 +86,8 @@ class Chart:
         return [{places[i]: value for i, value in term.items()} for term in terms]
 
 
-@deep
-def chart(rule: Formalized) -> Chart:
+@with_recursion_limit
+def chart(rule: FormalizedRequirement) -> Chart:
     """The automaton of a rule.
 
     Raises:
@@ -110,8 +110,8 @@ def chart(rule: Formalized) -> Chart:
     )
 
 
-@deep
-def explored(rule: Formalized) -> Automaton:
+@with_recursion_limit
+def explored(rule: FormalizedRequirement) -> Automaton:
     """The automaton of a rule over the letters that can occur.
 
     Raises:
@@ -126,8 +126,8 @@ def _cached(kind: Template, letters: tuple[Letter, ...]) -> Automaton:
     return explore(kind, letters, MOST_STATES)
 
 
-@deep
-def kind(rule: Formalized) -> Kind:
+@with_recursion_limit
+def kind(rule: FormalizedRequirement) -> Kind:
     """The kind of the demand; `only` scopes demand the dual of their timing."""
     return obligation(rule.sentence, rule.ticks or 0).demand.kind
 

@@ -12,7 +12,7 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from compiler.logic import formula as f
 from compiler.logic import printing
@@ -24,7 +24,7 @@ from compiler.targets.comparison_names import comparison_names, notes, renamed
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.meaning import meaning
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 _LONGEST = 32
 """Characters of an expression on an edge; a longer one gets a name, and stands below."""
@@ -32,18 +32,20 @@ _WIDTH = 76
 """Characters of a line below the picture."""
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate, F670 for too many states."""
     return refusal(rule, "DOT")
 
 
-@deep
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+@with_recursion_limit
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>.dot` for each rule."""
     return tuple(Artifact(PurePosixPath(f"{stem(rule)}.dot"), _text(rule)) for rule in rules)
 
 
-def _text(rule: Formalized) -> str:
+def _text(rule: FormalizedRequirement) -> str:
     picture = folded(rule)
     automaton = chart(rule)
     names = comparison_names(rule)
@@ -64,7 +66,9 @@ def _text(rule: Formalized) -> str:
     )
 
 
-def _caption(rule: Formalized, long: Mapping[int, f.Formula], nodes: Sequence[Node]) -> list[str]:
+def _caption(
+    rule: FormalizedRequirement, long: Mapping[int, f.Formula], nodes: Sequence[Node]
+) -> list[str]:
     lines = [f"{rule.id}: {wording(rule.requirement)}"]
     lines.append(meaning(rule.written, rule.ticks, rule.clock))
     lines.extend(f"{PLACES[i]}: {printing.readable(part)}" for i, part in long.items())

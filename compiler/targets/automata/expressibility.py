@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import temporal_predicate
 from compiler.formalization.reference import TooManyStatesError
 from compiler.targets.automata.chart import MOST_STATES, explored
@@ -10,12 +10,12 @@ from compiler.targets.target import not_expressible
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 
-def refusal(rule: Formalized, target: str) -> Diagnostic | None:
+def refusal(rule: FormalizedRequirement, target: str) -> Diagnostic | None:
     """F601 or F670 where the sentence has no automaton, or none that is small enough."""
     return no_automaton(rule, target) or _too_large(rule)
 
 
-def no_automaton(rule: Formalized, target: str) -> Diagnostic | None:
+def no_automaton(rule: FormalizedRequirement, target: str) -> Diagnostic | None:
     """F601 for a sentence that says more than a counter automaton can tell."""
     if rule.pctl is not None:
         return not_expressible(
@@ -32,7 +32,7 @@ def no_automaton(rule: Formalized, target: str) -> Diagnostic | None:
     return None
 
 
-def _too_large(rule: Formalized) -> Diagnostic | None:
+def _too_large(rule: FormalizedRequirement) -> Diagnostic | None:
     try:
         explored(rule)
     except TooManyStatesError:

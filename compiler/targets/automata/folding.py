@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import TRAITS, Trait
 from compiler.formalization.reference import Letter, State
 from compiler.targets.automata.chart import START, Chart, chart, kind, words
@@ -54,7 +54,7 @@ class Folded:
     start: str
 
 
-def folded(rule: Formalized) -> Folded:
+def folded(rule: FormalizedRequirement) -> Folded:
     """The chart of a rule, folded; a start that does as another node does is that node.
 
     Raises:
@@ -64,7 +64,7 @@ def folded(rule: Formalized) -> Folded:
 
 
 class _Folding:
-    def __init__(self, rule: Formalized, unfolded: Chart) -> None:
+    def __init__(self, rule: FormalizedRequirement, unfolded: Chart) -> None:
         self.chart = unfolded
         self.demanded = kind(rule)
         self.scoped = rule.sentence.scope is not None

@@ -13,9 +13,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from compiler.formalization.reference import Letter
 from compiler.logic import formula as f
@@ -26,21 +26,23 @@ from compiler.targets.automata.expressibility import refusal
 from compiler.targets.comparison_names import comparison_names, notes
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate, F670 for too many states."""
     return refusal(rule, "HOA")
 
 
-@deep
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+@with_recursion_limit
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>.hoa` for each rule."""
     return tuple(Artifact(PurePosixPath(f"{stem(rule)}.hoa"), _text(rule)) for rule in rules)
 
 
-def _text(rule: Formalized) -> str:
+def _text(rule: FormalizedRequirement) -> str:
     automaton = chart(rule)
     atoms = tuple(
         dict.fromkeys(name for part in automaton.inputs.values() for name in f.atoms(part))
@@ -76,7 +78,7 @@ def _numbers(automaton: Chart) -> dict[int, int]:
 
 
 def _states(
-    rule: Formalized, automaton: Chart, numbers: Mapping[int, int]
+    rule: FormalizedRequirement, automaton: Chart, numbers: Mapping[int, int]
 ) -> Iterator[tuple[int, str, bool, list[tuple[str, int]]]]:
     """Number, name, whether it accepts, and edges of each state."""
     demanded = kind(rule)

@@ -14,7 +14,7 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, excluded
 from compiler.formalization.obligation import TRAITS, Obligation, Trait, obligation
 from compiler.formalization.record import wording
@@ -27,16 +27,18 @@ from compiler.targets.automata.smv_symbols import monitor
 from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.target import DEFAULT, Options, Target, identifier, stem
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate."""
     return no_automaton(rule, "NuSMV")
 
 
-@deep
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+@with_recursion_limit
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>.smv` for each rule."""
     return tuple(Artifact(PurePosixPath(f"{stem(rule)}.smv"), _text(rule)) for rule in rules)
 
@@ -50,7 +52,7 @@ class Spec:
     comment: str
 
 
-def _text(rule: Formalized) -> str:
+def _text(rule: FormalizedRequirement) -> str:
     demanded = obligation(rule.sentence, rule.ticks or 0)
     plain = identifier(rule)
     monitor_name, instance = _modules(rule)
@@ -79,13 +81,13 @@ def _text(rule: Formalized) -> str:
     )
 
 
-def _modules(rule: Formalized) -> tuple[str, str]:
+def _modules(rule: FormalizedRequirement) -> tuple[str, str]:
     """The name of the module, and that of its instance."""
     name = f"monitor_{identifier(rule)}"
     return name, f"the_{name}"
 
 
-def _names(rule: Formalized) -> Mapping[str, str]:
+def _names(rule: FormalizedRequirement) -> Mapping[str, str]:
     """Of all propositions; formulas may lack some: `only after m` drops m if it demands nothing."""
     propositions = (*rule.propositions, *atoms_of(rule.sentence))
     return legal_names(propositions, SMV | {*_modules(rule)}, names=comparison_names(rule))
@@ -96,7 +98,10 @@ def _together(exclusion: Exclusion, names: Mapping[str, str]) -> str:
 
 
 def _specs(
-    rule: Formalized, demanded: Obligation, names: tuple[str, str], dialect: printing.Dialect
+    rule: FormalizedRequirement,
+    demanded: Obligation,
+    names: tuple[str, str],
+    dialect: printing.Dialect,
 ) -> list[Spec]:
     """The formulas, and the properties that link them to the module.
 

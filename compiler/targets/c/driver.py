@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.program.program import Counter
 from compiler.program.rails import Reading, Ring
 from compiler.targets.c.monitor import printed
@@ -44,7 +44,7 @@ class _Range:
     most: int
 
 
-def driver(name: str, base: str, rules: Sequence[Formalized]) -> Driver:
+def driver(name: str, base: str, rules: Sequence[FormalizedRequirement]) -> Driver:
     """The driver of a monitor.
 
     Args:

@@ -13,9 +13,9 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
 from compiler.logic.spelling.reserved_words import C_LIBRARY, C
 from compiler.program.lowering import program
@@ -28,19 +28,19 @@ from compiler.targets.comparison_names import comparison_names, in_words
 from compiler.targets.python.monitor import described, module, prefixes_of, refusal, remark
 from compiler.targets.target import DEFAULT, Options, Target, not_expressible, stem
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 _MOST_BITS = 2**23
 """Of a ring: a mebibyte on each rail."""
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """As a monitor in Python; and F601 for bounds beyond what a controller can keep."""
     return refusal(rule, "C") or too_large(rule, "C")
 
 
-@deep
-def too_large(rule: Formalized, language: str) -> Diagnostic | None:
+@with_recursion_limit
+def too_large(rule: FormalizedRequirement, language: str) -> Diagnostic | None:
     """F601 where a counter or a ring is beyond what a controller can keep."""
     cells = rail(program({rule.id: rule.watch}), {rule.id: "r"}).cells
     if any(isinstance(cell, Counter) and cell.most >= 2**31 for cell in cells):
@@ -53,14 +53,18 @@ def too_large(rule: Formalized, language: str) -> Diagnostic | None:
     return not_expressible(f"a monitor in {language}", rule, what, fix)
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>_monitor.h` and `.c` for each rule, or `monitors.h` and `.c` for all."""
     if options.one_file:
         return _files("monitors", "monitors", rules)
     return tuple(file for name, base, rule in _apart(rules) for file in _files(name, base, [rule]))
 
 
-def _apart(rules: Sequence[Formalized]) -> Iterator[tuple[str, str, Formalized]]:
+def _apart(
+    rules: Sequence[FormalizedRequirement],
+) -> Iterator[tuple[str, str, FormalizedRequirement]]:
     """The name of the files of each rule, and what its names begin with.
 
     `r1_sample_init` is of the signal `init` of R1: names of R1_sample begin with `r1_sample_`, and
@@ -87,7 +91,7 @@ class Interface:
     """The member of the outcomes."""
 
 
-def interface(rules: Sequence[Formalized]) -> tuple[Interface, ...]:
+def interface(rules: Sequence[FormalizedRequirement]) -> tuple[Interface, ...]:
     """Of each rule, in files of its own as `emit` writes them."""
     every = [(name, base, printed(name, [rule])) for name, base, rule in _apart(rules)]
     return tuple(
@@ -96,8 +100,8 @@ def interface(rules: Sequence[Formalized]) -> tuple[Interface, ...]:
     )
 
 
-@deep
-def _files(name: str, base: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
+@with_recursion_limit
+def _files(name: str, base: str, rules: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
     """The header and the source of one monitor for all of the rules."""
     printer = printed(name, rules)
     meanings = {each: text for rule in rules for each, text in in_words(rule).items()}
@@ -135,8 +139,8 @@ class Joined:
     """From samples to the inputs."""
 
 
-@deep
-def joined(rules: Sequence[Formalized]) -> Joined:
+@with_recursion_limit
+def joined(rules: Sequence[FormalizedRequirement]) -> Joined:
     """Of `emit` with `one_file`, for rules with bindings."""
     printer = printed("monitors", rules)
     found = functions(rules, printer.names, signals.LANGUAGE, C)
@@ -144,7 +148,7 @@ def joined(rules: Sequence[Formalized]) -> Joined:
     return Joined(printer.names, tuple(each.prefix for each in printer.rail.readings), found)
 
 
-def printed(name: str, rules: Sequence[Formalized]) -> Printer:
+def printed(name: str, rules: Sequence[FormalizedRequirement]) -> Printer:
     """The words of C for a monitor of all of the rules.
 
     Args:
@@ -157,7 +161,7 @@ def printed(name: str, rules: Sequence[Formalized]) -> Printer:
     return Printer.of(made, _names(name, rules))
 
 
-def _names(name: str, rules: Sequence[Formalized]) -> Mapping[str, str]:
+def _names(name: str, rules: Sequence[FormalizedRequirement]) -> Mapping[str, str]:
     """Proposition → the member of the inputs."""
     propositions = (each for rule in rules for each in rule.watched)
     spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}

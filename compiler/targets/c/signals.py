@@ -12,9 +12,9 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.functions import file_name, functions
-from compiler.signals.printing import Language, letters, parts, suited
+from compiler.signals.printing import Language, encode_constant, letters, parts
 
 _SIGNS = {"<": "LT", "<=": "LE", ">": "GT", ">=": "GE", "=": "EQ", "!=": "NE"}
 
@@ -22,7 +22,7 @@ _SIGNS = {"<": "LT", "<=": "LE", ">": "GT", ">=": "GE", "=": "EQ", "!=": "NE"}
 def files(
     name: str,
     base: str,
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     names: Mapping[str, str],
     reserved: Container[str],
 ) -> tuple[Artifact, ...]:
@@ -68,17 +68,17 @@ def _double(value: float) -> str:
 
 
 def _fixed(value: Fraction) -> str:
-    return f"fretc_of_double({_double(suited(value).double)})"
+    return f"fretc_of_double({_double(encode_constant(value).double)})"
 
 
 def _chosen(function: str, number: str, value: Fraction) -> str:
-    found = suited(value)
+    found = encode_constant(value)
     single = f"{_double(found.single)}, {str(found.is_single).lower()}"
     return f"fretc_{function}_with({number}, {single}, {_double(found.double)})"
 
 
 def _compared(number: str, sign: str, value: Fraction) -> str:
-    found = suited(value, sign)
+    found = encode_constant(value, sign)
     beside = ", ".join(map(_double, (found.single, found.double, found.exact)))
     whole = f"UINT64_C({found.magnitude})"
     return f"fretc_compared_with({number}, FRETC_{_SIGNS[sign]}, {beside}, {whole})"

@@ -11,42 +11,44 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
 from compiler.program.lowering import program
 from compiler.targets.javascript import signals
 from compiler.targets.javascript.constants import Constants, scale, truth
 from compiler.targets.javascript.printer import Printer
-from compiler.targets.python.comparisons import TRUTH, Front, Spelling, Writer, front
+from compiler.targets.python.comparisons import TRUTH, InputAdapter, Spelling, Writer, front
 from compiler.targets.python.monitor import described, module, refusal, remark
 from compiler.targets.target import DEFAULT, Options, Target, stem
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 _NAMES = ("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "step", "truths", "judge")
 """What a module exports."""
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F312 and F601, as the monitor in Python."""
     return refusal(rule, "JavaScript")
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>_monitor.mjs` for each rule, or one file; and what makes truths of samples beside it."""
     if options.one_file:
         return _files("monitors", rules)
     return tuple(file for rule in rules for file in _files(f"{module(stem(rule))}_monitor", [rule]))
 
 
-def _files(name: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
+def _files(name: str, rules: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
     monitor = Artifact(PurePosixPath(f"{name}.mjs"), text(*rules))
     return (monitor, *signals.files(name, rules))
 
 
-def text(*rules: Formalized) -> str:
+def text(*rules: FormalizedRequirement) -> str:
     """The module of one monitor for all of the rules.
 
     Args:
@@ -70,13 +72,13 @@ class Body:
 
     text: str
     exports: tuple[str, ...]
-    front: Front | None
+    front: InputAdapter | None
     """None: its variables are its propositions."""
     propositions: tuple[str, ...]
 
 
-@deep
-def body(*rules: Formalized) -> Body:
+@with_recursion_limit
+def body(*rules: FormalizedRequirement) -> Body:
     """The code of one monitor for all of the rules; they are as those of `text`."""
     propositions = tuple(dict.fromkeys(name for rule in rules for name in rule.watched))
     compared = front(rules, propositions)
@@ -127,7 +129,9 @@ class _Front:
     """What is looked back at: the name of its value, what it was at first, and its present one."""
 
     @classmethod
-    def of(cls, compared: Front, propositions: Sequence[str], names: Mapping[str, str]) -> _Front:
+    def of(
+        cls, compared: InputAdapter, propositions: Sequence[str], names: Mapping[str, str]
+    ) -> _Front:
         """By the names of its variables and propositions."""
         constants = Constants()
         variables = {name: f"v_{names[name]}" for name in compared.inputs}

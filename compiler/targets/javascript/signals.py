@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
 from compiler.signals.functions import file_name, functions
 from compiler.signals.printing import Language
@@ -15,7 +15,7 @@ from compiler.targets.javascript.constants import Constants, scale, truth
 from fretish.expressions import COMPARE
 
 
-def files(monitor: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
+def files(monitor: str, rules: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
     """The module beside the module `monitor`; none where no bindings are at hand."""
     constants = Constants()
     names = legal_names((name for rule in rules for name in rule.watched), ())

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from compiler.files.templating import python
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import atom, variable
 from compiler.logic.printing import is_compound
 from fretish import expressions as e
@@ -24,7 +24,7 @@ from fretish.bindings.comparisons import is_measured
 from fretish.bindings.constants import called, computed, whole_exponent
 from fretish.bindings.declarations import Reading, Reduce, Signal
 from fretish.checking import conditions
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from fretish.units import unit
 
 NUMBER, TRUTH, WORD = "number", "truth", "word"
@@ -61,7 +61,7 @@ class Compared:
 
 
 @dataclass(frozen=True, slots=True)
-class Front:
+class InputAdapter:
     """What turns the variables of a tick into the truth of its propositions."""
 
     inputs: Mapping[str, Input]
@@ -69,8 +69,10 @@ class Front:
     """By the names of their propositions."""
 
 
-@deep
-def front(rules: Sequence[Formalized], propositions: Sequence[str]) -> Front | None:
+@with_recursion_limit
+def front(
+    rules: Sequence[FormalizedRequirement], propositions: Sequence[str]
+) -> InputAdapter | None:
     """The variables of monitors, and their comparisons; None where nothing is compared.
 
     What is a number in one place and a truth value in another stays a proposition in both, and so
@@ -97,10 +99,10 @@ def front(rules: Sequence[Formalized], propositions: Sequence[str]) -> Front | N
     inputs: dict[str, Input] = {}
     for name in propositions:
         inputs |= known[name].inputs if name in known else {name: Input(TRUTH)}
-    return Front(inputs, known) if inputs else None
+    return InputAdapter(inputs, known) if inputs else None
 
 
-def _comparisons(rule: Formalized) -> dict[str, Compared]:
+def _comparisons(rule: FormalizedRequirement) -> dict[str, Compared]:
     """The comparisons of a sentence that can be compiled, by the names of their propositions."""
     found: dict[str, Compared] = {}
     for tree in conditions(rule.sentence):
@@ -112,7 +114,7 @@ def _comparisons(rule: Formalized) -> dict[str, Compared]:
     return found
 
 
-def _clashing(rules: Sequence[Formalized], found: Iterable[Compared]) -> Iterator[str]:
+def _clashing(rules: Sequence[FormalizedRequirement], found: Iterable[Compared]) -> Iterator[str]:
     """The variables that are of two kinds, or of two units."""
     kinds: dict[str, Input] = {
         name: Input(TRUTH) for rule in rules for name in rule.propositions if not is_compound(name)
@@ -125,7 +127,7 @@ def _clashing(rules: Sequence[Formalized], found: Iterable[Compared]) -> Iterato
                 yield name
 
 
-def _compared(tree: e.Comparison, rule: Formalized) -> Compared | None:
+def _compared(tree: e.Comparison, rule: FormalizedRequirement) -> Compared | None:
     """The comparison with its variables; None where it cannot be compiled.
 
     One that is bound by its text to other names is what these say: what they are is not its

@@ -11,9 +11,9 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.interceptor_options import options as counted
 from compiler.targets.interceptor_options import repetition, ticks
 from compiler.targets.target import DEFAULT, Options, Target
@@ -123,7 +123,9 @@ def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnost
 # The file -------------------------------------------------------------------------------------
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`interceptor.py`.
 
     Raises:

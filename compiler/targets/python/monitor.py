@@ -14,15 +14,15 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized, plain
+from compiler.formalization.formalized import FormalizedRequirement, plain
 from compiler.formalization.obligation import TRAITS, Trait, obligation
 from compiler.logic import printing
 from compiler.logic.identifiers import legal_names, underlined
 from compiler.logic.spelling.reserved_words import PYTHON
 from compiler.program.program import MARKS, SIGNALS
-from compiler.targets.python.comparisons import ANNOTATIONS, NAMES, Front, Writer, front
+from compiler.targets.python.comparisons import ANNOTATIONS, NAMES, InputAdapter, Writer, front
 from compiler.targets.python.program import (
     Program,
     locals_of,
@@ -35,16 +35,16 @@ from fretish.checking import LOOK_AHEAD, calls, conditions
 from fretish.clock import assumed_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.expressions import depth
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from monitors.source_text import kernel, kernel_of_variables
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F312 and F601: what a monitor in Python cannot be made of."""
     return refusal(rule, "Python")
 
 
-def refusal(rule: Formalized, language: str) -> Diagnostic | None:
+def refusal(rule: FormalizedRequirement, language: str) -> Diagnostic | None:
     """F312: a monitor steps by ticks, so it must be known how long a tick is.
 
     F601: Python reads no more than 200 parentheses within each other, and what it refuses is in no
@@ -87,7 +87,7 @@ def refusal(rule: Formalized, language: str) -> Diagnostic | None:
     )
 
 
-def is_readable(rule: Formalized) -> bool:
+def is_readable(rule: FormalizedRequirement) -> bool:
     """Whether Python reads the monitor: it takes no more than 200 parentheses within each other."""
     return max(map(depth, conditions(rule.sentence))) <= _MOST_LEVELS
 
@@ -96,8 +96,8 @@ _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
 """An atom whose text has the first tick in it; a quoted name only looks like one."""
 
 
-@deep
-def remark(rule: Formalized) -> Diagnostic | None:
+@with_recursion_limit
+def remark(rule: FormalizedRequirement) -> Diagnostic | None:
     """F203: after any prefix of a run, both verdicts are still possible.
 
     This holds for 12 of FRET's 288 templates: each trigger demands a response at some later time,
@@ -119,7 +119,9 @@ def remark(rule: Formalized) -> Diagnostic | None:
     )
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """`<id>_monitor.py` for each rule, or one file; they need Python 3.11 and nothing else."""
     if options.one_file:
         return (Artifact(PurePosixPath("monitors.py"), text(*rules)),)
@@ -128,7 +130,7 @@ def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artif
     )
 
 
-def text(*rules: Formalized) -> str:
+def text(*rules: FormalizedRequirement) -> str:
     """The Python source of one monitor for all of the rules.
 
     Of a sentence with a probability it is the monitor of the same sentence without it, and says so.
@@ -177,7 +179,7 @@ def is_inlined(requirements: int, inputs: int) -> bool:
     return requirements == 1 and inputs <= MOST_PARAMETERS
 
 
-def _digest(code: Program, rules: Sequence[Formalized], front: _Lines | None) -> str:
+def _digest(code: Program, rules: Sequence[FormalizedRequirement], front: _Lines | None) -> str:
     """SHA-256 of everything that the meaning of what is kept depends on."""
     identities = [(rule.id, rule.fingerprint, rule.ticks) for rule in rules]
     meaning = (__version__, identities, code, *([front] if front else []))
@@ -233,7 +235,7 @@ class _Lines:
         return _tuple([text for _, _, text in self.earlier])
 
     @classmethod
-    def of(cls, compared: Front, parameters: Mapping[str, str]) -> _Lines:
+    def of(cls, compared: InputAdapter, parameters: Mapping[str, str]) -> _Lines:
         """By the names of its variables and propositions."""
         writer = Writer({name: parameters[name] for name in compared.inputs})
         comparisons = tuple(
@@ -271,13 +273,13 @@ def _is_negated(proposition: str, code: Program) -> bool:
     )
 
 
-def _probability_note(rule: Formalized) -> dict[str, str]:
+def _probability_note(rule: FormalizedRequirement) -> dict[str, str]:
     odds = rule.sentence.probability
     assert odds is not None
     return {"id": rule.id, "odds": f"{odds.op} {odds.digits}", "fingerprint": rule.fingerprint}
 
 
-def described(rule: Formalized) -> dict[str, object]:
+def described(rule: FormalizedRequirement) -> dict[str, object]:
     """What the head of a monitor says of a rule."""
     return {
         "id": rule.id,
@@ -350,7 +352,7 @@ def parameters_of(
     )
 
 
-def _names(rule: Formalized) -> Mapping[str, str]:
+def _names(rule: FormalizedRequirement) -> Mapping[str, str]:
     """Variable or proposition → the parameter of a step."""
     names = rule.watched
     compared = front([plain(rule)], names)

@@ -11,10 +11,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
 from compiler.formalization.binding_agreement import way_out
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals import numbers as n
 from compiler.signals.policies import Meaning, Policy, instant
 from fretish.bindings.declarations import Declarations, Reduce
@@ -23,7 +23,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.source_text import perception as runtime
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F601: what a live node cannot compute, or not as an audit does."""
     reason = next(_reasons(rule), None)
     if reason is None:
@@ -37,7 +37,7 @@ def refuse(rule: Formalized) -> Diagnostic | None:
     )
 
 
-def _reasons(rule: Formalized) -> Iterator[tuple[str, str]]:
+def _reasons(rule: FormalizedRequirement) -> Iterator[tuple[str, str]]:
     declared = rule.declarations
     if declared is None:
         yield "there are no bindings", "say in bindings.toml what its propositions are"
@@ -84,7 +84,7 @@ def _of_clock(declared: Declarations) -> Iterator[tuple[str, str]]:
         )
 
 
-def text(rules: Sequence[Formalized]) -> str:
+def text(rules: Sequence[FormalizedRequirement]) -> str:
     """The file: `SETTING`, and above it all that it needs of the standard library.
 
     Args:
@@ -100,7 +100,7 @@ def text(rules: Sequence[Formalized]) -> str:
     )
 
 
-def setting(rules: Sequence[Formalized]) -> Setting:
+def setting(rules: Sequence[FormalizedRequirement]) -> Setting:
     """The table of some rules that were not refused."""
     found = instant(rules)
     declared = rules[0].declarations
@@ -131,7 +131,7 @@ class Setting:
     reads: tuple[str, ...]
 
 
-def topics_of(rule: Formalized) -> tuple[str, ...]:
+def topics_of(rule: FormalizedRequirement) -> tuple[str, ...]:
     """The topics that its propositions read."""
     found = instant([rule])
     assert found is not None, "it is refused"
@@ -184,7 +184,7 @@ def _measured(policy: Policy) -> str | None:
 
     def text(tree: n.Truth) -> str | None:
         match tree:
-            case n.Compared(sign, n.Given(left), n.Given(right)):
+            case n.Comparison(sign, n.SignalValue(left), n.SignalValue(right)):
                 return f"({names[left]} {signs.get(sign, sign)} {names[right]})"
             case n.Not(arg):
                 inner = text(arg)
@@ -241,13 +241,13 @@ def signals_of(meaning: Meaning) -> Iterator[str]:
     """The signals that it reads, some more than once."""
     for tree in (meaning.truth, *(part for part, _ in meaning.held)):
         for part in _parts(tree):
-            if isinstance(part, n.Flag | n.Given):
+            if isinstance(part, n.Flag | n.SignalValue):
                 yield part.name
 
 
 def places(tree: n.Truth) -> list[int]:
     """Of what has to hold for a duration, that it asks for."""
-    return [part.place for part in _parts(tree) if isinstance(part, n.Held)]
+    return [part.place for part in _parts(tree) if isinstance(part, n.HeldFor)]
 
 
 def _parts(tree: n.Truth | n.Number) -> Iterator[n.Truth | n.Number]:
@@ -258,17 +258,17 @@ def _parts(tree: n.Truth | n.Number) -> Iterator[n.Truth | n.Number]:
 
 def _children(tree: n.Truth | n.Number) -> Iterable[n.Truth | n.Number]:
     match tree:
-        case n.Known() | n.Flag() | n.Held() | n.Given() | n.Fixed():
+        case n.Known() | n.Flag() | n.HeldFor() | n.SignalValue() | n.Constant():
             return ()
-        case n.Not(arg) | n.Applied(_, arg) | n.InBase(arg, _) | n.Power(arg, _):
+        case n.Not(arg) | n.UnaryCall(_, arg) | n.ToBaseUnit(arg, _) | n.Power(arg, _):
             return (arg,)
         case n.All(args) | n.Some(args):
             return args
         case (
-            n.Same(left, right)
-            | n.Compared(_, left, right)
+            n.Iff(left, right)
+            | n.Comparison(_, left, right)
             | n.Computed(_, left, right)
-            | n.Chosen(_, left, right)
+            | n.MinMax(_, left, right)
         ):
             return (left, right)
         case _:
@@ -281,9 +281,9 @@ def _truth(tree: n.Truth) -> str:
             return repr(value)
         case n.Flag(name):
             return f"flag(row[{name!r}])"
-        case n.Compared(sign, left, right):
+        case n.Comparison(sign, left, right):
             return f"compared({_number(left)}, {sign!r}, {_number(right)})"
-        case n.Held(place):
+        case n.HeldFor(place):
             return f"held[{place}]"
         case n.Not(arg):
             return f"negation({_truth(arg)})"
@@ -291,7 +291,7 @@ def _truth(tree: n.Truth) -> str:
             return f"every({', '.join(map(_truth, args))})"
         case n.Some(args):
             return f"some({', '.join(map(_truth, args))})"
-        case n.Same(left, right):
+        case n.Iff(left, right):
             return f"same({_truth(left)}, {_truth(right)})"
         case _:
             assert_never(tree)
@@ -299,17 +299,17 @@ def _truth(tree: n.Truth) -> str:
 
 def _number(tree: n.Number) -> str:
     match tree:
-        case n.Given(name):
+        case n.SignalValue(name):
             return f"row[{name!r}]"
-        case n.Fixed(value):
+        case n.Constant(value):
             return f"exact({str(value)!r})"
-        case n.Applied(function, arg):
+        case n.UnaryCall(function, arg):
             return f"{function}({_number(arg)})"
-        case n.Computed(function, left, right) | n.Chosen(function, left, right):
+        case n.Computed(function, left, right) | n.MinMax(function, left, right):
             return f"{function}({_number(left)}, {_number(right)})"
         case n.Power(base, times):
             return f"power({_number(base)}, {times})"
-        case n.InBase(arg, scale):
+        case n.ToBaseUnit(arg, scale):
             return f"in_base({_number(arg)}, exact({str(scale)!r}))"
         case _:
             assert_never(tree)

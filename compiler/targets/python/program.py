@@ -6,13 +6,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, assert_never
 
-from compiler.formalization.past import Watch
+from compiler.formalization.past import MonitorSpec
 from compiler.program import columns as c
 from compiler.program import instructions as i
 from compiler.program import program as p
 from compiler.program import values as v
 from compiler.program.lowering import program as lowered
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 _OR, _AND, _ATOMIC = range(3)
 """How tight Python's operators bind; a column's do in the same order."""
@@ -74,9 +74,9 @@ class Program:
     requirements: tuple[RequirementSignals, ...]
 
 
-@deep
+@with_recursion_limit
 def program(
-    watches: Mapping[str, Watch], parameters: Mapping[str, str], prefixes: Mapping[str, str]
+    watches: Mapping[str, MonitorSpec], parameters: Mapping[str, str], prefixes: Mapping[str, str]
 ) -> Program:
     """The Python of the program of watches.
 

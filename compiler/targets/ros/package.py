@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from compiler.files.attribution import EXAMPLE, Attribution
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.settings import NAME as SETTINGS
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.policies import instant
 from compiler.targets.python import interceptor, monitor, perception
 from compiler.targets.target import Options, stem
-from compiler.targets.words import words
+from compiler.targets.witness_traces import words
 from fretish.bindings.declarations import Interception, Signal, short_type
 from fretish.bindings.tables.interceptor import TABLE
 from fretish.clock import TimeSource
@@ -59,7 +59,7 @@ class Package:
     """A package with one node, one file of monitors, and perhaps an interceptor."""
 
     name: str
-    rules: tuple[Formalized, ...]
+    rules: tuple[FormalizedRequirement, ...]
     topics: tuple[Topic, ...]
     period: int
     """Nanoseconds of a tick."""
@@ -109,12 +109,12 @@ _TYPE = re.compile(r"(?P<package>[a-z]\w*)/(?P<message>[A-Z]\w*)", re.ASCII)
 _TOPIC = re.compile(r"/?[A-Za-z]\w*(?:/[A-Za-z]\w*)*", re.ASCII)
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F312 and F601: what no monitor, no live node, or no subscription can be made of."""
     return monitor.refuse(rule) or perception.refuse(rule) or next(_unsubscribable(rule), None)
 
 
-def _unsubscribable(rule: Formalized) -> Iterator[Diagnostic]:
+def _unsubscribable(rule: FormalizedRequirement) -> Iterator[Diagnostic]:
     declared = rule.declarations.signals.values() if rule.declarations else ()
     for signal in _signals([rule]):
         topic, kind = signal.path.topic, _kind(signal)
@@ -136,7 +136,7 @@ def _kind(signal: Signal) -> str:
     return short_type(signal.type or "")
 
 
-def _refusal(rule: Formalized, what: str, place: Span, fix: str) -> Diagnostic:
+def _refusal(rule: FormalizedRequirement, what: str, place: Span, fix: str) -> Diagnostic:
     message = f"no node of ROS can judge {rule.id}: {what}"
     return Diagnostic(Code.NOT_EXPRESSIBLE, message, place, help=fix)
 
@@ -176,7 +176,7 @@ def remarks(options: Options) -> tuple[Diagnostic, ...]:
 # The description --------------------------------------------------------------------------------
 
 
-def package(rules: Sequence[Formalized], options: Options) -> Package:
+def package(rules: Sequence[FormalizedRequirement], options: Options) -> Package:
     """Of rules that were not refused.
 
     Raises:
@@ -202,7 +202,7 @@ def package(rules: Sequence[Formalized], options: Options) -> Package:
     )
 
 
-def name(rules: Sequence[Formalized], bindings: Source) -> str:
+def name(rules: Sequence[FormalizedRequirement], bindings: Source) -> str:
     """Legal in ROS 1 and 2, and no word of Python: `r1_monitor`, or by the project's folder."""
     if len(rules) == 1:
         own = stem(rules[0])
@@ -217,7 +217,7 @@ _PLAIN = {"requirements", "..", ".", "/"}
 """Folders whose names say nothing of a project."""
 
 
-def _signals(rules: Sequence[Formalized]) -> list[Signal]:
+def _signals(rules: Sequence[FormalizedRequirement]) -> list[Signal]:
     found = instant(rules)
     return [policy.signal for policy in found.policies] if found else []
 
@@ -232,7 +232,7 @@ def _topics(signals: Sequence[Signal]) -> Iterator[Topic]:
 
 
 def _parameters(
-    rules: Sequence[Formalized], signals: Sequence[Signal], options: Options, period: int
+    rules: Sequence[FormalizedRequirement], signals: Sequence[Signal], options: Options, period: int
 ) -> Iterator[Parameter]:
     ages = [signal.max_age for signal in signals if signal.max_age is not None]
     declared = options.declarations
@@ -258,7 +258,7 @@ def _parameters(
     )
 
 
-def _deciding(rules: Sequence[Formalized], options: Options) -> tuple[str, ...]:
+def _deciding(rules: Sequence[FormalizedRequirement], options: Options) -> tuple[str, ...]:
     """Those that ask the robot to stand, by `[assume]`; all of them, where nothing says which."""
     assumed = options.declarations.assumed if options.declarations else None
     asking = [

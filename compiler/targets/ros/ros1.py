@@ -7,16 +7,18 @@ from dataclasses import replace
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import interceptor
 from compiler.targets.python.monitor import remark
 from compiler.targets.ros import package as shared
 from compiler.targets.target import DEFAULT, Options, Target
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """One folder, which belongs into the `src` of a workspace."""
     package = shared.package(rules, options)
     return tuple(

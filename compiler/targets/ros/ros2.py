@@ -10,9 +10,9 @@ from textwrap import wrap
 from typing import Any
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import interceptor, monitor
 from compiler.targets.ros import package as shared
 from compiler.targets.ros.package import Package, Topic
@@ -47,7 +47,9 @@ _TEMPLATES = {
 """The files that are of ROS 2 alone."""
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """A folder with the name of the package.
 
     Raises:

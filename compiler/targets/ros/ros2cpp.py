@@ -15,9 +15,9 @@ from textwrap import wrap
 from typing import Any
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.functions import SignalFunction
 from compiler.signals.policies import Meaning, Policy, instant
 from compiler.signals.printing import parts
@@ -29,7 +29,7 @@ from compiler.targets.ros import package as shared
 from compiler.targets.ros.package import Package
 from compiler.targets.ros.ros2 import qos
 from compiler.targets.target import DEFAULT, Options, Target
-from compiler.targets.words import Ticks, words
+from compiler.targets.witness_traces import RepeatedTick, words
 from fretish.bindings.declarations import Reading, Reduce
 from fretish.clock import TimeSource
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -46,12 +46,14 @@ _TEMPLATES = {
 }
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """F312 and F601: what no monitor in C, and no node of ROS, can be made of."""
     return shared.refuse(rule) or monitor.refuse(rule)
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """A folder with the name of the package.
 
     Raises:
@@ -138,7 +140,7 @@ def _values(package: Package) -> dict[str, Any]:
     }
 
 
-def _ticks(ticks: Ticks, order: Mapping[str, int]) -> dict[str, Any]:
+def _ticks(ticks: RepeatedTick, order: Mapping[str, int]) -> dict[str, Any]:
     return {
         "count": ticks.count,
         "values": [(order[name], str(value).lower()) for name, value in ticks.values.items()],

@@ -11,9 +11,9 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.identifiers import legal_names
 from compiler.logic.spelling.reserved_words import RUST
 from compiler.program.lowering import program
@@ -24,25 +24,27 @@ from compiler.targets.python.monitor import described, module, prefixes_of, refu
 from compiler.targets.rust import signals
 from compiler.targets.rust.printer import Printer
 from compiler.targets.target import DEFAULT, Options, Target, stem
-from compiler.targets.words import words
+from compiler.targets.witness_traces import words
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 
-def refuse(rule: Formalized) -> Diagnostic | None:
+def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
     """As a monitor in Python; and F601 for bounds beyond what a controller can keep."""
     return refusal(rule, "Rust") or too_large(rule, "Rust")
 
 
-def emit(rules: Sequence[Formalized], options: Options = DEFAULT) -> tuple[Artifact, ...]:
+def emit(
+    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+) -> tuple[Artifact, ...]:
     """A crate for each rule, or one for all, and a crate beside it that makes truths of samples."""
     if options.one_file:
         return _crate("monitors", rules)
     return tuple(file for rule in rules for file in _crate(f"{module(stem(rule))}_monitor", [rule]))
 
 
-@deep
-def _crate(name: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
+@with_recursion_limit
+def _crate(name: str, rules: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
     """The files of a crate with one monitor for all of the rules."""
     name = name if name[0].isalpha() else f"r{name}"
     propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
@@ -73,7 +75,7 @@ def _crate(name: str, rules: Sequence[Formalized]) -> tuple[Artifact, ...]:
     return tuple(Artifact(PurePosixPath(path), text) for path, text in files.items())
 
 
-def _names(rules: Sequence[Formalized]) -> Mapping[str, str]:
+def _names(rules: Sequence[FormalizedRequirement]) -> Mapping[str, str]:
     """Proposition → the field of the inputs."""
     spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
     propositions = (each for rule in rules for each in rule.watched)

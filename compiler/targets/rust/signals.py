@@ -10,16 +10,16 @@ from fractions import Fraction
 from math import isinf, isnan
 
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.functions import file_name, functions
-from compiler.signals.printing import Language, letters, parts, suited
+from compiler.signals.printing import Language, encode_constant, letters, parts
 
 _SIGNS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "=": "eq", "!=": "ne"}
 
 
 def files(
     monitor: str,
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     names: Mapping[str, str],
     reserved: Container[str],
 ) -> dict[str, str]:
@@ -59,18 +59,18 @@ def _double(value: float) -> str:
 
 
 def _fixed(value: Fraction) -> str:
-    return f"Some(Number::Double({_double(suited(value).double)}))"
+    return f"Some(Number::Double({_double(encode_constant(value).double)}))"
 
 
 def _chosen(function: str, number: str, value: Fraction) -> str:
-    found = suited(value)
+    found = encode_constant(value)
     kind = "Single" if found.is_single else "Double"
     single = f"Number::{kind}({_double(found.single)})"
     return f"{function}_with({number}, {single}, {_double(found.double)})"
 
 
 def _compared(number: str, sign: str, value: Fraction) -> str:
-    found = suited(value, sign)
+    found = encode_constant(value, sign)
     whole = found.magnitude if found.exact > 0 else -found.magnitude
     wide = f"Number::Whole({whole})" if whole else f"Number::Wide({_double(found.exact)})"
     beside = f"{_double(found.single)}, {_double(found.double)}, {wide}"

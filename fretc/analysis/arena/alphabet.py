@@ -25,7 +25,7 @@ Tick = dict[str, Value]
 """The value of each variable at one tick."""
 
 
-class Course(Protocol):
+class NumericTrace(Protocol):
     """The numbers of a run, tick by tick, where letters depend on those of the tick before."""
 
     @property
@@ -93,13 +93,13 @@ class Alphabet(Protocol):
         """When an atom is true, over inputs and outputs, and over what `memory` has.
 
         Raises:
-            BeyondError: the alphabet has no such atom.
+            UnsupportedError: the alphabet has no such atom.
         """
 
     def memory(self) -> Counter | None:
         """What is remembered of earlier ticks, where letters speak of them."""
 
-    def course(self, budget: Budget) -> Course | None:
+    def course(self, budget: Budget) -> NumericTrace | None:
         """A run that has not begun; None: no letter depends on earlier numbers."""
 
     @property
@@ -115,7 +115,7 @@ class Alphabet(Protocol):
         """
 
 
-class BeyondError(Exception):
+class UnsupportedError(Exception):
     """Something that the analysis has no model of; the message says what, in words."""
 
 

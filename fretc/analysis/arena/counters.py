@@ -10,11 +10,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import assert_never
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Kind, Obligation
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers
+from fretc.analysis.arena.alphabet import Alphabet, Numbers, UnsupportedError
 from fretc.analysis.arena.memory import (
     LONGEST_DELAY,
     Bit,
@@ -28,7 +28,7 @@ from fretc.analysis.arena.memory import (
     some,
     successor,
 )
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ConditionKind, ScopeKind
 
 
@@ -63,9 +63,9 @@ class Counter:
         return bdd.point({bit.now: False for word in self.words for bit in word})
 
 
-@deep
+@with_recursion_limit
 def counter(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     alphabet: Alphabet,
     fresh: Numbers,
     shared: dict[Function, Bit],
@@ -83,10 +83,10 @@ def counter(
             holds at every tick.
 
     Raises:
-        BeyondError: it says something that has no counter.
+        UnsupportedError: it says something that has no counter.
     """
     if rule.sentence.probability is not None:
-        raise BeyondError("it states a probability")
+        raise UnsupportedError("it states a probability")
     demanded = rule.demanded
     memory = Memory(fresh, shared)
     past = Past(alphabet.atom, memory)
@@ -278,7 +278,7 @@ def _not_after(tick: _Tick, n: int) -> _Timing:
 def _register(tick: _Tick, n: int) -> _Timing:
     """Each trigger forbids the response at a tick of its own, so each is remembered."""
     if n > LONGEST_DELAY:
-        raise BeyondError(f"each of its triggers is remembered for {n} ticks")
+        raise UnsupportedError(f"each of its triggers is remembered for {n} ticks")
     unanswered = tick.enforced - tick.q
     ago = tick.triggered
     for _ in range(n + 1):

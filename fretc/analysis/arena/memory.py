@@ -14,7 +14,7 @@ from typing import assert_never
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import BeyondError, Numbers, numbers
+from fretc.analysis.arena.alphabet import Numbers, UnsupportedError, numbers
 
 Word = Sequence[Function]
 """The bits of a whole number from 0 on, the least first."""
@@ -169,7 +169,7 @@ class Past:
         """Its truth at a tick.
 
         Raises:
-            BeyondError: it looks ahead, or too far back.
+            UnsupportedError: it looks ahead, or too far back.
         """
         if formula not in self._known:
             self._known[formula] = self._value(formula)
@@ -197,9 +197,9 @@ class Past:
             case f.Previous() | f.WeakPrevious() | f.Once() | f.Historically() | f.Since():
                 return self._past(formula)
             case f.Last() | f.Next() | f.Eventually() | f.Globally() | f.Until() | f.Release():
-                raise BeyondError("it looks ahead")
-            case f.Odds():
-                raise BeyondError("it states a probability")
+                raise UnsupportedError("it looks ahead")
+            case f.ProbabilityBound():
+                raise UnsupportedError("it states a probability")
             case _:
                 assert_never(formula)
 
@@ -224,7 +224,7 @@ class Past:
     def _since(self, left: Function, right: Function, ago: f.Interval) -> Function:
         """`left S[lo,hi] right` is `H[0,lo-1] left & Y^lo (left S[0,hi-lo] right)`."""
         if ago.lo > LONGEST_DELAY:
-            raise BeyondError(f"it looks back by {ago.lo} ticks, tick by tick")
+            raise UnsupportedError(f"it looks back by {ago.lo} ticks, tick by tick")
         near = self._near(left, right, None if ago.hi is None else ago.hi - ago.lo)
         for _ in range(ago.lo):
             near = self._memory.keep(near) & left

@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers
+from fretc.analysis.arena.alphabet import Alphabet, Numbers, UnsupportedError
 from fretc.analysis.arena.counters import Counter, counter
 from fretc.analysis.arena.memory import Bit
 
@@ -51,8 +51,8 @@ class Fixed:
 
 
 def arena(
-    rules: Sequence[Formalized],
-    assumptions: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement],
     alphabet: Alphabet,
     fresh: Numbers,
     *,
@@ -61,7 +61,7 @@ def arena(
     """The arena of some rules.
 
     Raises:
-        BeyondError: an assumption has no counter.
+        UnsupportedError: an assumption has no counter.
     """
     found: dict[str, Counter] = {}
     beyond: dict[str, str] = {}
@@ -70,9 +70,9 @@ def arena(
     for rule in near_each_other([*rules, *assumptions]):
         try:
             made = counter(rule, alphabet, fresh, shared, as_fret=as_fret and id(rule) not in known)
-        except BeyondError as error:
+        except UnsupportedError as error:
             if id(rule) in known:
-                raise BeyondError(f"of the assumption {rule.id}: {error}") from None
+                raise UnsupportedError(f"of the assumption {rule.id}: {error}") from None
             beyond[rule.id] = str(error)
         else:
             found[rule.id] = made
@@ -81,13 +81,13 @@ def arena(
     return Arena(Fixed(alphabet), of_rules, of_assumptions, beyond)
 
 
-def near_each_other(rules: Sequence[Formalized]) -> list[Formalized]:
+def near_each_other(rules: Sequence[FormalizedRequirement]) -> list[FormalizedRequirement]:
     """Those that count come first, each after those with which it shares the most variables.
 
     The others add few bits, or none, and would tear atoms away from the counters that read them.
     """
     rest = list(rules)
-    ordered: list[Formalized] = []
+    ordered: list[FormalizedRequirement] = []
     placed: set[str] = set()
     while rest:
         last = set(ordered[-1].variables) if ordered else set()

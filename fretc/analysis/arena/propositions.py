@@ -12,13 +12,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from itertools import chain
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons
 from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.orders import Exclusion, exclusions
-from fretc.analysis.arena.alphabet import BeyondError, Numbers, Tick
+from fretc.analysis.arena.alphabet import Numbers, Tick, UnsupportedError
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import Roles
 from fretish import expressions as e
@@ -40,7 +40,7 @@ class Propositions:
 
     def __init__(
         self,
-        rules: Sequence[Formalized],
+        rules: Sequence[FormalizedRequirement],
         roles: Roles,
         fresh: Numbers,
         elsewhere: frozenset[str] = frozenset(),
@@ -89,18 +89,18 @@ class Propositions:
         """Who decides an atom.
 
         Raises:
-            BeyondError: both do, or it is no atom of one tick.
+            UnsupportedError: both do, or it is no atom of one tick.
         """
         part = self._parts.get(name)
         if part is None:
-            raise BeyondError(f"`{name}` is more than a value at one tick")
+            raise UnsupportedError(f"`{name}` is more than a value at one tick")
         called = next((each for each in e.parts(part) if isinstance(each, e.Call)), None)
         if called is not None and called.name.lower() not in _ABSOLUTE:
-            raise BeyondError(f"it calls `{called.name}`")
+            raise UnsupportedError(f"it calls `{called.name}`")
         found = {self._roles[each.id] for each in e.names(part)}
         if len(found) > 1:
             both = f"`{name}` compares what the environment and the system choose"
-            raise BeyondError(self._refused.get(name, both))
+            raise UnsupportedError(self._refused.get(name, both))
         return found.pop() if found else Role.INPUT
 
     @property
@@ -152,7 +152,7 @@ class Propositions:
         """Each atom by the name that formulas have for it."""
         return {name: letter[number] for name, number in self._numbers.items() if number in letter}
 
-    def _doubtful(self, rules: Sequence[Formalized]) -> Iterator[tuple[Role, str]]:
+    def _doubtful(self, rules: Sequence[FormalizedRequirement]) -> Iterator[tuple[Role, str]]:
         """Variables that several atoms read in ways that order alone does not tell apart."""
         readers: defaultdict[str, list[str]] = defaultdict(list)
         for name, read in self._read.items():
@@ -177,7 +177,7 @@ class Propositions:
         refused = next((self._refused[atom] for atom in atoms if atom in self._refused), None)
         shown = shown if refused is None else f"{refused}: {shown}"
         for atom in atoms:
-            with suppress(BeyondError):
+            with suppress(UnsupportedError):
                 role = self.role(atom)
                 self._doubted[role].update(atoms)
                 yield role, shown
@@ -186,7 +186,7 @@ class Propositions:
 _ABSOLUTE = ("abs", "absreal", "absint")
 
 
-def _read(name: str, part: e.Expression, rules: Iterable[Formalized]) -> frozenset[str]:
+def _read(name: str, part: e.Expression, rules: Iterable[FormalizedRequirement]) -> frozenset[str]:
     """The signals or variables that decide an atom."""
     for rule in rules:
         declared = rule.declarations
@@ -206,7 +206,7 @@ def _is_plain(part: e.Comparison | None, *, whole: bool) -> bool:
 
 
 def _exclusions(
-    compared: Mapping[str, e.Comparison], rules: Sequence[Formalized]
+    compared: Mapping[str, e.Comparison], rules: Sequence[FormalizedRequirement]
 ) -> tuple[Exclusion, ...]:
     """Patterns of comparisons that no values have."""
     signals = {

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from compiler.formalization.binding_agreement import place
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Role
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -19,7 +19,7 @@ Roles = Mapping[str, Role]
 CHOSEN = (Role.INPUT, Role.OUTPUT)
 
 
-def roles(rules: Sequence[Formalized]) -> Roles | tuple[Diagnostic, ...]:
+def roles(rules: Sequence[FormalizedRequirement]) -> Roles | tuple[Diagnostic, ...]:
     """The role of each variable; or what is wrong with each that has none, or has two.
 
     F354 stands where a variable without a role is read first. F907 is of one that is an input of
@@ -40,7 +40,7 @@ def roles(rules: Sequence[Formalized]) -> Roles | tuple[Diagnostic, ...]:
     return tuple(wrong.values()) or {name: own for name, (own, _) in found.items()}
 
 
-def _two_roles(rule: Formalized, name: str, first: str, second: Role) -> Diagnostic:
+def _two_roles(rule: FormalizedRequirement, name: str, first: str, second: Role) -> Diagnostic:
     """F907."""
     component = rule.sentence.component
     return Diagnostic(
@@ -51,7 +51,7 @@ def _two_roles(rule: Formalized, name: str, first: str, second: Role) -> Diagnos
     )
 
 
-def role(rule: Formalized, name: str) -> Role | None:
+def role(rule: FormalizedRequirement, name: str) -> Role | None:
     """The role that is declared; that of its signals, where a proposition has none of its own."""
     variable = rule.glossary.get(name)
     if variable is not None and variable.role in CHOSEN:
@@ -69,7 +69,9 @@ def _common(declarations: Declarations, name: str) -> Role | None:
     return common if common in CHOSEN else None
 
 
-def _no_role(rule: Formalized, name: str, rules: Iterable[Formalized]) -> Diagnostic:
+def _no_role(
+    rule: FormalizedRequirement, name: str, rules: Iterable[FormalizedRequirement]
+) -> Diagnostic:
     """F354."""
     declared, table = rule.declarations, "variable"
     if declared is not None:
@@ -102,5 +104,5 @@ _SHOWN = 60
 """Characters of an assignment that a message shows."""
 
 
-def _answers(rule: Formalized) -> frozenset[str]:
+def _answers(rule: FormalizedRequirement) -> frozenset[str]:
     return frozenset(name.id for name in e.names(rule.sentence.response))

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import z3
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Term
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import BeyondError, Numbers, Tick
+from fretc.analysis.arena.alphabet import Numbers, Tick, UnsupportedError
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.memory import Memory
@@ -44,7 +44,7 @@ class Cells:
 
     def __init__(
         self,
-        rules: Sequence[Formalized],
+        rules: Sequence[FormalizedRequirement],
         roles: Roles,
         fresh: Numbers,
         favoured: Role,
@@ -70,7 +70,7 @@ class Cells:
             try:
                 chosen = choice(names, self._atoms, owners(names, self._atoms, roles, favoured))
                 group = Group(chosen, self._atoms, fresh, favoured, Limit(budget))
-            except BeyondError as error:
+            except UnsupportedError as error:
                 shown = f"`{names[0]}` and others" if len(names) > 1 else f"`{names[0]}`"
                 refused |= dict.fromkeys(names, f"{shown} {error}")
             else:

@@ -8,9 +8,9 @@ from fractions import Fraction
 
 import z3
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Before, NoTermError, Term, Terms, read_by
-from fretc.analysis.arena.alphabet import BeyondError, Tick
+from fretc.analysis.arena.alphabet import Tick, UnsupportedError
 from fretc.analysis.arithmetic.durations import Lasting, parted
 from fretc.analysis.arithmetic.readings import Reading, readings
 from fretc.analysis.arithmetic.steps import AtomOfTick, Moment, Steps, linked, tick, unknown
@@ -35,7 +35,7 @@ class Atom:
 class Atoms:
     """The atoms of some rules that are linear, by the names that formulas give them."""
 
-    def __init__(self, rules: Sequence[Formalized], *, of_moments: bool = False) -> None:
+    def __init__(self, rules: Sequence[FormalizedRequirement], *, of_moments: bool = False) -> None:
         """The atoms.
 
         Args:
@@ -112,7 +112,7 @@ class Atoms:
         try:
             parts, lasting = parted(name, reading)
             made = {each: self._moment(part) for each, part in parts.items()}
-        except (BeyondError, NoTermError) as error:
+        except (UnsupportedError, NoTermError) as error:
             self.refused[name] = f"`{name}` {error}"
             return
         moments |= made

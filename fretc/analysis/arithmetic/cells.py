@@ -15,7 +15,7 @@ from fractions import Fraction
 import z3
 
 from compiler.formalization.numbers.terms import Term, read_by
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arithmetic.projection import Limit, projected
 from fretc.analysis.arithmetic.projection import model as next_model
 
@@ -41,7 +41,7 @@ def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Patt
     Those of one variable are sorted out by themselves first: many bounds of it have few patterns.
 
     Raises:
-        BeyondError: there are too many, or it takes too long.
+        UnsupportedError: there are too many, or it takes too long.
     """
     alone: dict[frozenset[str], list[int]] = {}
     for number, formula in enumerate(formulas):
@@ -60,7 +60,7 @@ def patterns(formulas: Sequence[Term], domain: Term, limit: Limit) -> tuple[Patt
             values = dict(zip(order, (*known, *others), strict=True))
             found.append(tuple(values[number] for number in range(len(formulas))))
             if len(found) > MOST:
-                raise BeyondError(f"have more than {MOST} patterns")
+                raise UnsupportedError(f"have more than {MOST} patterns")
     return tuple(found)
 
 
@@ -109,7 +109,7 @@ def another(formulas: Sequence[Term], known: Sequence[Pattern], domain: Term, li
     """Whether the formulas can have truth values together that are not known.
 
     Raises:
-        BeyondError: it takes too long.
+        UnsupportedError: it takes too long.
     """
     if len(known) == 2 ** len(formulas):
         return False
@@ -136,7 +136,7 @@ def cells(
         limit: for the group.
 
     Raises:
-        BeyondError: there are too many, or it takes too long.
+        UnsupportedError: there are too many, or it takes too long.
     """
     of_inputs, of_outputs = domains
     free = [number for number, each in enumerate(formulas) if reads(each, outputs)]
@@ -176,7 +176,7 @@ def _seen(formulas: Sequence[Term], domain: Term, limit: Limit) -> Iterator[Patt
         yield signs
         count += 1
         if count > MOST:
-            raise BeyondError(f"have more than {MOST} cells")
+            raise UnsupportedError(f"have more than {MOST} cells")
         solver.add(z3.Not(z3.And(literals(names, signs))))
 
 

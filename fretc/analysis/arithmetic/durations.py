@@ -14,7 +14,7 @@ from itertools import product
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.memory import (
     Memory,
     constant,
@@ -64,22 +64,22 @@ def parted(name: str, reading: Reading) -> tuple[Mapping[str, Reading], Lasting 
     """A reading as readings of single ticks, and how they make it up; None: it is the only one.
 
     Raises:
-        BeyondError: a duration is more than a count of ticks.
+        UnsupportedError: a duration is more than a count of ticks.
     """
     spans = list(dict.fromkeys(_durations(reading.expression)))
     if not spans:
         return {name: reading}, None
     if reading.aggregate is not Aggregate.LAST or reading.on_unknown is not None:
-        raise BeyondError("looks for a duration between ticks, or where it is unknown")
+        raise UnsupportedError("looks for a duration between ticks, or where it is unknown")
     if len(spans) > _MOST:
-        raise BeyondError("has too many durations")
+        raise UnsupportedError("has too many durations")
     found: dict[str, Reading] = {}
     durations = []
     for span in spans:
         if reading.period is None or span.duration % reading.period or span.duration == 0:
-            raise BeyondError("has a duration that is no number of ticks")
+            raise UnsupportedError("has a duration that is no number of ticks")
         if any(_durations(span.arg)):
-            raise BeyondError("has a duration within another one")
+            raise UnsupportedError("has a duration within another one")
         text = printed(span.arg)
         made = Duration(f"{text} throughout", f"{text} at last", span.duration // reading.period)
         found[made.throughout] = replace(reading, expression=span.arg, aggregate=Aggregate.ALL)

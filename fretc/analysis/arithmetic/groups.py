@@ -10,7 +10,7 @@ import z3
 from compiler.formalization.numbers.terms import Term
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import BeyondError, Numbers, Tick
+from fretc.analysis.arena.alphabet import Numbers, Tick, UnsupportedError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.cells import (
@@ -73,7 +73,7 @@ class Group:
             limit: for sorting it out.
 
         Raises:
-            BeyondError: it has too many patterns, or takes too long.
+            UnsupportedError: it has too many patterns, or takes too long.
         """
         self._choice, self._atoms, self._fresh = choice, atoms, fresh
         found = _sorted_out(choice, limit)
@@ -277,7 +277,7 @@ def owners(names: Sequence[str], atoms: Atoms, roles: Roles, past: Role) -> Mapp
     """Who chooses each variable of a group: a signal without a role has that of its proposition.
 
     Raises:
-        BeyondError: a variable has two roles.
+        UnsupportedError: a variable has two roles.
     """
     found: dict[str, Role] = {}
     for name in names:
@@ -288,7 +288,7 @@ def owners(names: Sequence[str], atoms: Atoms, roles: Roles, past: Role) -> Mapp
             of = atoms.of(read)
             role = past if of in atoms.before else roles.get(of) or own
             if role is None or found.setdefault(read, role) is not role:
-                raise BeyondError(f"read `{of}`, which is not of one role")
+                raise UnsupportedError(f"read `{of}`, which is not of one role")
     return found
 
 
@@ -296,7 +296,7 @@ def choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> Ch
     """What a group is made of.
 
     Raises:
-        BeyondError: both players choose its numbers, and what cannot be told of both is asked.
+        UnsupportedError: both players choose its numbers, and what cannot be told of both is asked.
     """
     names = sorted(names, key=atoms.is_part, reverse=True)  # what users wrote names the bits
     formulas: list[Term] = []
@@ -316,7 +316,7 @@ def choice(names: Sequence[str], atoms: Atoms, owners: Mapping[str, Role]) -> Ch
     domains = {r: z3.And([atoms.domain(name) for name in theirs[r]]) for r in players}
     carried = _carried(names, of, atoms)
     if all(variables.values()) and (flags or carried):
-        raise BeyondError("compare numbers of both players, sample by sample")
+        raise UnsupportedError("compare numbers of both players, sample by sample")
     only = Role.OUTPUT if variables[Role.OUTPUT] else Role.INPUT
     domains[only] = z3.simplify(z3.And(domains[only], *given))
     terms = [*formulas, *domains.values(), *flags, *carried]
@@ -363,7 +363,7 @@ def _sorted_out(choice: Choice, limit: Limit) -> _Sorted:
     """The patterns of a group, and its cells where both players choose.
 
     Raises:
-        BeyondError: there are too many, or it takes too long.
+        UnsupportedError: there are too many, or it takes too long.
         OutOfTimeError: the time of the question is over.
     """
     if choice.text not in _SORTED:
@@ -371,11 +371,11 @@ def _sorted_out(choice: Choice, limit: Limit) -> _Sorted:
             _SORTED.clear()
         try:
             _SORTED[choice.text] = _found(choice, limit)
-        except BeyondError as error:
+        except UnsupportedError as error:
             _SORTED[choice.text] = str(error)
     found = _SORTED[choice.text]
     if isinstance(found, str):
-        raise BeyondError(found)
+        raise UnsupportedError(found)
     return found
 
 
@@ -390,7 +390,7 @@ def _found(choice: Choice, limit: Limit) -> _Sorted:
     if choice.carried:
         *formulas, links = choice.carried
         if another(formulas, known, z3.And(domain, links), limit):
-            raise BeyondError("read the same samples in part")
+            raise UnsupportedError("read the same samples in part")
     if not choice.flags:
         return _Sorted(known)
     every = patterns(choice.formulas, domain, limit)

@@ -19,7 +19,7 @@ from fractions import Fraction
 import z3
 
 from compiler.formalization.numbers.terms import Term
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget
 
 SECONDS = 10.0
@@ -38,13 +38,13 @@ class Limit:
         """What is left of it.
 
         Raises:
-            BeyondError: the time of the group is over.
+            UnsupportedError: the time of the group is over.
             OutOfTimeError: that of the question is.
         """
         self.budget.check()
         left = SECONDS - (time.process_time() - self.start)
         if left <= 0:
-            raise BeyondError(f"are not sorted out within {SECONDS:g} s of a processor")
+            raise UnsupportedError(f"are not sorted out within {SECONDS:g} s of a processor")
         return max(1, int(1000 * min(left, self.budget.left)))
 
 
@@ -52,7 +52,7 @@ def model(solver: z3.Solver, limit: Limit) -> z3.ModelRef | None:
     """What keeps the constraints; None: nothing does.
 
     Raises:
-        BeyondError: z3 cannot tell.
+        UnsupportedError: z3 cannot tell.
         OutOfTimeError: the time of the question was too short for it.
     """
     patience = limit.milliseconds
@@ -61,7 +61,7 @@ def model(solver: z3.Solver, limit: Limit) -> z3.ModelRef | None:
     if answer == z3.unknown:
         if patience < 1000 * SECONDS / 2:
             raise limit.budget.over
-        raise BeyondError("are more than z3 can sort out")
+        raise UnsupportedError("are more than z3 can sort out")
     return solver.model() if answer == z3.sat else None
 
 
@@ -69,7 +69,7 @@ def projected(formula: Term, variables: Sequence[Term], limit: Limit) -> Term:
     """Where some values of the variables keep the formula, without them.
 
     Raises:
-        BeyondError: it takes too long.
+        UnsupportedError: it takes too long.
     """
     solver = z3.Solver()
     solver.add(formula)
@@ -80,7 +80,7 @@ def projected(formula: Term, variables: Sequence[Term], limit: Limit) -> Term:
             part = z3.substitute(part, (variable, _between(variable, part, found)))
         part = z3.simplify(part)
         if not z3.is_true(found.eval(part, model_completion=True)):
-            raise BeyondError("have regions of inputs that are not found")
+            raise UnsupportedError("have regions of inputs that are not found")
         parts.append(part)
         solver.add(z3.Not(part))
     return z3.simplify(z3.Or(parts))

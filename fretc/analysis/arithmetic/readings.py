@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons
 from compiler.formalization.resolution import candidates
 from fretish import expressions as e
@@ -33,7 +33,7 @@ class Reading:
         return self.aggregate is Aggregate.LAST and self.on_unknown is None and not lasts
 
 
-def readings(rules: Sequence[Formalized]) -> Iterator[tuple[str, Reading]]:
+def readings(rules: Sequence[FormalizedRequirement]) -> Iterator[tuple[str, Reading]]:
     """Of each atom that compares numbers or words, by the name that formulas give it."""
     for rule in rules:
         compared, declared = comparisons(rule), rule.declarations

@@ -8,7 +8,7 @@ from pathlib import PurePosixPath
 from typing import assert_never
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
 from fretc.analysis.controllers.circuit import Circuit
 from fretc.analysis.controllers.moves import Mealy, Move, Term

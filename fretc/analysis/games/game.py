@@ -19,7 +19,7 @@ from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.runs import Runs
-from fretc.analysis.games.squaring import Leaps, Relation, identity
+from fretc.analysis.games.squaring import IterativeSquaring, Relation, identity
 
 Letter = Mapping[int, bool]
 """A value of each input and output."""
@@ -171,7 +171,7 @@ class _Search:
         self._game, self._budget, self._keeps = game, budget, traps
         self._initial = game.transition.initial
         self._traps: list[Trap] = []
-        self._leaps = Leaps([*game.counters, *game.assumptions])
+        self._leaps = IterativeSquaring([*game.counters, *game.assumptions])
 
     def solution(self, duties: Sequence[Function], promises: Sequence[Function]) -> Solution:
         states = self._safe()

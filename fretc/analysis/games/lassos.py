@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import z3
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Term, read_by
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
@@ -54,7 +54,7 @@ class Impossible:
 
 
 def lasso(
-    rules: Sequence[Formalized], roles: Roles, budget: Budget, *, as_fret: bool = False
+    rules: Sequence[FormalizedRequirement], roles: Roles, budget: Budget, *, as_fret: bool = False
 ) -> Lasso | Impossible | None:
     """A run that keeps all requirements for ever, or that there is none; None: not known.
 

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.game import Letter
-from fretc.analysis.games.plays import Play, Run
+from fretc.analysis.games.game_traces import GameTrace, Run
 
 ROUNDS = 3
 """How often a loop is read: a demand that stays open that long stays open."""
@@ -51,7 +51,11 @@ def remembering(alphabet: Alphabet, runs: Iterable[Run]) -> Iterator[Run]:
 
 
 def broken(
-    rules: Sequence[Formalized], alphabet: Alphabet, play: Play, *, as_fret: bool = False
+    rules: Sequence[FormalizedRequirement],
+    alphabet: Alphabet,
+    play: GameTrace,
+    *,
+    as_fret: bool = False,
 ) -> tuple[str, ...]:
     """The requirements that the play breaks at its last tick, or never meets in its loop.
 
@@ -68,7 +72,7 @@ def broken(
 
 
 def _is_broken(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     alphabet: Alphabet,
     runs: Sequence[Run],
     loop: int | None,
@@ -85,7 +89,7 @@ def _is_broken(
 
 
 def kept(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     alphabet: Alphabet,
     letters: Sequence[Letter],
     tail: int,
@@ -124,7 +128,7 @@ def _watched(
 
 
 def first_breaches(
-    rules: Sequence[Formalized], known: Mapping[str, int], ticks: int
+    rules: Sequence[FormalizedRequirement], known: Mapping[str, int], ticks: int
 ) -> dict[str, int | None]:
     """For each rule the tick at which it is broken; None: it is not.
 

@@ -14,7 +14,7 @@ from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.transition import Transition
-from fretc.analysis.games.squaring import Leaps, Relation
+from fretc.analysis.games.squaring import IterativeSquaring, Relation
 
 
 class Runs:
@@ -66,7 +66,7 @@ class Runs:
         Args:
             within: states that such a run never leaves; None: all.
         """
-        states, leaps = bdd.true() if within is None else within, Leaps(self._counters)
+        states, leaps = bdd.true() if within is None else within, IterativeSquaring(self._counters)
         while True:
             self._budget.check()
             if leaps.is_due():
@@ -81,7 +81,7 @@ class Runs:
 
     def _leading(self, target: Function, through: Function) -> Function:
         """The states from which a run comes to a target, and nowhere but `through` before it."""
-        found, leaps = bdd.false(), Leaps(self._counters)
+        found, leaps = bdd.false(), IterativeSquaring(self._counters)
         while True:
             self._budget.check()
             if leaps.is_due():
@@ -110,7 +110,7 @@ class Runs:
         """
         initial, moved = self.transition.initial, self.transition.moved
         found = bdd.some_of_both(self.safe & ticks, moved(lasting), self._letters)
-        leaps = Leaps(self._counters)
+        leaps = IterativeSquaring(self._counters)
         while True:
             self._budget.check()
             if leaps.is_due():

@@ -33,7 +33,7 @@ _PATIENCE = 16
 """Ticks that are looked at one by one, before the first leap over many."""
 
 
-class Leaps:
+class IterativeSquaring:
     """When many ticks are looked at in one, which takes as long as some hundred single ones.
 
     Each leap is a patience later than the one before it: a fixpoint that is near is not held up,

@@ -17,7 +17,7 @@ from fretc.audit.one_log import examined, signals_of
 from fretc.audit.phases.advice import Runs, proposal
 from fretc.audit.phases.by_shift import Phases, phases
 from fretc.audit.plan import Plan, monitored_requirements
-from fretc.audit.pool import Killed, each, was_killed
+from fretc.audit.pool import WorkerDied, each, was_killed
 from fretc.logs.reader import read
 from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
@@ -211,7 +211,7 @@ def coverage(
     logs = tuple(dict.fromkeys(logs))
     of_logs = {
         place: LogCoverage(logs[place], 0, None, (was_killed(logs[place], str(result)),))
-        if isinstance(result, Killed)
+        if isinstance(result, WorkerDied)
         else result
         for place, result in each(look, logs, jobs)
     }

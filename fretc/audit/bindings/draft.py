@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import gcd
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
 from compiler.formalization import binding_agreement
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import Project
 from fretc.audit.bindings.quantities import QUANTITIES, Quantity
 from fretc.logs.messages.leaves import Kind, Leaves
@@ -189,7 +189,7 @@ def missing_propositions(project: Project) -> tuple[MissingProposition, ...]:
     """
     declared = project.declarations
     defined = declared.propositions if declared and not declared.mistakes else {}
-    users: dict[str, list[Formalized]] = {}
+    users: dict[str, list[FormalizedRequirement]] = {}
     for rule in project.rules:
         if rule.requirement.status == "retired":
             continue
@@ -211,7 +211,9 @@ def missing_signals(project: Project) -> tuple[MissingSignal, ...]:
     return tuple(MissingSignal(name, tuple(ids)) for name, ids in users.items())
 
 
-def _unread(rule: Formalized, name: str, declared: Declarations | None) -> tuple[str, ...]:
+def _unread(
+    rule: FormalizedRequirement, name: str, declared: Declarations | None
+) -> tuple[str, ...]:
     """The signals that one of its comparisons lacks; none where it is bound itself."""
     if declared is not None and name in declared.propositions:
         return ()
@@ -224,7 +226,7 @@ def durations(project: Project) -> tuple[int, ...]:
     return tuple(d.amount * NANOSECONDS[d.unit] for d in found if d and d.unit in NANOSECONDS)
 
 
-def _missing_proposition(name: str, rules: Sequence[Formalized]) -> MissingProposition:
+def _missing_proposition(name: str, rules: Sequence[FormalizedRequirement]) -> MissingProposition:
     roles = {_role(name, rule.sentence) for rule in rules}
     role = roles.pop() if len(roles) == 1 else Role.INTERNAL
     aggregate = "any" if role is Role.INPUT else "last"

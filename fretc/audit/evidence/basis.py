@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor
 from fretish.bindings.canonical import bound, clock, digest, parameter
 from fretish.bindings.declarations import Declarations
@@ -39,7 +39,7 @@ Basis = Mapping[str, str]
 
 def basis(
     requirement: Requirement,
-    rule: Formalized | None,
+    rule: FormalizedRequirement | None,
     declarations: Declarations | None,
     topics: Iterable[str],
     monitor_sha256: str | None = None,
@@ -64,12 +64,12 @@ def basis(
     }
 
 
-def _of_monitor(rule: Formalized | None) -> str:
+def _of_monitor(rule: FormalizedRequirement | None) -> str:
     """Of an empty text where there is no rule, or its monitor would be too deep for Python."""
     return sha256(monitor.text(rule) if rule and monitor.is_readable(rule) else "")
 
 
-def of_bindings(rule: Formalized | None, declarations: Declarations | None) -> str:
+def of_bindings(rule: FormalizedRequirement | None, declarations: Declarations | None) -> str:
     """What a verdict would rest on of the bindings; empty where there is none."""
     return digest(bound(declarations, rule.watched)) if declarations and rule else ""
 

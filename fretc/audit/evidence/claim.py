@@ -11,7 +11,7 @@ from fretc.audit.measurements.violations import Demand
 
 
 @dataclass(frozen=True, slots=True)
-class Claim:
+class AuditedRequirement:
     """A requirement, and the text of its monitor."""
 
     id: str

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import cast
 
 from fretc.audit.evidence.briefs import Brief
-from fretc.audit.evidence.claim import Claim
+from fretc.audit.evidence.claim import AuditedRequirement
 from fretc.audit.evidence.probabilities import (
     AVERAGE,
     AnswerWord,
@@ -25,7 +25,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 
 def estimates(
-    claims: Sequence[Claim], results: Sequence[Brief], confidence: float
+    claims: Sequence[AuditedRequirement], results: Sequence[Brief], confidence: float
 ) -> tuple[Estimated, ...]:
     """One for each claim with a probability.
 
@@ -56,7 +56,7 @@ def warnings(estimates: Sequence[Estimated]) -> Iterator[Diagnostic]:
             )
 
 
-def _estimated(claim: Claim, results: Sequence[Brief], level: float) -> Estimated:
+def _estimated(claim: AuditedRequirement, results: Sequence[Brief], level: float) -> Estimated:
     assert claim.chance is not None
     op, bound = claim.chance.op, Fraction(claim.chance.bound)
     distinct = _distinct(results)

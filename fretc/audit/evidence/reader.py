@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from compiler.files.checked_json import MisshapenError, parsed
+from compiler.files.checked_json import SchemaError, parsed
 from compiler.files.records import UnsetType, decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
@@ -37,7 +37,7 @@ VERDICTS = (
 
 
 @dataclass(frozen=True)
-class Evidence(Headed):
+class EvidenceFile(Headed):
     """A file of evidence, with its name and its SHA-256: a source of evidence, all in memory."""
 
     file: str
@@ -103,7 +103,7 @@ class Evidence(Headed):
         return places_of
 
 
-def read(path: str) -> Evidence | Diagnostic:
+def read(path: str) -> EvidenceFile | Diagnostic:
     """Read and check an evidence file; a note, not an error, where there is none yet."""
     source = read_text(path)
     if isinstance(source, Diagnostic):
@@ -111,7 +111,7 @@ def read(path: str) -> Evidence | Diagnostic:
     return _parsed(source)
 
 
-def _parsed(source: Source) -> Evidence | Diagnostic:
+def _parsed(source: Source) -> EvidenceFile | Diagnostic:
     path = source.name
     try:
         file = parsed(source.text)
@@ -120,8 +120,8 @@ def _parsed(source: Source) -> Evidence | Diagnostic:
     except (ValueError, RecursionError) as error:
         return _wrong(path, f"is not JSON that fretc can read: {_why(error)}")
     try:
-        return Evidence(source.name, sha256(source.text), decoded(file.value, Document))
-    except MisshapenError as error:
+        return EvidenceFile(source.name, sha256(source.text), decoded(file.value, Document))
+    except SchemaError as error:
         return _wrong(path, f"is not evidence of fretc: {error}")
 
 

@@ -51,7 +51,7 @@ U = TypeVar("U")
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
+class RunResult:
     """One run, one requirement."""
 
     run: str
@@ -139,7 +139,7 @@ def text(document: Document) -> str:
     return f"{to_json(plain(document))}\n"
 
 
-def as_record(evidence: Evidence) -> Result:
+def as_record(evidence: RunResult) -> Result:
     """The result of one run and requirement."""
     outcome, latencies = evidence.outcome, evidence.latencies
     return Result(

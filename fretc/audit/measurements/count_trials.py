@@ -12,15 +12,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from compiler.formalization import predicates
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.future import demanded_at, end_marker
 from compiler.formalization.obligation import TRAITS, Demand, Obligation, Trait, obligation
-from compiler.formalization.past import staged
+from compiler.formalization.past import scope_formulas
 from compiler.logic.evaluation import evaluate_unknown
 from compiler.logic.formula import FALSE, Formula
 from fretc.audit.measurements.trials import Trials
 from fretish.expressions import ComparisonOperator
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 from monitors.kernel import Column
 
 
@@ -39,8 +39,8 @@ class Chance:
         return f"{self.op} {self.bound}"
 
 
-@deep
-def chance(rule: Formalized) -> Chance | None:
+@with_recursion_limit
+def chance(rule: FormalizedRequirement) -> Chance | None:
     """None where the sentence gives no probability."""
     odds = rule.sentence.probability
     if odds is None:
@@ -50,7 +50,7 @@ def chance(rule: Formalized) -> Chance | None:
     )
 
 
-@deep
+@with_recursion_limit
 def trials(obligation: Obligation, columns: Mapping[str, Column], ticks: int) -> Trials:
     """What each trigger of one run came to.
 
@@ -63,7 +63,7 @@ def trials(obligation: Obligation, columns: Mapping[str, Column], ticks: int) ->
     """
     if not ticks:
         return Trials(0, 0, 0)
-    triggers = evaluate_unknown(staged(obligation).trigger, columns, ticks)
+    triggers = evaluate_unknown(scope_formulas(obligation).trigger, columns, ticks)
     # A deadline that no trigger of the run can reach is as far as any other one.
     demand = replace(obligation.demand, ticks=min(obligation.demand.ticks, ticks))
     met = _met(demand, end_marker(obligation.scope, obligation.mode))

@@ -22,8 +22,8 @@ from typing import Any
 from mcap.well_known import MessageEncoding, SchemaEncoding
 from mcap.writer import Writer
 
-from compiler.files.edition import __version__
-from compiler.formalization.formalized import Formalized
+from compiler.files.build_id import __version__
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from fretc.audit.evidence.basis import BINDINGS, CLOCK, MONITOR, PARAMS, SENTENCE, TOPICS
 from fretc.audit.evidence.schema import Result
@@ -70,7 +70,7 @@ class _Event:
 
 
 def sidecars(
-    results: Sequence[Result], rules: Sequence[Formalized], folder: Path
+    results: Sequence[Result], rules: Sequence[FormalizedRequirement], folder: Path
 ) -> dict[Path, bytes]:
     """A file for each run that could be read; the same results give the same bytes.
 
@@ -87,7 +87,7 @@ def sidecars(
     return {folder / names[run]: sidecar(of_run, rules) for run, of_run in runs.items()}
 
 
-def sidecar(results: Sequence[Result], rules: Sequence[Formalized]) -> bytes:
+def sidecar(results: Sequence[Result], rules: Sequence[FormalizedRequirement]) -> bytes:
     """The log of one run: what happened, in order of time.
 
     Args:
@@ -122,7 +122,7 @@ def state_topic(id: str) -> str:
     return f"{topic}/state" if topic == VERDICTS else topic
 
 
-def _events(result: Result, rules: Mapping[str, Formalized]) -> Iterator[_Event]:
+def _events(result: Result, rules: Mapping[str, FormalizedRequirement]) -> Iterator[_Event]:
     """The events of one requirement; those of one time stand in the order of cause and effect."""
     id = result.requirement
     place = rules[id].requirement.wording

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from compiler.files.templating import to_json
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.schema import Result
 from fretc.audit.evidence.verdicts import severity
 from fretc.audit.outputs.annotations import VERDICTS, state_topic
@@ -29,7 +29,7 @@ _MOST_PLOTTED = 8
 
 
 def layout_file(
-    results: Sequence[Result], rules: Sequence[Formalized], folder: Path
+    results: Sequence[Result], rules: Sequence[FormalizedRequirement], folder: Path
 ) -> dict[Path, bytes]:
     """The file; nothing where no run could be read.
 
@@ -48,7 +48,7 @@ def layout_file(
     return {folder / LAYOUT: f"{to_json(layout(chosen))}\n".encode()}
 
 
-def layout(rules: Sequence[Formalized]) -> dict[str, Any]:
+def layout(rules: Sequence[FormalizedRequirement]) -> dict[str, Any]:
     """The layout for some requirements, in their order."""
     panels: dict[str, Any] = {
         "StateTransitions!all": {"paths": list(map(_states, rules)), "isSynced": True},
@@ -85,14 +85,14 @@ def _split(direction: str, first: Any, second: Any, share: int) -> dict[str, Any
     return {"direction": direction, "first": first, "second": second, "splitPercentage": share}
 
 
-def _states(rule: Formalized) -> dict[str, Any]:
+def _states(rule: FormalizedRequirement) -> dict[str, Any]:
     """The line of states of a requirement."""
     title = f"{rule.requirement.title} ({rule.id})" if rule.requirement.title else rule.id
     path = f"{_topic(state_topic(rule.id))}.state"
     return {"value": path, "label": title, "timestampMethod": "receiveTime"}
 
 
-def _signals(rule: Formalized) -> list[Signal]:
+def _signals(rule: FormalizedRequirement) -> list[Signal]:
     """The numbers that the requirement reads: no words, and no arrays."""
     declared = rule.declarations
     if declared is None:

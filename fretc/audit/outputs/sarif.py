@@ -17,10 +17,10 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from compiler.files.edition import PACKAGE, __version__
+from compiler.files.build_id import PACKAGE, __version__
 from compiler.files.settings import repository
 from compiler.files.templating import to_json
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from fretc.audit.evidence import verdicts
 from fretc.audit.evidence.probabilities import Estimated
@@ -87,7 +87,7 @@ class AllRuns:
 
 def sarif(
     results: Sequence[OneRun],
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     diagnostics: Sequence[Diagnostic] = (),
     estimates: Sequence[AllRuns] = (),
     failed: Sequence[Requirement] = (),
@@ -137,7 +137,9 @@ class _Places:
 
 
 def _driver(
-    used: Sequence[Requirement], rules: Mapping[str, Formalized], diagnostics: Sequence[Diagnostic]
+    used: Sequence[Requirement],
+    rules: Mapping[str, FormalizedRequirement],
+    diagnostics: Sequence[Diagnostic],
 ) -> dict[str, Any]:
     codes = {diagnostic.code.number: diagnostic.code for diagnostic in diagnostics}
     return {
@@ -152,7 +154,7 @@ def _driver(
     }
 
 
-def _rule(requirement: Requirement, rule: Formalized | None) -> dict[str, Any]:
+def _rule(requirement: Requirement, rule: FormalizedRequirement | None) -> dict[str, Any]:
     """A requirement; without a rule nothing says what it means."""
     sentence = wording(requirement)
     words = meaning(rule.written, rule.ticks, rule.clock) if rule else ""

@@ -19,7 +19,7 @@ from fretc.logs.storage.listings import changed, is_store
 from fretc.logs.storage.log_names import STDIN, is_url, name_of
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 from fretish.units import nanoseconds
 
 _FIRST_DATE = 10**17
@@ -81,7 +81,7 @@ def _start_of_file(log: str) -> int | None:
         if isinstance(source, Diagnostic) or source.stream.read(len(MAGIC)) != MAGIC:
             return None
         place = Source(name_of(log), "").span()
-        found = within(source.size, place, lambda: summary(source.stream, source.size))
+        found = with_budget(source.size, place, lambda: summary(source.stream, source.size))
         if found is None or isinstance(found, Diagnostic) or found.statistics is None:
             return None
         return int(found.statistics.message_start_time)

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from compiler.files.checked_json import plain as parsed
 from compiler.files.records import decoded
 from fretc.audit.evidence.briefs import brief, judgement_of
@@ -49,7 +49,7 @@ def check(tables: Tables) -> None:
         tables: of a part, with at least `COLUMNS`.
 
     Raises:
-        MisshapenError: they contradict each other.
+        SchemaError: they contradict each other.
     """
     main, broken = tables[RESULTS], tables[VIOLATIONS]
     _check_names(main, tables[EVENTS], "events")
@@ -59,19 +59,19 @@ def check(tables: Tables) -> None:
     run_rows = _rows(main["run_row"], runs.num_rows)
     results = np.bincount(run_rows, minlength=runs.num_rows)
     if results.tolist() != runs["results"].to_pylist():
-        raise MisshapenError("`results` does not have the rows that `runs` says")
+        raise SchemaError("`results` does not have the rows that `runs` says")
     if not _same(main["run"], runs["run"].take(run_rows)):
-        raise MisshapenError("`results` names other runs than `runs`")
+        raise SchemaError("`results` names other runs than `runs`")
     counts = np.bincount(rows, minlength=main.num_rows).tolist()
     known = zip(*_lists(main, "verdict", "judgement", "violations"), counts, strict=True)
     if [*known] != [*_expected(main, broken, tables[EVENTS], counts)]:
-        raise MisshapenError("`results` does not count what is in the other tables")
+        raise SchemaError("`results` does not count what is in the other tables")
 
 
 def _check_names(main: Taken, other: Taken, name: str) -> None:
     for column in _KEY:
         if not _same(main[column], other[column]):
-            raise MisshapenError(f"`{column}` of `{name}` is not that of `results`")
+            raise SchemaError(f"`{column}` of `{name}` is not that of `results`")
 
 
 def _same(column: Any, other: Any) -> bool:
@@ -83,9 +83,9 @@ def _rows(column: Any, count: int) -> Any:
     """Numbers of rows of a table that has so many."""
     rows = column.to_numpy()
     if column.null_count or (len(rows) and not 0 <= rows[0] <= rows[-1] < count):
-        raise MisshapenError("a table names a row that another one does not have")
+        raise SchemaError("a table names a row that another one does not have")
     if (np.diff(rows) < 0).any():
-        raise MisshapenError("the rows of a table are in another order than those of `results`")
+        raise SchemaError("the rows of a table are in another order than those of `results`")
     return rows
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from fretc.audit.evidence import reader as files
 from fretc.audit.evidence.briefs import EvidenceSource
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.reader import EvidenceFile
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
 
 
@@ -19,7 +19,7 @@ class StoreError(Exception):
         self.diagnostic = diagnostic
 
 
-def read(path: str) -> Evidence | Diagnostic:
+def read(path: str) -> EvidenceFile | Diagnostic:
     """Read and check evidence; a note, not an error, where there is none yet.
 
     Args:
@@ -67,7 +67,7 @@ def required_source(path: str, *, in_full: bool = False) -> EvidenceSource | Dia
     return replace(found, severity=Severity.ERROR) if isinstance(found, Diagnostic) else found
 
 
-def required(path: str) -> Evidence | Diagnostic:
+def required(path: str) -> EvidenceFile | Diagnostic:
     """The same; an error where there is none."""
     evidence = read(path)
     if isinstance(evidence, Diagnostic):

@@ -15,7 +15,7 @@ import numpy as np
 import pyarrow as pa
 from pyarrow.parquet import ParquetFile, write_table
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from fretc.audit.store.manifest import Table
 
 LARGEST = 2**30
@@ -39,15 +39,15 @@ def content(path: Path, file: Table) -> bytes:
     """The bytes of a table.
 
     Raises:
-        MisshapenError: they are not those that the manifest names.
+        SchemaError: they are not those that the manifest names.
         OSError: they cannot be read.
     """
     if file.size > LARGEST:
-        raise MisshapenError(f"`{path}` would be larger than {LARGEST // 2**20} MiB")
+        raise SchemaError(f"`{path}` would be larger than {LARGEST // 2**20} MiB")
     with open(_opened(path), "rb") as stream:
         data = stream.read(file.size + 1)
     if len(data) != file.size or hashlib.sha256(data).hexdigest() != file.sha256:
-        raise MisshapenError(f"`{path}` is not the file that the manifest names")
+        raise SchemaError(f"`{path}` is not the file that the manifest names")
     return data
 
 
@@ -71,7 +71,7 @@ def decoded(
     """A table, or some of its columns.
 
     Raises:
-        MisshapenError: it is none of this kind.
+        SchemaError: it is none of this kind.
     """
     wanted = types.names if columns is None else [*columns]
     with _parquet(data, file, types) as parquet:
@@ -99,14 +99,14 @@ def _parquet(data: bytes, file: Table, types: pa.Schema) -> Iterator[ParquetFile
             _check(parquet, file, types)
             yield parquet
     except (pa.ArrowException, OSError) as error:
-        raise MisshapenError(f"a table is damaged: {str(error).splitlines()[0]}") from None
+        raise SchemaError(f"a table is damaged: {str(error).splitlines()[0]}") from None
 
 
 @dataclass(frozen=True, slots=True)
 class Rows:
     """A table that stays encoded: what is asked for is decoded, a group of rows after the other.
 
-    The methods raise `MisshapenError` where it is none of its kind.
+    The methods raise `SchemaError` where it is none of its kind.
     """
 
     data: bytes
@@ -155,14 +155,14 @@ def _spans(parquet: ParquetFile) -> Iterator[tuple[int, int, int]]:
 def _check(parquet: ParquetFile, file: Table, types: pa.Schema) -> None:
     about = parquet.metadata
     if about.num_rows != file.rows:
-        raise MisshapenError("a table does not have as many rows as the manifest says")
+        raise SchemaError("a table does not have as many rows as the manifest says")
     there = parquet.schema_arrow
     known = [each for each in types if each.name in there.names or each.name not in LATER]
     if not there.equals(pa.schema(known)):
-        raise MisshapenError("a table does not have the columns of this version of fretc")
+        raise SchemaError("a table does not have the columns of this version of fretc")
     groups = [about.row_group(number) for number in range(about.num_row_groups)]
     chunks = [group.column(number) for group in groups for number in range(group.num_columns)]
     if sum(group.total_byte_size for group in groups) > LARGEST or any(
         chunk.num_values > MOST_VALUES for chunk in chunks
     ):
-        raise MisshapenError("a table is larger in memory than any that fretc writes")
+        raise SchemaError("a table is larger in memory than any that fretc writes")

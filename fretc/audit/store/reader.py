@@ -15,13 +15,13 @@ from typing import Any, TypeVar
 
 import pyarrow as pa
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from compiler.files.checked_json import plain as parsed
 from compiler.files.records import UNSET, UnsetType, decoded
 from compiler.files.text_files import read as read_text
 from compiler.files.text_files import sha256
 from fretc.audit.evidence.briefs import Brief, Headed, RunFacts, brief
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.schema import SCHEMA as EVIDENCE
 from fretc.audit.evidence.schema import (
     Document,
@@ -59,7 +59,7 @@ def opened(path: str, name: str = FILE) -> Store | Diagnostic:
         return _wrong(path, "has no manifest: " + _BEGUN if is_begun else "has no manifest")
     try:
         found = decoded(parsed(source.text), Manifest)
-    except MisshapenError as error:
+    except SchemaError as error:
         return _wrong(path, f"has a manifest that is none of fretc: {error}")
     store = Store(str(Path(path)), sha256(source.text), found)  # signatures stand beside it
     try:
@@ -74,7 +74,7 @@ def manifest(folder: Path, name: str) -> Manifest | None:
     source = read_text(str(folder / name))
     try:
         return None if isinstance(source, Diagnostic) else decoded(parsed(source.text), Manifest)
-    except MisshapenError:
+    except SchemaError:
         return None
 
 
@@ -130,8 +130,8 @@ class Store(Headed):
                 counted = of_part[RESULTS].take(pa.array(some, pa.int64()))
                 found = tables.results(of_part, some)
                 if tables.briefs(counted) != [*map(brief, found)]:
-                    raise MisshapenError("`results` does not count what is in the other tables")
-            except MisshapenError as error:
+                    raise SchemaError("`results` does not count what is in the other tables")
+            except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
             yield from zip((start + row for row in some), found, strict=True)
 
@@ -146,7 +146,7 @@ class Store(Headed):
         for at, value in self._nested(requirements, "thresholds"):
             try:
                 yield at, decoded(value, list[Threshold])
-            except MisshapenError as error:
+            except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
 
     def situations(
@@ -156,7 +156,7 @@ class Store(Headed):
         for at, value in self._nested(requirements, "situations"):
             try:
                 yield at, UNSET if value is None else decoded(value, Situations)
-            except MisshapenError as error:
+            except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
 
     def _nested(self, requirements: Collection[str], column: str) -> Iterator[tuple[int, Any]]:
@@ -167,7 +167,7 @@ class Store(Headed):
             }
             try:
                 found = tables.nested(some, column, requirements)
-            except MisshapenError as error:
+            except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
             yield from ((start + row, value) for row, value in found)
 
@@ -181,7 +181,7 @@ class Store(Headed):
             }
             try:
                 yield from tables.tallies(some)
-            except (MisshapenError, IndexError) as error:
+            except (SchemaError, IndexError) as error:
                 raise self._error(f"cannot be read: {error}") from None
 
     def whole(self, name: TableName) -> pa.Table:
@@ -204,7 +204,7 @@ class Store(Headed):
             some = {name: self._table(part, name, agreement.COLUMNS[name]) for name in TABLES}
             try:
                 agreement.check(some)
-            except MisshapenError as error:
+            except SchemaError as error:
                 raise self._error(f"cannot be read: {error}") from None
 
     def check_tables(self) -> None:
@@ -237,7 +237,7 @@ class Store(Headed):
         try:
             data = self._content(REGISTER, file)
             return entries(files.decoded(data, file, types()))
-        except MisshapenError as error:
+        except SchemaError as error:
             raise self._error(f"cannot be read: {error}") from None
 
     def _parts(self) -> Iterator[tuple[int, Part]]:
@@ -252,14 +252,14 @@ class Store(Headed):
         try:
             for some in self._rows(part, name).groups():
                 yield from read(some)
-        except MisshapenError as error:
+        except SchemaError as error:
             raise self._error(f"cannot be read: {error}") from None
 
     def _table(self, part: Part, name: TableName, columns: Sequence[str] | None = None) -> pa.Table:
         data = self._content(name, part.tables[name])
         try:
             return files.decoded(data, part.tables[name], tables.schema(name), columns)
-        except MisshapenError as error:
+        except SchemaError as error:
             raise self._error(f"cannot be read: {error}") from None
 
     def _rows(self, part: Part, name: TableName) -> files.Rows:
@@ -270,7 +270,7 @@ class Store(Headed):
         path = Path(self.file, place(name, file))
         try:
             return files.content(path, file)
-        except MisshapenError as error:
+        except SchemaError as error:
             raise self._error(f"does not fit its manifest: {error}") from None
         except OSError as error:
             why = error.strerror or error
@@ -280,7 +280,7 @@ class Store(Headed):
         return StoreError(_wrong(self.file, what))
 
 
-def evidence(store: Store) -> Evidence:
+def evidence(store: Store) -> EvidenceFile:
     """All of a store in memory.
 
     Raises:
@@ -297,7 +297,7 @@ def evidence(store: Store) -> Evidence:
         probabilities=manifest.probabilities,
         selection=manifest.selection,
     )
-    return Evidence(store.file, store.sha256, document)
+    return EvidenceFile(store.file, store.sha256, document)
 
 
 def _wrong(path: str, what: str) -> Diagnostic:

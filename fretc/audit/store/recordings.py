@@ -21,7 +21,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from compiler.files.edition import edition
+from compiler.files.build_id import build_id
 from compiler.files.text_files import Stamp, file_sha256, sha256, stamp, write
 from fretc.logs.signals.integrity import Checked, Integrity
 from fretc.logs.signals.samples import Late, Recording, Samples, Topic
@@ -46,7 +46,7 @@ KnownBy = Literal["read", "stamp", "sha256"]
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class SampleCache:
     """The folder in which an audit keeps the samples of its logs."""
 
     folder: Path
@@ -74,7 +74,7 @@ class Kept:
             return None
         about, arrays = content
         of_now = _reading(declarations, wanted, integrity)
-        if about["reading"] != of_now or about["edition"] != edition():
+        if about["reading"] != of_now or about["edition"] != build_id():
             return None
         by = _unchanged(log, about, rehash=self.rehash)
         return by and (_recording(about, arrays, declarations), by)
@@ -99,7 +99,7 @@ class Kept:
             return
         about = {
             "schema": SCHEMA,
-            "edition": edition(),
+            "edition": build_id(),
             "reading": _reading(declarations, wanted, integrity),
             "log": os.path.realpath(log),
             "stamp": astuple(before),

@@ -17,7 +17,7 @@ from typing import Annotated, Any
 
 import pyarrow as pa
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from compiler.files.records import Record, Whole, about, decoded
 from compiler.files.text_files import Stamp, file_sha256, stamp
 from compiler.files.text_files import read as read_text
@@ -96,7 +96,7 @@ def entries(found: pa.Table) -> list[Entry]:
     """The entries again.
 
     Raises:
-        MisshapenError: they are none.
+        SchemaError: they are none.
     """
     fields = fields_of(Entry)
     arrays = [pa.concat_arrays(found[each.name].chunks) for each in fields] if len(found) else []
@@ -180,7 +180,7 @@ def diagnostic(text: str, bindings: Source) -> Diagnostic:
     """The diagnostic again.
 
     Raises:
-        MisshapenError: it is none.
+        SchemaError: it is none.
     """
     try:
         plain = json.loads(text)
@@ -193,7 +193,7 @@ def diagnostic(text: str, bindings: Source) -> Diagnostic:
             subject=plain["subject"],
         )
     except (ValueError, TypeError, LookupError) as error:
-        raise MisshapenError(f"a diagnostic cannot be read: {error}") from None
+        raise SchemaError(f"a diagnostic cannot be read: {error}") from None
 
 
 def _place(at: Mapping[str, Any], bindings: Source) -> Span:

@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from compiler.files.checked_json import plain as parsed
 from compiler.files.records import UNSET, decoded, plain, replace
 from compiler.files.templating import to_json
@@ -269,18 +269,18 @@ def results(tables: Source, rows: Sequence[int] | None = None) -> list[Result]:
         rows: in rising order.
 
     Raises:
-        MisshapenError: tables do not fit together, or hold what no evidence does.
+        SchemaError: tables do not fit together, or hold what no evidence does.
     """
     try:
         return _results(tables, rows)
     except InexactError as error:
-        raise MisshapenError(f"{error}") from None
+        raise SchemaError(f"{error}") from None
 
 
 def _results(tables: Source, rows: Sequence[int] | None) -> list[Result]:
     main = tables[RESULTS]
     if main.num_rows != tables[EVENTS].num_rows:
-        raise MisshapenError("`events` does not have the rows of `results`")
+        raise SchemaError("`events` does not have the rows of `results`")
     rows = range(main.num_rows) if rows is None else rows
     texts = _taken(main[EXACT], rows).to_pylist()
     exact = {n: text for n, text in zip(rows, texts, strict=True) if text is not None}
@@ -360,7 +360,7 @@ def _of_runs(
     """
     known = sorted({row for row in run_rows if row is not None and 0 <= row < table.num_rows})
     if len(known) != len({*run_rows}):
-        raise MisshapenError("`results` names a row that `runs` does not have")
+        raise SchemaError("`results` names a row that `runs` does not have")
     some = _taken(table, known)
     parts = [*zip(_objects(some, _HEALTH), _objects(some, _OF_RUN), strict=True)]
     for row, (_, more) in zip(known, parts, strict=True):
@@ -399,10 +399,10 @@ def _chosen(table: Taken, key: str, rows: Sequence[int], count: int) -> list[int
     """The rows that belong to these of another table, which has so many."""
     column = table[key]
     if column.null_count:
-        raise MisshapenError(f"a `{key}` is missing")
+        raise SchemaError(f"a `{key}` is missing")
     keys = column.to_numpy()
     if len(keys) and (keys[0] < 0 or keys[-1] >= count or (np.diff(keys) < 0).any()):
-        raise MisshapenError(f"`{key}` does not rise within its table")
+        raise SchemaError(f"`{key}` does not rise within its table")
     found: list[int] = np.flatnonzero(np.isin(keys, np.asarray(rows, np.int64))).tolist()
     return found
 
@@ -414,7 +414,7 @@ def briefs(table: pa.Table) -> list[Brief]:
     """The brief of each row of `results`.
 
     Raises:
-        MisshapenError: a row is none.
+        SchemaError: a row is none.
     """
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
@@ -426,7 +426,7 @@ def briefs(table: pa.Table) -> list[Brief]:
         [{**row, "trials": row.get("trials"), "fingerprints": p} for row, p in rows], list[Brief]
     )
     if not {each.verdict for each in found} <= {*VERDICTS}:
-        raise MisshapenError("`results` has a verdict that is none")
+        raise SchemaError("`results` has a verdict that is none")
     whole = dict(zip(held, found, strict=True))
     return [
         whole[n] if text is None else brief(decoded(parsed(text), Result))
@@ -438,7 +438,7 @@ def facts(table: pa.Table) -> list[RunFacts]:
     """The facts of each row of `runs`.
 
     Raises:
-        MisshapenError: a row is none.
+        SchemaError: a row is none.
     """
     texts = table[EXACT].to_pylist()
     held = [n for n, text in enumerate(texts) if text is None]
@@ -463,11 +463,11 @@ def nested(tables: Tables, name: str, requirements: Collection[str]) -> list[tup
         requirements: whose rows.
 
     Raises:
-        MisshapenError: a row cannot be read.
+        SchemaError: a row cannot be read.
     """
     main, events = tables[RESULTS], tables[EVENTS]
     if main.num_rows != events.num_rows:
-        raise MisshapenError("`events` does not have the rows of `results`")
+        raise SchemaError("`events` does not have the rows of `results`")
     wanted = pa.array([*requirements], pa.string())
     is_wanted = pc.is_in(main["requirement"], wanted).to_numpy(zero_copy_only=False)
     rows: list[int] = np.flatnonzero(is_wanted).tolist()
@@ -516,7 +516,7 @@ def tallies(tables: Tables) -> list[dict[str, Tally]]:
         tables: `results` with `run_row`, `events` with `propositions`, `runs`.
 
     Raises:
-        MisshapenError: they cannot be read.
+        SchemaError: they cannot be read.
     """
     (column,) = (each.column for each in _NESTED if each.name == "propositions")
     found: list[dict[str, Tally]] = [{} for _ in range(len(tables[RUNS]))]

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from compiler.files.text_files import regular, sha256, write
 from fretc.audit.evidence.schema import Document
 from fretc.audit.store import register
@@ -57,7 +57,7 @@ def write_part(folder: Path, tables: Tables) -> Part | Diagnostic:
 def _is_there(path: Path, file: Table) -> bool:
     try:
         content(path, file)
-    except (OSError, MisshapenError):
+    except (OSError, SchemaError):
         return False
     return True
 

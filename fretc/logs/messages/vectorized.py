@@ -20,13 +20,13 @@ from fretc.logs.signals.signals import clearance, mean, unrounded
 from fretish import expressions as e
 from fretish.bindings.declarations import Invalid, Reading, Reduce, Signal
 from fretish.expressions import MIRRORED
-from fretish.reading.memory import remembered
+from fretish.reading.caching import cache_by_identity
 
 Truths = NDArray[np.bool_]
 Singles = NDArray[np.float32]
 
 
-@remembered
+@cache_by_identity
 def siblings(signal: Signal) -> tuple[str, ...]:
     """Further fields that the signal needs beside its own."""
     names = {name.id for name in e.names(signal.valid)} - {"x"} if signal.valid else set()
@@ -187,7 +187,7 @@ def _limits(signal: Signal, sibling_values: Mapping[str, Numbers], count: int) -
     return _Limits(compared)
 
 
-@remembered
+@cache_by_identity
 def _bounds(valid: e.Expression) -> list[tuple[str, e.Expression]] | None:
     """`x >= range_min and x <= range_max`: the operators and what `x` is compared with.
 

@@ -20,7 +20,7 @@ from fretc.logs.signals.samples import Recording, Samples, Times, Values, distin
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Proposition, Signal
 from fretish.bindings.expressions import ticks_back
-from fretish.reading.memory import remembered
+from fretish.reading.caching import cache_by_identity
 
 States = NDArray[np.int8]
 """One of `FALSE`, `UNKNOWN`, `TRUE` each: `and` is the least of them, `or` the greatest."""
@@ -331,7 +331,7 @@ def with_persistences(
     return history, {part: _at(steps, history.times) for part, steps in persistences.items()}
 
 
-@remembered
+@cache_by_identity
 def _durations(expression: e.Expression) -> tuple[e.Persistence, ...]:
     """The outermost `... for 200 ms` in it."""
     if isinstance(expression, e.Persistence):

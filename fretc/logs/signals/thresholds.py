@@ -17,7 +17,7 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.expressions import MIRRORED, Order
 from fretish.printer import expression
-from fretish.reading.memory import remembered
+from fretish.reading.caching import cache_by_identity
 from fretish.units import base_name
 
 
@@ -46,7 +46,7 @@ class Threshold:
         return expression(self.term)
 
 
-@remembered
+@cache_by_identity
 def thresholds(proposition: Proposition, signals: Mapping[str, Signal]) -> tuple[Threshold, ...]:
     """The thresholds of a proposition, in the order of its expression.
 

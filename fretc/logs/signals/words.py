@@ -22,7 +22,7 @@ _LONGEST = 40
 
 
 @dataclass(frozen=True, slots=True)
-class Foreign:
+class UnmappedSamples:
     """Samples of a signal that are none of its values."""
 
     count: int
@@ -31,9 +31,9 @@ class Foreign:
     text: str
     """What it is, as it can be shown."""
 
-    def followed(self, later: Foreign) -> Foreign:
+    def followed(self, later: UnmappedSamples) -> UnmappedSamples:
         """These and later ones."""
-        return Foreign(self.count + later.count, self.first, self.text)
+        return UnmappedSamples(self.count + later.count, self.first, self.text)
 
 
 def word(signal: Signal, message: object) -> float | str:

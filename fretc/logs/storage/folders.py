@@ -19,7 +19,7 @@ from fretc.logs.storage import storage_diagnostics
 from fretc.logs.storage.log_names import name_of
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 from fretish.reading.yaml_text import loaded
 
 METADATA = "metadata.yaml"
@@ -82,7 +82,7 @@ def folder(path: str) -> Folder | Diagnostic:
     place = Source(name_of(str(file)), "").span()
     with file.open("rb") as stream:
         data = stream.read(_LARGEST)
-    return within(
+    return with_budget(
         len(data), place, lambda: _described(path, data) or storage_diagnostics.bad_metadata(place)
     )
 

@@ -29,7 +29,7 @@ from fretc.logs.storage import storage_diagnostics, web
 from fretc.logs.storage.log_names import STDIN, is_url, name_of
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
-from fretish.reading.limits import grant
+from fretish.reading.limits import extend_budget
 
 _MOST = 2**36
 """The most bytes of a log whose length the server does not state."""
@@ -210,7 +210,7 @@ def _copied(source: BinaryIO, stack: ExitStack, most: int | None = None) -> io.B
     while block := source.read(min(web.BLOCK, left)):
         copy.write(block)
         left -= len(block)
-        grant(len(block))
+        extend_budget(len(block))
     copy.flush()
     copy.seek(0)
     return stack.enter_context(_reader(copy.fileno()))

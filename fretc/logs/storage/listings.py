@@ -17,7 +17,7 @@ from fretc.logs.storage.inputs import as_os_error
 from fretc.logs.storage.log_names import is_url, name_of
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 
 _PATTERN = re.compile(r"[*\[]|\?(?!\w+=)")
 """What is no part of a name; `?versionId=...` is none of a pattern either."""
@@ -44,7 +44,7 @@ def below(url: str, is_log: Callable[[str], bool]) -> Sequence[str] | Diagnostic
         return None
     place = Source(name_of(url), "").span()
     try:
-        return within(_BYTES, place, lambda: _listed(url, is_log))
+        return with_budget(_BYTES, place, lambda: _listed(url, is_log))
     except ImportError as error:
         return storage_diagnostics.no_package(url, error, place)
     except OSError as error:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.declared_units import bare
 from fretc.audit.outputs import sarif as results
 from fretc.report.model.views import Report
@@ -16,7 +16,7 @@ from fretish.documents import Requirement
 def sarif(
     report: Report,
     details: Details,
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     diagnostics: Sequence[Diagnostic],
     failed: Sequence[Requirement] = (),
 ) -> str:

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from datetime import date
 from math import fsum
 
+from compiler.files.build_id import __version__
 from compiler.files.dates import is_date
-from compiler.files.edition import __version__
 from compiler.logic.claims import Layer
 from fretc.audit.evidence.briefs import audited_s
 from fretc.audit.evidence.verdicts import BROKEN, RETIRED

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 
-from compiler.formalization.formalized import Formalized, plain
+from compiler.formalization.formalized import FormalizedRequirement, plain
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from compiler.targets.python import monitor
@@ -30,7 +30,7 @@ from fretc.report.model.suspicions import AboutResults, about_estimation, since_
 from fretc.report.model.views import Mark, verdict_mark
 from fretc.report.traceability.artefacts import Product, monitors, products
 from fretc.report.traceability.chain import chains
-from fretc.report.traceability.lock import Lock, Standing, standings
+from fretc.report.traceability.lock import Lock, ReviewedRequirement, standings
 from fretc.report.traceability.waivers import Waiver
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -52,13 +52,13 @@ class Assessment:
 
     requirement: Requirement
     anchor: str
-    rule: Formalized | None
+    rule: FormalizedRequirement | None
     diagnostic: Diagnostic | None
     """Why there is no rule; None where there is one."""
     audits: tuple[SingleAudit, ...]
     """One for each run, without regard to the review."""
     products: tuple[Product, ...]
-    standing: Standing
+    standing: ReviewedRequirement
     waiver: Waiver | None
     """The waiver that counts today."""
     is_bound: bool
@@ -215,7 +215,10 @@ def assessments(
 
 
 def _probability(
-    id: str, rule: Formalized | None, briefs: Briefs | None, audits: Sequence[SingleAudit]
+    id: str,
+    rule: FormalizedRequirement | None,
+    briefs: Briefs | None,
+    audits: Sequence[SingleAudit],
 ) -> ProbabilityAudit | None:
     estimations = briefs.source.probabilities if briefs is not None else ()
     estimation = next((one for one in estimations if one.requirement == id), None)
@@ -231,7 +234,7 @@ def _probability(
     return ProbabilityAudit(estimation, tuple(dict.fromkeys((*stale, *doubts))))
 
 
-def _is_bound(rule: Formalized, declarations: Declarations | None) -> bool:
+def _is_bound(rule: FormalizedRequirement, declarations: Declarations | None) -> bool:
     propositions = declarations.propositions if declarations else {}
     return all(name in propositions for name in rule.watched)
 

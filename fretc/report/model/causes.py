@@ -17,7 +17,7 @@ from typing import Protocol, TypeVar, assert_never
 
 import numpy as np
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import atom, variable
 from fretc.audit.evidence.schema import Result, Violation
 from fretc.logs.signals.measures import ExpressionError, Measure, Scope, term
@@ -49,7 +49,7 @@ class Cause:
 # The sentence ----------------------------------------------------------------------------------
 
 
-def falsity(violation: Violation, rule: Formalized | None) -> str:
+def falsity(violation: Violation, rule: FormalizedRequirement | None) -> str:
     """`` `stopped` was false from 3.2 s to 4.1 s, it had to be true by 3.4 s``.
 
     Empty where the timing or the scope of the sentence does not say that.
@@ -78,7 +78,7 @@ def falsity(violation: Violation, rule: Formalized | None) -> str:
             assert_never(rule.sentence.timing)
 
 
-def _is_indirect(rule: Formalized) -> bool:
+def _is_indirect(rule: FormalizedRequirement) -> bool:
     """Whether a broken tick does not say what the response was: a negated scope, a chance."""
     sentence = rule.sentence
     negated = sentence.scope is not None and sentence.scope.kind.negates
@@ -94,7 +94,9 @@ def _when(first: float, last: float) -> str:
 # The propositions ------------------------------------------------------------------------------
 
 
-def causes(violation: Violation, result: Result, rule: Formalized | None) -> tuple[Cause, ...]:
+def causes(
+    violation: Violation, result: Result, rule: FormalizedRequirement | None
+) -> tuple[Cause, ...]:
     """Why the response was not what it had to be; nothing where the evidence leaves that open.
 
     Args:

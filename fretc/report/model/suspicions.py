@@ -14,7 +14,7 @@ from fretc.audit.measurements.confidence_intervals import SUPPORTED
 from fretc.audit.measurements.trials import Trials
 from fretc.report.traceability.chain import outdated
 from fretc.report.traceability.changes import in_words
-from fretc.report.traceability.lock import Review, Standing
+from fretc.report.traceability.lock import Review, ReviewedRequirement
 from fretish import syntax
 from monitors import kernel
 
@@ -82,7 +82,7 @@ def about_estimation(
         yield "a log is damaged, and no damaged log supports a probability"
 
 
-def since_review(standing: Standing) -> tuple[str, ...]:
+def since_review(standing: ReviewedRequirement) -> tuple[str, ...]:
     """What has changed since the review, in one phrase; empty where the review stands."""
     if standing.review is None or not standing.is_suspect:
         return ()

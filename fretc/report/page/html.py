@@ -11,7 +11,7 @@ from typing import Any
 from compiler.explanation.diagram import diagram
 from compiler.explanation.drawing import drawing as diagram_drawing
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.report.across.layout import drawn_lanes, drawn_map, drawn_uses
 from fretc.report.model.changes import Change, follows, new_violations
 from fretc.report.model.phrases import joined, visible
@@ -46,7 +46,7 @@ class Inset:
 def html(
     report: Report,
     details: Details,
-    rules: Sequence[Formalized] = (),
+    rules: Sequence[FormalizedRequirement] = (),
     inset: Inset | None = None,
 ) -> str:
     """The whole file.
@@ -183,7 +183,7 @@ def _rows(matrix: Picture) -> dict[str, str]:
     return {line.row.anchor: line.id for line in lines}
 
 
-def _diagrams(page: Report, rules: Sequence[Formalized]) -> Mapping[str, dict[str, Any]]:
+def _diagrams(page: Report, rules: Sequence[FormalizedRequirement]) -> Mapping[str, dict[str, Any]]:
     """A drawing of what each sentence means, by its anchor; it escapes its own texts."""
     rules_by_key = {(rule.id, rule.fingerprint): rule for rule in rules}
     diagrams = {}

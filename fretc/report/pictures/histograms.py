@@ -8,7 +8,7 @@ from itertools import islice
 from math import ceil, floor
 from statistics import median
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.briefs import Brief
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.model import phrases
@@ -87,7 +87,7 @@ def _current_results(assessment: Assessment) -> list[Brief]:
 # Latency ---------------------------------------------------------------------------------------
 
 
-def is_answered(rule: Formalized | None) -> bool:
+def is_answered(rule: FormalizedRequirement | None) -> bool:
     """Whether each trigger waits for an answer, so that one without is missing."""
     return rule is not None and rule.watch.answer is not None
 
@@ -97,7 +97,9 @@ def _unanswered(result: Brief) -> int:
     return max(0, result.triggers - result.answers - result.open)
 
 
-def _latency(late: Sequence[float], runs: Sequence[Brief], rule: Formalized | None) -> Histogram:
+def _latency(
+    late: Sequence[float], runs: Sequence[Brief], rule: FormalizedRequirement | None
+) -> Histogram:
     bound = seconds_allowed(rule)
     bins = _bins(late, [0.0, *([bound] if bound is not None else [])], _below)
     label = f"bound {phrases.exact_duration(bound)}" if bound is not None else ""
@@ -134,7 +136,7 @@ def _without(unanswered: int, waiting: int) -> str:
     return f" Without an answer: {triggers}." if triggers else ""
 
 
-def seconds_allowed(rule: Formalized | None) -> float | None:
+def seconds_allowed(rule: FormalizedRequirement | None) -> float | None:
     """What `within` allows, where a tick is a time."""
     if rule is None or syntax.deadline(rule.sentence.timing) is None:
         return None

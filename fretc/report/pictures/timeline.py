@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import floor, log10
 from types import MappingProxyType
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.schema import Moment, Result, Violation
 from fretc.report.model.causes import causes, falsity, in_words
 from fretc.report.model.phrases import duration, joined, seconds, times, value
@@ -35,7 +35,7 @@ def timelines(
     result: Result,
     tick: float,
     ages: Mapping[str, float] = MappingProxyType({}),
-    rule: Formalized | None = None,
+    rule: FormalizedRequirement | None = None,
 ) -> tuple[Timeline, ...]:
     """A timeline for each of the first violations; without violations, one for the whole run.
 
@@ -65,7 +65,7 @@ def _explained(
     result: Result,
     tick: float,
     ages: Mapping[str, float],
-    rule: Formalized | None,
+    rule: FormalizedRequirement | None,
 ) -> Timeline:
     """The timeline with signals, trigger, deadline, the violating stretch, and the cause."""
     drawings = panels(violation, result, ages, plain.start, plain.end)
@@ -97,7 +97,10 @@ def _flags(violation: Violation) -> Iterable[Flag]:
 
 
 def cause(
-    violation: Violation, result: Result, ages: Mapping[str, float], rule: Formalized | None = None
+    violation: Violation,
+    result: Result,
+    ages: Mapping[str, float],
+    rule: FormalizedRequirement | None = None,
 ) -> str:
     """The cause of a violation: the response that did not come, and why it did not.
 

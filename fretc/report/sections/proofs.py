@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import ALL, PROVERS, Proof, Result
 from compiler.targets.interceptor_options import ASSUMED
 from fretc.report.model import phrases
@@ -25,7 +25,7 @@ SHARED = ("interceptor", "agent")
 def proof_views(
     proofs: Iterable[Proof],
     products: Iterable[Product],
-    rule: Formalized | None = None,
+    rule: FormalizedRequirement | None = None,
     joint: Collection[str] = (),
 ) -> tuple[ProofView, ...]:
     """The view of each proof.
@@ -41,7 +41,7 @@ def proof_views(
 
 
 def _view(
-    proof: Proof, now: Mapping[str, str], rule: Formalized | None, joint: Collection[str]
+    proof: Proof, now: Mapping[str, str], rule: FormalizedRequirement | None, joint: Collection[str]
 ) -> ProofView:
     suspicions = tuple(_suspicions(proof, now, rule, joint))
     return ProofView(
@@ -58,7 +58,7 @@ def _view(
 
 
 def _suspicions(
-    proof: Proof, now: Mapping[str, str], rule: Formalized | None, joint: Collection[str]
+    proof: Proof, now: Mapping[str, str], rule: FormalizedRequirement | None, joint: Collection[str]
 ) -> Iterator[str]:
     """Why a proof is about other texts than those of now; only texts that fretc makes count."""
     for name, examined in proof.artefacts.items():
@@ -70,7 +70,9 @@ def _suspicions(
         yield "it is about another monitor than the one that is made now"
 
 
-def _is_of_monitor(proof: Proof, now: Mapping[str, str], rule: Formalized | None) -> bool:
+def _is_of_monitor(
+    proof: Proof, now: Mapping[str, str], rule: FormalizedRequirement | None
+) -> bool:
     """Whether the monitor that is made now was examined, in any language."""
     monitors = {hash_ for name, hash_ in now.items() if name.endswith("_monitor.py")}
     return any(

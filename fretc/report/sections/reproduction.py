@@ -7,9 +7,9 @@ from functools import partial
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.shell_quoting import (
-    UnsayableError,
+    UnencodableNameError,
     check_of,
     is_sha256,
     unsayable,
@@ -68,7 +68,7 @@ def _command(purpose: str, text: Callable[[], str]) -> Iterator[Command]:
     """The command; none where its text is empty."""
     try:
         command = text()
-    except UnsayableError as error:
+    except UnencodableNameError as error:
         command = unsayable(str(error))
     if command:
         yield Command(purpose, command)

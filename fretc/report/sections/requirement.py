@@ -9,7 +9,7 @@ from typing import Any
 
 from compiler.explanation.diagram import diagram, words
 from compiler.explanation.violability import limit
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import wording
 from compiler.logic import printing
 from compiler.logic.claims import Proof
@@ -114,7 +114,7 @@ def section(
     )
 
 
-def _limit(rule: Formalized | None) -> str:
+def _limit(rule: FormalizedRequirement | None) -> str:
     """Why no run can violate it; many runs decide about a probability, so it has no limit."""
     return "" if rule is None or rule.sentence.probability is not None else limit(rule)
 
@@ -153,7 +153,7 @@ def remark(diagnostic: Diagnostic) -> Remark:
     )
 
 
-def _formulas(rule: Formalized) -> tuple[Formula, ...]:
+def _formulas(rule: FormalizedRequirement) -> tuple[Formula, ...]:
     return (
         Formula("Future time", "infinite traces", printing.readable(rule.ft_infinite)),
         Formula(
@@ -189,7 +189,9 @@ def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
 # Propositions ----------------------------------------------------------------------------------
 
 
-def _propositions(rule: Formalized, declared: Declarations | None) -> tuple[PropositionView, ...]:
+def _propositions(
+    rule: FormalizedRequirement, declared: Declarations | None
+) -> tuple[PropositionView, ...]:
     return tuple(_proposition(name, declared) for name in rule.propositions)
 
 

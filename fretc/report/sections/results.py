@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from statistics import median
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.evidence.schema import Moment, Result, Threshold, Violation
 from fretc.audit.evidence.verdicts import (
     NOT_EXERCISED,
@@ -152,7 +152,7 @@ def _stretches(moments: Iterable[Moment]) -> list[list[Moment]]:
 # Latency ---------------------------------------------------------------------------------------
 
 
-def _latency(result: Result, rule: Formalized | None) -> Latency | None:
+def _latency(result: Result, rule: FormalizedRequirement | None) -> Latency | None:
     if not result.latencies:
         return None
     longest = max(result.latencies)
@@ -177,12 +177,12 @@ def _latency(result: Result, rule: Formalized | None) -> Latency | None:
     )
 
 
-def is_bounded(rule: Formalized | None) -> bool:
+def is_bounded(rule: FormalizedRequirement | None) -> bool:
     """Whether the sentence allows an answer only for some time, as far as is known."""
     return rule is None or not syntax.is_eventual(rule.sentence.timing)
 
 
-def _bound(rule: Formalized | None) -> str:
+def _bound(rule: FormalizedRequirement | None) -> str:
     """The time that the sentence allows for the response, in words."""
     if rule is None:
         return ""
@@ -220,7 +220,10 @@ def _wait(starts: Sequence[float], end: float) -> str:
 
 
 def _violation(
-    violation: Violation, result: Result, ages: Mapping[str, float], rule: Formalized | None
+    violation: Violation,
+    result: Result,
+    ages: Mapping[str, float],
+    rule: FormalizedRequirement | None,
 ) -> ViolationView:
     first, last, trigger = violation.first, violation.last, violation.trigger
     ticks = f"{first.tick}" if first.tick == last.tick else f"{first.tick} to {last.tick}"

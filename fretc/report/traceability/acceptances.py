@@ -11,7 +11,7 @@ from compiler.project.refusals import unreviewable
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.schema import Finding
 from fretc.report.traceability.checks import checks, unreviewed
-from fretc.report.traceability.lock import Lock, Standing
+from fretc.report.traceability.lock import Lock, ReviewedRequirement
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors
 from fretish.diagnostics.source import Source
 
@@ -20,7 +20,7 @@ _CODES = {code.number: code for code in Code}
 
 def warnings(
     project: Project,
-    standings: Sequence[Standing],
+    standings: Sequence[ReviewedRequirement],
     lock: Lock | None,
     evidence: EvidenceSource | None,
 ) -> tuple[Diagnostic, ...]:

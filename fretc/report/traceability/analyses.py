@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import Project
 from fretc.analysis.arena.roles import roles
 from fretc.analysis.assumptions import assumptions
@@ -82,7 +82,9 @@ def _component(analysis: Analysis, id: str) -> tuple[str, ...]:
 
 
 def _components(
-    rules: Sequence[Formalized], assumed: Sequence[Formalized], analyzed: Mapping[str, Member]
+    rules: Sequence[FormalizedRequirement],
+    assumed: Sequence[FormalizedRequirement],
+    analyzed: Mapping[str, Member],
 ) -> Mapping[str, tuple[str, ...]]:
     """The requirements of each one's component now; all, where the roles are not known."""
     systems = {rule.sentence.component for rule in rules if rule.id in analyzed}

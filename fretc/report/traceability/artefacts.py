@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 from compiler.emit import TARGETS
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Proof
 from compiler.targets.interceptor_options import ASSUMED, assumed
 from compiler.targets.python import interceptor, monitor
@@ -29,7 +29,7 @@ class Product:
 _ALWAYS = ("monitor", "ltl", "ajpf", "json")
 
 
-def products(rule: Formalized | None) -> tuple[Product, ...]:
+def products(rule: FormalizedRequirement | None) -> tuple[Product, ...]:
     """A product for each file of the requirement, and for each target that refuses it.
 
     Other targets than `_ALWAYS` count only where `verify` of the requirement names them: all of
@@ -56,7 +56,7 @@ _LANGUAGES = {"_monitor.c": "c", "lib.rs": "rust", "_monitor.mjs": "js"}
 """How the names of monitors in other languages than Python end, and their target."""
 
 
-def compiled_monitor(rule: Formalized, file: str) -> str:
+def compiled_monitor(rule: FormalizedRequirement, file: str) -> str:
     """SHA-256 of the monitor of the requirement alone that would be in such a file; or nothing.
 
     Args:
@@ -74,7 +74,9 @@ _JOINT = {"monitors.py": "monitor", "monitors.c": "c", "lib.rs": "rust", "monito
 """The names of files with the monitor of many requirements, and their target."""
 
 
-def joint_monitors(rules: Sequence[Formalized], proofs: Iterable[Proof]) -> frozenset[str]:
+def joint_monitors(
+    rules: Sequence[FormalizedRequirement], proofs: Iterable[Proof]
+) -> frozenset[str]:
     """SHA-256 of each file with one monitor for several of the rules, as it is made now.
 
     It is made of all of them, and of those that the proofs about one text are of: whoever names
@@ -99,7 +101,7 @@ def joint_monitors(rules: Sequence[Formalized], proofs: Iterable[Proof]) -> froz
     return frozenset(found - {""})
 
 
-def _of_joint(file: str, rules: Sequence[Formalized]) -> str:
+def _of_joint(file: str, rules: Sequence[FormalizedRequirement]) -> str:
     """SHA-256 of a file with one monitor for the rules; empty where the target refuses all."""
     target = TARGETS[_JOINT[file]]
     accepted = [each for each in rules if target.refuse(each) is None]
@@ -107,7 +109,7 @@ def _of_joint(file: str, rules: Sequence[Formalized]) -> str:
     return next((sha256(each.text) for each in made if each.path.name == file), "")
 
 
-def _of_target(target: Target, rule: Formalized) -> tuple[Product, ...]:
+def _of_target(target: Target, rule: FormalizedRequirement) -> tuple[Product, ...]:
     refusal = target.refuse(rule)
     if refusal is not None:
         fix = f"; {refusal.help}" if refusal.help else ""

@@ -13,8 +13,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any, NamedTuple
 
-from compiler.files.edition import __version__
-from compiler.formalization.formalized import Formalized
+from compiler.files.build_id import __version__
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
 from compiler.logic.claims import Proof
 from compiler.project.acceptances import TOPIC, Acceptance
@@ -29,7 +29,7 @@ from fretc.report.traceability import texts
 from fretc.report.traceability.analyses import Answer, answers
 from fretc.report.traceability.artefacts import Product, monitors, shared_products
 from fretc.report.traceability.artefacts import products as products_of
-from fretc.report.traceability.texts import Texts
+from fretc.report.traceability.texts import ReviewedTexts
 from fretish.bindings.canonical import described, digest
 from fretish.documents import Requirement
 
@@ -85,7 +85,7 @@ class Chain:
     """What a verdict may rest on that is out of date → the nodes that differ."""
     outdated_proofs: Mapping[Node, tuple[Node, ...]] = field(default_factory=dict)
     """Each proof or analysis that is out of date → the nodes that differ."""
-    texts: Texts | None = None
+    texts: ReviewedTexts | None = None
     """What the fingerprints are taken of, as it is written."""
     answer: Answer | None = None
     """What is known of it and the others together; None: nobody has asked."""
@@ -233,13 +233,13 @@ class _ChainBuilder:
         self._outdated_proofs: dict[Node, tuple[Node, ...]] = {}
         self._accept: dict[str, str] = {}
         self._hazards: dict[str, texts.HazardTexts] = {}
-        self._elsewhere: dict[str, texts.Elsewhere] = {}
-        self._above: dict[str, texts.Above] = {}
+        self._elsewhere: dict[str, texts.ExternalParent] = {}
+        self._above: dict[str, texts.ParentRequirement] = {}
 
     def build(
         self,
         requirement: Requirement,
-        rule: Formalized | None,
+        rule: FormalizedRequirement | None,
         artefacts: Iterable[Product],
         results: Sequence[Brief],
         proofs: Sequence[Proof],
@@ -277,15 +277,15 @@ class _ChainBuilder:
     def _texts(
         self,
         requirement: Requirement,
-        rule: Formalized | None,
+        rule: FormalizedRequirement | None,
         proofs: Sequence[Proof],
         answer: Answer | None,
         *,
         audited: bool,
-    ) -> Texts:
+    ) -> ReviewedTexts:
         """What the fingerprints are taken of."""
         declarations, written = self._project.declarations, self._common.written
-        return Texts(
+        return ReviewedTexts(
             sentence=requirement.wording.text,
             canonical=texts.canonical_text(rule),
             title=requirement.title,
@@ -315,7 +315,7 @@ class _ChainBuilder:
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
 
-    def _accepted(self, requirement: Requirement, rule: Formalized | None) -> None:
+    def _accepted(self, requirement: Requirement, rule: FormalizedRequirement | None) -> None:
         """The warnings that a reviewer accepts with it: no verdict depends on them."""
         topics = _topics(rule, self._project)
         known = self._common.acceptances
@@ -346,7 +346,7 @@ class _ChainBuilder:
                 self._link(Node(TEXT, parent), text)
 
     def _add_artefacts(
-        self, rule: Formalized, sentence: Node, artefacts: Iterable[Product]
+        self, rule: FormalizedRequirement, sentence: Node, artefacts: Iterable[Product]
     ) -> Mapping[str, Node]:
         """Add formulas, words and artefacts; gives the artefact of each target."""
         formulas, words = Node(FORMULAS, rule.id), Node(WORDS, rule.id)
@@ -412,7 +412,7 @@ class _ChainBuilder:
             if kinds
         }
 
-    def _add_proofs(self, rule: Formalized, proofs: Sequence[Proof]) -> None:
+    def _add_proofs(self, rule: FormalizedRequirement, proofs: Sequence[Proof]) -> None:
         """Add each proof, with the texts and assumptions that it is about."""
         now = self._common.shared
         for proof in proofs:
@@ -473,7 +473,7 @@ def _print_of_log(result: Brief) -> str:
     return result.log or result.fingerprints.log_summary or ""
 
 
-def _topics(rule: Formalized | None, project: Project) -> set[str]:
+def _topics(rule: FormalizedRequirement | None, project: Project) -> set[str]:
     """Which the propositions of a requirement are read from."""
     if rule is None or project.declarations is None:
         return set()
@@ -481,7 +481,7 @@ def _topics(rule: Formalized | None, project: Project) -> set[str]:
     return {signal.path.topic for signal in read.signals.values()}
 
 
-def print_of_header(header: texts.Above) -> str:
+def print_of_header(header: texts.ParentRequirement) -> str:
     """The texts and parents of a requirement, without status and planned methods."""
     words = [header.title, header.text, header.rationale]
     return digest({"texts": _normal(words), "parents": sorted(header.parents)})
@@ -506,7 +506,7 @@ def _claim(proof: Proof) -> str:
     return f"{proof.layer}: {proof.claim}"
 
 
-def _formulas(rule: Formalized) -> str:
+def _formulas(rule: FormalizedRequirement) -> str:
     formulas = [rule.ft_infinite, rule.ft_finite, rule.pt]
     return digest([printing.readable(formula) for formula in formulas])
 

@@ -33,7 +33,7 @@ from fretc.report.traceability.chain import (
     upstream_of,
 )
 from fretc.report.traceability.meanings import Key, Leaf, leaves
-from fretc.report.traceability.texts import Bindings, Texts
+from fretc.report.traceability.texts import Bindings, ReviewedTexts
 from fretc.report.traceability.word_diff import Segment
 
 
@@ -120,7 +120,7 @@ def changes(
     chain: Chain,
     prints: Mapping[Node, str],
     verdicts: Mapping[str, str],
-    texts: Texts | None,
+    texts: ReviewedTexts | None,
     causes: Collection[Node],
 ) -> tuple[Change, ...]:
     """Each change of a requirement since its review, and nothing that follows from another one.
@@ -157,7 +157,7 @@ class _Comparison:
         chain: Chain,
         prints: Mapping[Node, str],
         verdicts: Mapping[str, str],
-        texts: Texts | None,
+        texts: ReviewedTexts | None,
     ) -> None:
         self._chain, self._prints, self._verdicts = chain, prints, verdicts
         self._now = chain.prints
@@ -280,7 +280,9 @@ _Pairs = Mapping[Key, tuple[Leaf | None, Leaf | None]]
 _ABOVE = (HAZARD, PARENT, TEXT)
 
 
-def _without_equal_tables(then: Texts, now: Texts) -> tuple[Texts, Texts]:
+def _without_equal_tables(
+    then: ReviewedTexts, now: ReviewedTexts
+) -> tuple[ReviewedTexts, ReviewedTexts]:
     """Both without the tables of bindings that are the same: to read them takes time."""
     before, after = then.bindings, now.bindings
     if before is None or after is None:

@@ -11,13 +11,13 @@ from shlex import quote
 
 from compiler.emit import TARGETS
 from compiler.explanation.constant_parts import constant_parts
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import METHODS
-from compiler.project.ancestry import without_hazard
 from compiler.project.folder import Project
+from compiler.project.parent_graph import without_hazard
 from compiler.targets.target import Options
 from fretc.report.traceability.changes import in_words
-from fretc.report.traceability.lock import Standing
+from fretc.report.traceability.lock import ReviewedRequirement
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, has_errors, suggestion
 from fretish.diagnostics.source import Source, Span
@@ -29,7 +29,7 @@ _METHODS = ("audit", *METHODS, *TARGETS)
 """Methods with results that fretc knows, or with files that it makes."""
 
 
-def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic, ...]:
+def checks(project: Project, standings: Sequence[ReviewedRequirement]) -> tuple[Diagnostic, ...]:
     """All warnings, in the order of the project.
 
     Args:
@@ -52,7 +52,7 @@ def checks(project: Project, standings: Sequence[Standing]) -> tuple[Diagnostic,
 # Vacuity ---------------------------------------------------------------------------------------
 
 
-def _own_triggers(rule: Formalized, project: Project) -> Iterator[Diagnostic]:
+def _own_triggers(rule: FormalizedRequirement, project: Project) -> Iterator[Diagnostic]:
     """F209: the condition waits for what the component itself commands.
 
     Where the component is what the sentence is about, its commands are answers: a property that
@@ -76,13 +76,13 @@ def _own_triggers(rule: Formalized, project: Project) -> Iterator[Diagnostic]:
         )
 
 
-def _place(rule: Formalized, name: str) -> Span:
+def _place(rule: FormalizedRequirement, name: str) -> Span:
     assert rule.sentence.condition is not None
     places = (n.span for n in names(rule.sentence.condition.expression) if n.id == name)
     return next(places, None) or rule.requirement.wording
 
 
-def _never_so(rule: Formalized) -> Iterator[Diagnostic]:
+def _never_so(rule: FormalizedRequirement) -> Iterator[Diagnostic]:
     """F210 for each part of the sentence that no numbers make true, or none false."""
     for part, value in constant_parts(rule):
         yield Diagnostic(
@@ -98,7 +98,7 @@ def _never_so(rule: Formalized) -> Iterator[Diagnostic]:
 # Planned methods -------------------------------------------------------------------------------
 
 
-def _planned(rule: Formalized) -> Iterator[Diagnostic]:
+def _planned(rule: FormalizedRequirement) -> Iterator[Diagnostic]:
     """F525: a planned method that can give no result; and what a target has to remark."""
     for method in rule.requirement.verify:
         target = TARGETS.get("monitor" if method == "audit" else method)
@@ -120,7 +120,7 @@ def _planned(rule: Formalized) -> Iterator[Diagnostic]:
             yield remark
 
 
-def _misspelt(rule: Formalized, method: str) -> Iterator[Diagnostic]:
+def _misspelt(rule: FormalizedRequirement, method: str) -> Iterator[Diagnostic]:
     """F528: nearly the name of a method whose results fretc knows; any other name is one's own."""
     near = suggestion(method, _METHODS, cutoff=0.75)
     if method not in _METHODS and near is not None:
@@ -172,7 +172,7 @@ def _links(project: Project) -> Iterator[Diagnostic]:
 # Reviews ---------------------------------------------------------------------------------------
 
 
-def _changes(project: Project, standings: Sequence[Standing]) -> Iterator[Diagnostic]:
+def _changes(project: Project, standings: Sequence[ReviewedRequirement]) -> Iterator[Diagnostic]:
     """F512 for each requirement whose review no longer stands."""
     places = {r.id: r.wording for r in project.requirements}
     for standing in standings:
@@ -199,7 +199,7 @@ def _changes(project: Project, standings: Sequence[Standing]) -> Iterator[Diagno
             )
 
 
-def unreviewed(project: Project, standings: Sequence[Standing]) -> Iterator[Diagnostic]:
+def unreviewed(project: Project, standings: Sequence[ReviewedRequirement]) -> Iterator[Diagnostic]:
     """F544 for each requirement in force without a review; for a project that has a lock."""
     by_id = {requirement.id: requirement for requirement in project.requirements}
     for standing in standings:

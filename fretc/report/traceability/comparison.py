@@ -12,7 +12,7 @@ from compiler.project.stated_numbers import drifted
 from fretc.audit.evidence.verdicts import VERDICTS, severity
 from fretc.report.traceability.chain import ANALYSIS, VERDICT, Suspect
 from fretc.report.traceability.changes import Change
-from fretc.report.traceability.lock import Lock, Review, Standing
+from fretc.report.traceability.lock import Lock, Review, ReviewedRequirement
 from fretish.diagnostics.diagnostic import Code
 from monitors import kernel
 
@@ -106,7 +106,7 @@ def _runs(count: int) -> str:
 
 
 def differences(
-    standings: tuple[Standing, ...], baseline: Lock, project: Project | None = None
+    standings: tuple[ReviewedRequirement, ...], baseline: Lock, project: Project | None = None
 ) -> tuple[Difference, ...]:
     """Every requirement of either state, in the order of the project, then those that are gone."""
     now = tuple(difference(standing, project) for standing in standings)
@@ -114,7 +114,7 @@ def differences(
     return (*now, *(_removed(id, baseline) for id in baseline.reviews if id not in ids))
 
 
-def difference(standing: Standing, project: Project | None = None) -> Difference:
+def difference(standing: ReviewedRequirement, project: Project | None = None) -> Difference:
     """One requirement, against its review; `new` where it has none.
 
     Args:
@@ -161,7 +161,7 @@ def _worst_first(pair: tuple[str, str, str]) -> tuple[bool, tuple[int, bool], st
 # Contradictions --------------------------------------------------------------------------------
 
 
-def contradictions(standing: Standing, project: Project) -> tuple[str, ...]:
+def contradictions(standing: ReviewedRequirement, project: Project) -> tuple[str, ...]:
     """The words of a requirement that state another number than what is judged.
 
     One that has stood there since the review `still` does.

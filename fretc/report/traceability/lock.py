@@ -34,7 +34,7 @@ from fretc.report.traceability.chain import (
 )
 from fretc.report.traceability.changes import Change, changes
 from fretc.report.traceability.meanings import agree
-from fretc.report.traceability.texts import Texts, as_table
+from fretc.report.traceability.texts import ReviewedTexts, as_table
 from fretc.report.traceability.texts import read as read_texts
 from fretish.bindings.canonical import digest
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -70,7 +70,7 @@ class Review:
     """SHA-256 of everything upstream of the review."""
     verdicts: Mapping[str, str]
     """Run → the word of its verdict."""
-    texts: Texts | None = None
+    texts: ReviewedTexts | None = None
     """What was accepted, as it was written; None: an earlier version of fretc wrote the review."""
 
     @property
@@ -108,7 +108,7 @@ class Lock:
 def accepted(chain: Chain, reviewer: str, role: str, date: str, comment: str) -> Review:
     """A review of the present state of a requirement."""
     id, prints, texts = chain.requirement, chain.prints, chain.texts
-    readable = texts is not None and isinstance(read_texts(as_table(texts)), Texts)
+    readable = texts is not None and isinstance(read_texts(as_table(texts)), ReviewedTexts)
     kept = texts if texts is not None and readable and agree(id, texts, prints) else None
     return Review(id, reviewer, role, date, comment, prints, chain.verdicts, kept)
 
@@ -381,7 +381,7 @@ def _review(id: str, fields: Mapping[str, Any]) -> Review:
     )
 
 
-def _texts(fields: Mapping[str, Any]) -> Texts | None:
+def _texts(fields: Mapping[str, Any]) -> ReviewedTexts | None:
     texts = read_texts(fields["texts"]) if "texts" in fields else None
     assert not isinstance(texts, str), "it has been read before"
     return texts
@@ -396,7 +396,7 @@ def _node(text: str) -> Node:
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class ReviewedRequirement:
     """A requirement as it is now, beside its review."""
 
     chain: Chain
@@ -421,23 +421,23 @@ class Standing:
         return tuple(dict.fromkeys(cause for each in self.suspects for cause in each.causes))
 
 
-def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[Standing, ...]:
+def standings(chains: Sequence[Chain], lock: Lock | None) -> tuple[ReviewedRequirement, ...]:
     """Each requirement beside its review."""
     reviews = lock.reviews if lock else {}
     return tuple(_standing(chain, reviews.get(chain.requirement)) for chain in chains)
 
 
-def _standing(chain: Chain, review: Review | None) -> Standing:
+def _standing(chain: Chain, review: Review | None) -> ReviewedRequirement:
     if review is None:
-        return Standing(chain, None, (), ())
+        return ReviewedRequirement(chain, None, (), ())
     prints, texts = review.prints, review.texts
     suspect = suspects(chain, prints)
     if not suspect and not changed(chain.prints, prints):
-        return Standing(chain, review, (), ())
+        return ReviewedRequirement(chain, review, (), ())
     vouched = texts is None or agree(chain.requirement, texts, prints)
     causes = tuple(dict.fromkeys(cause for each in suspect for cause in each.causes))
     found = changes(chain, prints, review.verdicts, texts if vouched else None, causes)
-    return Standing(chain, review, suspect, found, not vouched)
+    return ReviewedRequirement(chain, review, suspect, found, not vouched)
 
 
 @dataclass(frozen=True, slots=True)

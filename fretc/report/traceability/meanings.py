@@ -35,14 +35,20 @@ from fretc.report.traceability.chain import (
     print_of_status,
     print_of_words,
 )
-from fretc.report.traceability.texts import Bindings, Table, Texts, canonical_text, header_of
+from fretc.report.traceability.texts import (
+    Bindings,
+    ReviewedTexts,
+    Table,
+    canonical_text,
+    header_of,
+)
 from fretish.bindings import canonical
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import expression
-from fretish.reading.recursion import deep
+from fretish.reading.recursion import with_recursion_limit
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +73,7 @@ Key = tuple[str, str, str]
 # Each text -------------------------------------------------------------------------------------
 
 
-def leaves(id: str, texts: Texts) -> Mapping[Key, Leaf]:
+def leaves(id: str, texts: ReviewedTexts) -> Mapping[Key, Leaf]:
     """Every text of a requirement, in the order in which changes are listed."""
     found = dict(_of_sentence(id, texts))
     declarations = _declarations(texts.bindings) if texts.bindings else None
@@ -77,7 +83,7 @@ def leaves(id: str, texts: Texts) -> Mapping[Key, Leaf]:
     return found | dict(chain.from_iterable(parts))
 
 
-def _of_sentence(id: str, texts: Texts) -> Iterator[tuple[Key, Leaf]]:
+def _of_sentence(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
     written = _line(texts.sentence)
     sentence = texts.canonical or written
     yield ("", "", "sentence"), Leaf(Node(basis.SENTENCE, id), "sentence", written, sentence)
@@ -90,7 +96,7 @@ def _of_sentence(id: str, texts: Texts) -> Iterator[tuple[Key, Leaf]]:
         yield ("params", name, ""), Leaf(node, what, text, meaning, f"params {name}")
 
 
-def _of_header(id: str, texts: Texts) -> Iterator[tuple[Key, Leaf]]:
+def _of_header(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
     node = Node(TEXT, id)
     for name in ("title", "text", "rationale"):
         text = _line(getattr(texts, name))
@@ -106,7 +112,7 @@ def _of_header(id: str, texts: Texts) -> Iterator[tuple[Key, Leaf]]:
         yield (ACCEPTANCE, name, ""), leaf
 
 
-def _of_parents(texts: Texts) -> Iterator[tuple[Key, Leaf]]:
+def _of_parents(texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
     """Of hazards, and of the requirements between."""
     tables: list[tuple[str, str, Mapping[str, str]]] = []
     for id, header in texts.above.items():
@@ -124,7 +130,7 @@ def _of_parents(texts: Texts) -> Iterator[tuple[Key, Leaf]]:
             yield (kind, id, name), leaf
 
 
-def _of_audit(id: str, texts: Texts) -> Iterator[tuple[Key, Leaf]]:
+def _of_audit(id: str, texts: ReviewedTexts) -> Iterator[tuple[Key, Leaf]]:
     if texts.topics is not None:
         node, names = Node(basis.TOPICS, "audited"), ", ".join(texts.topics)
         yield ("", "", "topics"), Leaf(node, "topics that are read", names, texts.topics)
@@ -242,7 +248,7 @@ def _variable(name: str, declarations: Declarations | None) -> Mapping[str, Any]
     return {"value": value, "modality": str(known.modality), "action": known.action, **words}
 
 
-@deep
+@with_recursion_limit
 def _in_toml(value: Any) -> str:
     """A text as it is; of anything else what the file says, on one line."""
     if isinstance(value, str):
@@ -263,7 +269,7 @@ def _line(text: str) -> str:
     return " ".join(text.split())
 
 
-@deep
+@with_recursion_limit
 def _declarations(bindings: Bindings) -> Declarations | None:
     """The tables, read as bindings are; None where they are none."""
     tables = {"clock": bindings.clock, "signal": bindings.signal}
@@ -275,7 +281,7 @@ def _declarations(bindings: Bindings) -> Declarations | None:
 # All of them -----------------------------------------------------------------------------------
 
 
-def agree(id: str, texts: Texts, prints: Mapping[Node, str]) -> bool:
+def agree(id: str, texts: ReviewedTexts, prints: Mapping[Node, str]) -> bool:
     """Whether the texts of a review are those that its fingerprints were taken of.
 
     A lock may be a stranger's. What its fingerprints do not vouch for is never shown as what was
@@ -299,7 +305,7 @@ def _of(value: Any) -> str:
     return canonical.digest(value)
 
 
-def _fingerprints(id: str, texts: Texts) -> Iterator[tuple[Node, str]]:
+def _fingerprints(id: str, texts: ReviewedTexts) -> Iterator[tuple[Node, str]]:
     """What fretc would write of these texts."""
     yield in_force(id), print_of_status(texts.status)
     for method in texts.verify:
@@ -324,7 +330,7 @@ def _fingerprints(id: str, texts: Texts) -> Iterator[tuple[Node, str]]:
     yield from _of_meaning(id, texts)
 
 
-def _of_meaning(id: str, texts: Texts) -> Iterator[tuple[Node, str]]:
+def _of_meaning(id: str, texts: ReviewedTexts) -> Iterator[tuple[Node, str]]:
     """Of the sentence, its numbers, the clock and the bindings, read again."""
     declarations = _declarations(texts.bindings) if texts.bindings is not None else None
     wording = Source("fretc.lock", texts.sentence).span()

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from compiler.files.records import Record, decoded, field, plain
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.hazards import Hazard
 from compiler.project.parents import Parent
 from fretish.bindings.declarations import Declarations
@@ -25,7 +25,7 @@ _DEEPEST = 20
 """Tables and lists within each other; bindings need less than half of it."""
 
 
-class Above(Record, frozen=True, omit_defaults=True):
+class ParentRequirement(Record, frozen=True, omit_defaults=True):
     """A requirement above the one of the review."""
 
     title: str = ""
@@ -43,7 +43,7 @@ class HazardTexts(Record, frozen=True, omit_defaults=True):
     source: str = ""
 
 
-class Elsewhere(Record, frozen=True, omit_defaults=True):
+class ExternalParent(Record, frozen=True, omit_defaults=True):
     """A parent in another tool."""
 
     title: str = ""
@@ -59,7 +59,7 @@ class Bindings(Record, frozen=True, omit_defaults=True):
     variable: dict[str, Table] = field(default_factory=dict)
 
 
-class Texts(Record, frozen=True, omit_defaults=True):
+class ReviewedTexts(Record, frozen=True, omit_defaults=True):
     """One requirement and all that its review covers; a default is not written."""
 
     sentence: str
@@ -76,8 +76,8 @@ class Texts(Record, frozen=True, omit_defaults=True):
     """Each warning that is accepted with it → why."""
     hazards: dict[str, HazardTexts] = field(default_factory=dict)
     """All that it traces to, directly or through the requirements above it."""
-    elsewhere: dict[str, Elsewhere] = field(default_factory=dict)
-    above: dict[str, Above] = field(default_factory=dict)
+    elsewhere: dict[str, ExternalParent] = field(default_factory=dict)
+    above: dict[str, ParentRequirement] = field(default_factory=dict)
     bindings: Bindings | None = None
     """None: there are none."""
     topics: tuple[str, ...] | None = None
@@ -95,22 +95,22 @@ class Texts(Record, frozen=True, omit_defaults=True):
 # Writing ---------------------------------------------------------------------------------------
 
 
-def as_table(texts: Texts) -> Table:
+def as_table(texts: ReviewedTexts) -> Table:
     """Plain values, for TOML and for a digest."""
     table = plain(texts)
     assert isinstance(table, dict)
     return table
 
 
-def above(requirement: Requirement) -> Above:
+def above(requirement: Requirement) -> ParentRequirement:
     """A requirement above another one."""
     texts = (requirement.title, requirement.text, requirement.rationale)
-    return Above(*texts, requirement.parents)
+    return ParentRequirement(*texts, requirement.parents)
 
 
-def header_of(texts: Texts) -> Above:
+def header_of(texts: ReviewedTexts) -> ParentRequirement:
     """The same of the requirement itself."""
-    return Above(texts.title, texts.text, texts.rationale, texts.parents)
+    return ParentRequirement(texts.title, texts.text, texts.rationale, texts.parents)
 
 
 def hazard_texts(hazard: Hazard) -> HazardTexts:
@@ -118,12 +118,12 @@ def hazard_texts(hazard: Hazard) -> HazardTexts:
     return HazardTexts(hazard.title, hazard.text, hazard.severity, hazard.source)
 
 
-def elsewhere(parent: Parent) -> Elsewhere:
+def elsewhere(parent: Parent) -> ExternalParent:
     """A parent in another tool."""
-    return Elsewhere(parent.title, parent.text)
+    return ExternalParent(parent.title, parent.text)
 
 
-def canonical_text(rule: Formalized | None) -> str:
+def canonical_text(rule: FormalizedRequirement | None) -> str:
     """The canonical wording of a sentence."""
     return canonical(rule.written) if rule else ""
 
@@ -137,7 +137,7 @@ def written_tables(declarations: Declarations | None) -> Mapping[str, Any]:
 
 
 def bindings(
-    rule: Formalized | None, project: Declarations, written: Mapping[str, Any]
+    rule: FormalizedRequirement | None, project: Declarations, written: Mapping[str, Any]
 ) -> Bindings:
     """The tables that a requirement reads.
 
@@ -175,13 +175,13 @@ def _chosen(written: Mapping[str, Any], kind: str, names: Iterable[str]) -> dict
 # Reading ---------------------------------------------------------------------------------------
 
 
-def read(value: object) -> Texts | str:
+def read(value: object) -> ReviewedTexts | str:
     """The texts from a table of a lock; or what is wrong with it."""
     if not _is_plain(value):
         return "it has a value that no requirement and no binding has"
     try:
-        return decoded(value, Texts)
-    except MisshapenError as error:
+        return decoded(value, ReviewedTexts)
+    except SchemaError as error:
         return str(error)
 
 

@@ -7,11 +7,11 @@ from random import Random
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.transition import State
-from fretc.testing.conformance.field import Field, Plan
+from fretc.testing.conformance.oracle import Oracle, Run, Tick, Truths
 from fretc.testing.conformance.program import Program
-from fretc.testing.conformance.referee import Referee, Run, Tick, Truths
+from fretc.testing.conformance.requirement_groups import Plan, RequirementGroup
 from fretc.testing.search import Letter
 
 Start = Callable[[], Program]
@@ -21,12 +21,12 @@ Start = Callable[[], Program]
 class Driver:
     """Runs of one program."""
 
-    def __init__(self, fields: Sequence[Field], referee: Referee, start: Start) -> None:
+    def __init__(self, fields: Sequence[RequirementGroup], referee: Oracle, start: Start) -> None:
         self._fields, self._referee, self._start = fields, referee, start
         self.runs = self.ticks = 0
         """How many there were of both."""
 
-    def towards(self, field: Field, plan: Plan, choose: Random | None, most: int) -> Run:
+    def towards(self, field: RequirementGroup, plan: Plan, choose: Random | None, most: int) -> Run:
         """A run with inputs that lead to an aim.
 
         Args:
@@ -36,7 +36,7 @@ class Driver:
             most: ticks, where the program does not help.
 
         Raises:
-            BeyondError: no value is known for an input.
+            UnsupportedError: no value is known for an input.
             ProgramError: the program does not keep to the protocol.
             OutOfTimeError: it takes too long to find the inputs.
         """
@@ -61,7 +61,7 @@ class Driver:
             most: ticks.
 
         Raises:
-            BeyondError: as `towards`; ProgramError, too.
+            UnsupportedError: as `towards`; ProgramError, too.
         """
         sides = [_Side(each, choose, change) for each in self._fields]
         return self._run(
@@ -87,7 +87,7 @@ class Driver:
             while (values := inputs(len(rows))) is not None:
                 missing = next((name for name in referee.inputs if name not in values), None)
                 if missing is not None:
-                    raise BeyondError(f"no value is known for `{missing}`")
+                    raise UnsupportedError(f"no value is known for `{missing}`")
                 given = {name: values[name] for name in referee.inputs}
                 answer = dict(zip(referee.outputs, program.step([*given.values()]), strict=True))
                 truths = referee.step({**given, **answer})
@@ -103,7 +103,7 @@ class Driver:
 class _Side:
     """Where a run is in one field."""
 
-    def __init__(self, field: Field, choose: Random | None, change: float = 0.5) -> None:
+    def __init__(self, field: RequirementGroup, choose: Random | None, change: float = 0.5) -> None:
         self.field, self._choose, self._change = field, choose, change
         self.state: State = field.transition.start
         self.last: Letter = {}

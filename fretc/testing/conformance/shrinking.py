@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from fretc.testing.conformance.referee import Run, Tick
+from fretc.testing.conformance.oracle import Run, Tick
 
 MOST = 400
 """Runs for one failure."""

@@ -10,7 +10,7 @@ from typing import assert_never
 
 from compiler.files.artifact import Artifact
 from compiler.files.templating import to_json
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c import monitor as c
 from compiler.targets.python import monitor as emitted
 from fretc.testing.exports import simulator
@@ -37,7 +37,7 @@ Left = Mapping[str, str]
 
 def files(
     suite: Suite,
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     form: Form,
     languages: Sequence[Language] = (Language.PYTHON,),
 ) -> tuple[tuple[Artifact, ...], Left]:
@@ -85,7 +85,9 @@ def _apart(file: Artifact, taken: Set[PurePosixPath]) -> Artifact:
     return replace(file, path=path)
 
 
-def _refusal(rule: Formalized, test: Test, form: Form, languages: Sequence[Language]) -> str | None:
+def _refusal(
+    rule: FormalizedRequirement, test: Test, form: Form, languages: Sequence[Language]
+) -> str | None:
     """Why a test cannot be written so, as where there is no monitor; None: it can."""
     match form:
         case Form.FRET:
@@ -131,7 +133,7 @@ def _index(tests: Sequence[Test], tables: Mapping[str, Table]) -> Artifact:
     return Artifact(PurePosixPath(INDEX), csv_text((*_COLUMNS, "option", "words"), rows))
 
 
-def _fret(tests: Sequence[Test], rules: Mapping[str, Formalized]) -> Iterator[Artifact]:
+def _fret(tests: Sequence[Test], rules: Mapping[str, FormalizedRequirement]) -> Iterator[Artifact]:
     """`ltlsim.json` with all traces, and each of them as CSV."""
     text = f"{to_json(simulator.traces(rules, tests))}\n"
     yield Artifact(PurePosixPath("ltlsim.json"), text)

@@ -8,9 +8,9 @@ from enum import StrEnum
 from pathlib import PurePosixPath
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c import monitor as c
 from compiler.targets.javascript import monitor as javascript
 from compiler.targets.python import monitor as python
@@ -57,7 +57,7 @@ def targets(languages: Sequence[Language]) -> list[Target]:
 
 
 def pytest_file(
-    rule: Formalized, sentence: str, tests: Sequence[Test], languages: Sequence[Language]
+    rule: FormalizedRequirement, sentence: str, tests: Sequence[Test], languages: Sequence[Language]
 ) -> Artifact:
     """`test_<id>.py`.
 
@@ -88,7 +88,7 @@ def pytest_file(
     return Artifact(PurePosixPath(f"test_{stem.removesuffix('_monitor')}.py"), text)
 
 
-def _case(rule: Formalized, test: Test, languages: Sequence[Language]) -> _Case:
+def _case(rule: FormalizedRequirement, test: Test, languages: Sequence[Language]) -> _Case:
     own = table(rule, test)
     more = truths(rule, test) if Language.C in languages and own.names != rule.watched else None
     return _Case(test, f"test_{test.name.replace('-', '_')}", own, more)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from compiler.files.records import replace
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor as emitted
 from compiler.targets.python.comparisons import NUMBER, TRUTH, Input, front
 from fretc.testing.exports.tables import Table, table, truths
@@ -40,7 +40,7 @@ class Saved:
     """The ids of its requirements that are not there, or have another sentence now."""
 
 
-def saved(suite: Suite, rules: Sequence[Formalized]) -> Saved:
+def saved(suite: Suite, rules: Sequence[FormalizedRequirement]) -> Saved:
     """The tests of a file that are about the rules.
 
     Raises:
@@ -78,7 +78,7 @@ def saved(suite: Suite, rules: Sequence[Formalized]) -> Saved:
     return Saved(replace(suite, requirements=requirements, tests=tests, **chosen), others)
 
 
-def _check(rule: Formalized, monitor: Monitor, test: Test) -> None:
+def _check(rule: FormalizedRequirement, monitor: Monitor, test: Test) -> None:
     """Whether the monitor can read it, and says what it expects.
 
     Raises:
@@ -93,7 +93,7 @@ def _check(rule: Formalized, monitor: Monitor, test: Test) -> None:
         _check_table(rule, monitor, test, read)
 
 
-def _check_table(rule: Formalized, monitor: Monitor, test: Test, read: Table) -> None:
+def _check_table(rule: FormalizedRequirement, monitor: Monitor, test: Test, read: Table) -> None:
     variables = front((rule,), rule.watched)
     inputs = {} if variables is None or read.of_truths else variables.inputs
     for _, values in read.rows:

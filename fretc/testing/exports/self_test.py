@@ -8,9 +8,9 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from compiler.files.artifact import Artifact
-from compiler.files.edition import __version__
+from compiler.files.build_id import __version__
 from compiler.files.templating import render
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c.monitor import Interface, interface
 from fretc.testing.exports.tables import Cell, truths
 from fretc.testing.suite import Test
@@ -33,7 +33,7 @@ class _Requirement:
     tests: tuple[Mapping[str, Any], ...]
 
 
-def self_test(rules: Sequence[Formalized], tests: Sequence[Test]) -> Artifact:
+def self_test(rules: Sequence[FormalizedRequirement], tests: Sequence[Test]) -> Artifact:
     """The tests of monitors in C, which stand beside the file.
 
     Args:
@@ -45,7 +45,9 @@ def self_test(rules: Sequence[Formalized], tests: Sequence[Test]) -> Artifact:
     return Artifact(NAME, text)
 
 
-def _requirements(rules: Sequence[Formalized], tests: Sequence[Test]) -> Iterator[_Requirement]:
+def _requirements(
+    rules: Sequence[FormalizedRequirement], tests: Sequence[Test]
+) -> Iterator[_Requirement]:
     before = 0
     for rule, names in zip(rules, interface(rules), strict=True):
         own = [test for test in tests if test.requirement == rule.id]
@@ -54,7 +56,7 @@ def _requirements(rules: Sequence[Formalized], tests: Sequence[Test]) -> Iterato
         before += len(own)
 
 
-def _test(rule: Formalized, test: Test, number: int) -> dict[str, Any]:
+def _test(rule: FormalizedRequirement, test: Test, number: int) -> dict[str, Any]:
     rows = truths(rule, test).rows
     return {
         "number": number,

@@ -12,7 +12,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.printing import is_compound
 from fretc.testing.exports.tables import Row, columns, csv_text
 from fretc.testing.suite import Polarity, Test
@@ -22,7 +22,7 @@ LEAST = 4
 Numbers = tuple[float, ...]
 
 
-def refusal(rule: Formalized, test: Test) -> str | None:
+def refusal(rule: FormalizedRequirement, test: Test) -> str | None:
     """Why LTLSIM cannot show a test; None: it can."""
     if test.polarity is Polarity.UNKNOWN:
         return "a value is unknown"
@@ -33,7 +33,9 @@ def refusal(rule: Formalized, test: Test) -> str | None:
     return f"no number is known for `{min(missing)}`" if missing else None
 
 
-def traces(rules: Mapping[str, Formalized], tests: Sequence[Test]) -> list[dict[str, Any]]:
+def traces(
+    rules: Mapping[str, FormalizedRequirement], tests: Sequence[Test]
+) -> list[dict[str, Any]]:
     """What LTLSIM imports as JSON.
 
     Args:
@@ -43,7 +45,7 @@ def traces(rules: Mapping[str, Formalized], tests: Sequence[Test]) -> list[dict[
     return [_trace(rules[test.requirement], test) for test in tests]
 
 
-def _trace(rule: Formalized, test: Test) -> dict[str, Any]:
+def _trace(rule: FormalizedRequirement, test: Test) -> dict[str, Any]:
     names, rows = _numbers(rule, test)
     kinds = [isinstance(test.rows[0].values.get(name), bool) for name in names]
     every = [*zip(*rows, strict=True)]
@@ -75,7 +77,7 @@ def _description(test: Test) -> str:
     return shown
 
 
-def table(rule: Formalized, test: Test) -> str:
+def table(rule: FormalizedRequirement, test: Test) -> str:
     """What LTLSIM imports as CSV; its trace is to be as long before."""
     names, rows = _numbers(rule, test)
     ends = [0] * (len(rows) - 1) + [1]
@@ -89,7 +91,7 @@ def _names(test: Test) -> tuple[str, ...]:
     return tuple(name for name in known if not is_compound(name))
 
 
-def _numbers(rule: Formalized, test: Test) -> tuple[list[str], list[Numbers]]:
+def _numbers(rule: FormalizedRequirement, test: Test) -> tuple[list[str], list[Numbers]]:
     """Names and the numbers of each tick: LTLSIM has no words and no truth values.
 
     The words of an enumerated signal are constants: the place of each in its list.

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python.comparisons import front
 from fretc.analysis.arena.alphabet import Value
 from fretc.testing.suite import Test
@@ -29,7 +29,7 @@ class Table:
     numbers that make its comparisons so. The monitor reads it with `--propositions`."""
 
 
-def table(rule: Formalized, test: Test) -> Table:
+def table(rule: FormalizedRequirement, test: Test) -> Table:
     """The columns of a test that the monitor of its requirement reads."""
     variables = front((rule,), rule.watched)
     names = rule.watched if variables is None else tuple(variables.inputs)
@@ -39,7 +39,7 @@ def table(rule: Formalized, test: Test) -> Table:
     return Table(names, columns(test, names), of_truths=not known)
 
 
-def truths(rule: Formalized, test: Test) -> Table:
+def truths(rule: FormalizedRequirement, test: Test) -> Table:
     """The truth of the propositions of a test, as the monitor in C takes it."""
     return Table(rule.watched, columns(test, rule.watched), of_truths=True)
 

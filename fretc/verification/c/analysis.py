@@ -6,25 +6,25 @@ from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import not_checked
 from compiler.targets.c.driver import ENTRY, driver
 from fretc.verification.c.form import without_comments
 from fretc.verification.c.language import base, checked
-from fretc.verification.compiled.plan import Checked, Given
-from fretc.verification.compiled.text import StrangeTextError
-from fretc.verification.compiled.verifying import Examined
+from fretc.verification.compiled.plan import ParsedSource, SourceText
+from fretc.verification.compiled.text import UnexpectedLayoutError
+from fretc.verification.compiled.verifying import RequirementOutcome
 from fretc.verification.engines import frama_c
 from fretc.verification.engines.sandbox import Limits
 
 
 def analysed(
-    rules: Sequence[Formalized],
-    given: Given,
+    rules: Sequence[FormalizedRequirement],
+    given: SourceText,
     program: str,
     limits: Limits,
-    others: Sequence[Formalized] = (),
-) -> Iterator[Examined]:
+    others: Sequence[FormalizedRequirement] = (),
+) -> Iterator[RequirementOutcome]:
     """What Frama-C says of a monitor, for each of its rules: it is one answer.
 
     Args:
@@ -41,19 +41,19 @@ def analysed(
     try:
         found = checked(given, (*rules, *others))
         run = prepared(given, found)
-    except StrangeTextError as error:
+    except UnexpectedLayoutError as error:
         for rule in rules:
-            yield Examined(rule, not_checked(str(error)), frama_c.NAME, artefacts)
+            yield RequirementOutcome(rule, not_checked(str(error)), frama_c.NAME, artefacts)
         return
     outcome, engine = frama_c.answer(program, run, limits)
     artefacts[f"{PurePath(given.name).stem}_driver.c"] = sha256(run.driver)
     own = {rule.id for rule in found.rules}
     absent = not_checked("the monitor is of other requirements")
     for rule in rules:
-        yield Examined(rule, outcome if rule.id in own else absent, engine, artefacts)
+        yield RequirementOutcome(rule, outcome if rule.id in own else absent, engine, artefacts)
 
 
-def prepared(given: Given, found: Checked) -> frama_c.Run:
+def prepared(given: SourceText, found: ParsedSource) -> frama_c.Run:
     """The texts that are analysed. What stands in comments, as annotations do, is left out.
 
     Args:

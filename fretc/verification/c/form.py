@@ -16,8 +16,8 @@ from fretc.verification.compiled.flow import Flow, Form, Grammar
 from fretc.verification.compiled.text import (
     NAME,
     Lexis,
-    StrangeTextError,
     Tokens,
+    UnexpectedLayoutError,
     is_constant,
     same,
     split,
@@ -64,7 +64,7 @@ def formed(text: str, written: str, base: str, cells: Sequence[str], inputs: Seq
         inputs: those of the struct of inputs.
 
     Raises:
-        StrangeTextError: it has another form.
+        UnexpectedLayoutError: it has another form.
     """
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
     free = ((f"{base}_clear",), (f"{base}_advance",))
@@ -100,7 +100,7 @@ def _statements(body: Tokens) -> Iterator[Tokens]:
 
 
 def _same_cells(cleared: Tokens, own: Tokens) -> None:
-    """Raises StrangeTextError where not each cell gets a first value, in the order of fretc.
+    """Raises UnexpectedLayoutError where not each cell gets a first value, in the order of fretc.
 
     What has none depends on what the memory held before: no exploration tries all of that.
     """
@@ -108,7 +108,7 @@ def _same_cells(cleared: Tokens, own: Tokens) -> None:
     for actual, expected in zip_longest(given, written, fillvalue=()):
         both = _is_first_value(actual) and _is_first_value(expected)
         if not actual:
-            raise StrangeTextError(f"there is no `{' '.join(expected)}`")
+            raise UnexpectedLayoutError(f"there is no `{' '.join(expected)}`")
         if actual != expected and not (both and actual[:3] == expected[:3]):
             raise strange(actual)
 
@@ -146,7 +146,7 @@ class _Step(Flow):
         """One more statement.
 
         Raises:
-            StrangeTextError: it is of no form that is known to be harmless.
+            UnexpectedLayoutError: it is of no form that is known to be harmless.
         """
         if not (self._branch(statement) or self._assignment(statement) or self._fixed(statement)):
             raise strange(statement)
@@ -158,7 +158,7 @@ class _Step(Flow):
         be dropped by a compiler before it looks for overflows, as of `x + 1 - 1` or of `x + 1 > x`.
 
         Raises:
-            StrangeTextError: there is anything else in it.
+            UnexpectedLayoutError: there is anything else in it.
         """
         text = _NEGATIVE.sub("", _POINTER.sub("", " ".join(value)))
         for each in _SUM.finditer(text):

@@ -6,14 +6,14 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c.monitor import TARGET
 from compiler.targets.target import Options
 from fretc.verification.c.build import built, compiler, layout
 from fretc.verification.c.form import LEXIS, formed
 from fretc.verification.compiled.library import saved
-from fretc.verification.compiled.plan import Checked, Given, Prepared, implemented
-from fretc.verification.compiled.text import StrangeTextError, same
+from fretc.verification.compiled.plan import BuiltLibrary, ParsedSource, SourceText, implemented
+from fretc.verification.compiled.text import UnexpectedLayoutError, same
 
 _OUTCOMES = re.compile(r"^    fretc_outcome (\w+); /\* (.*) \*/$", re.MULTILINE)
 """The members of that struct, and the ids beside them."""
@@ -21,7 +21,7 @@ _OUTCOMES = re.compile(r"^    fretc_outcome (\w+); /\* (.*) \*/$", re.MULTILINE)
 tool = compiler
 
 
-def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
+def checked(given: SourceText, rules: Sequence[FormalizedRequirement]) -> ParsedSource:
     """The texts in the form that fretc writes.
 
     Args:
@@ -29,7 +29,7 @@ def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
         rules: those that they may implement.
 
     Raises:
-        StrangeTextError: they have another form.
+        UnexpectedLayoutError: they have another form.
     """
     own_rules = implemented([id for _, id in _OUTCOMES.findall(given.header)], rules)
     own, own_header = _written(given, own_rules)
@@ -40,10 +40,10 @@ def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
     form = formed(given.text, own, prefix, cells, inputs)
     outcomes = tuple(name for name, _ in _OUTCOMES.findall(own_header))
     is_original = LEXIS.tokens(given.text) == LEXIS.tokens(own)
-    return Checked(own_rules, outcomes, form, cells, inputs, is_original)
+    return ParsedSource(own_rules, outcomes, form, cells, inputs, is_original)
 
 
-def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prepared:
+def prepared(program: str, given: SourceText, checked: ParsedSource, folder: Path) -> BuiltLibrary:
     """The library; nothing of it has run.
 
     Raises:
@@ -52,23 +52,25 @@ def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prep
     places = layout(given.header_name, base(given), checked.cells)
     binary = built(program, given.text, (given.header_name, given.header), places)
     library, digest = saved(binary, folder, base(given), checked.cells)
-    return Prepared(library, binary.engine, {f"{Path(given.name).stem}.so": digest})
+    return BuiltLibrary(library, binary.engine, {f"{Path(given.name).stem}.so": digest})
 
 
-def base(given: Given) -> str:
+def base(given: SourceText) -> str:
     """What the names of types and functions begin with, in texts that were checked."""
     (found,) = re.findall(r"} (\w+)_outcomes ;", " ".join(LEXIS.tokens(given.header)))
     return str(found)
 
 
-def _written(given: Given, rules: Sequence[Formalized]) -> tuple[str, str]:
+def _written(given: SourceText, rules: Sequence[FormalizedRequirement]) -> tuple[str, str]:
     """What fretc writes for these rules: in one file if the header has the name of that."""
     for one_file in (False, True) if len(rules) == 1 else (True,):
         files = {str(f.path): f.text for f in TARGET.emit(rules, Options(one_file=one_file))}
         header = files.get(given.header_name)
         if header is not None:
             return files[given.header_name.removesuffix(".h") + ".c"], header
-    raise StrangeTextError(f"`{given.header_name}` is not the name that fretc gives the header")
+    raise UnexpectedLayoutError(
+        f"`{given.header_name}` is not the name that fretc gives the header"
+    )
 
 
 def _members(header: str, name: str) -> tuple[str, ...]:

@@ -115,10 +115,10 @@ class Library:
         self._library = library
         self._starts = self.save(0), self.save(1)
 
-    def judging(self) -> Judging:
+    def judging(self) -> CompiledMonitorMachine:
         """Both rails, before the first tick."""
         self._restart()
-        return Judging(self)
+        return CompiledMonitorMachine(self)
 
     def rail(self, letters: Sequence[Letter], *, doubt: bool) -> CompiledRail:
         """One of them, before the first tick."""
@@ -207,7 +207,7 @@ def _joined(places: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
     return found
 
 
-class Judging:
+class CompiledMonitorMachine:
     """A compiled monitor whose propositions are all known, with both of its rails."""
 
     def __init__(self, library: Library) -> None:

@@ -8,18 +8,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of
 from fretc.verification.compiled.delays import Delayed
 from fretc.verification.compiled.flow import Form
-from fretc.verification.compiled.text import StrangeTextError
+from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.monitor.equivalence import Machine
 from fretc.verification.monitor.rails import Letter, Stepping
 from fretc.verification.monitor.verifying import NotAMonitorError
 
 
 @dataclass(frozen=True, slots=True)
-class Given:
+class SourceText:
     """A monitor in another language than Python."""
 
     name: str
@@ -52,10 +52,10 @@ class Plan:
 
 
 @dataclass(frozen=True, slots=True)
-class Checked:
+class ParsedSource:
     """A text that has the form that fretc writes."""
 
-    rules: tuple[Formalized, ...]
+    rules: tuple[FormalizedRequirement, ...]
     """In the order of its outcomes."""
     outcomes: tuple[str, ...]
     """Their names in the text."""
@@ -67,20 +67,20 @@ class Checked:
     is_original: bool = False
     """Whether the text is, but for comments and layout, the one that fretc writes."""
 
-    def plan(self, rule: Formalized) -> Plan:
+    def plan(self, rule: FormalizedRequirement) -> Plan:
         """Where a requirement is.
 
         Raises:
-            StrangeTextError: it is not there, or depends on more than its sentence speaks of.
+            UnexpectedLayoutError: it is not there, or depends on more than its sentence speaks of.
         """
         ids = [each.id for each in self.rules]
         if rule.id not in ids:
-            raise StrangeTextError("the monitor is of other requirements")
+            raise UnexpectedLayoutError("the monitor is of other requirements")
         place, own = ids.index(rule.id), atoms(rule)
         part = self.form.part(self.outcomes[place])
         names = tuple(dict.fromkeys(name for each in self.rules for name in each.watched))
         if not {names[i] for i in part.inputs} <= {*own}:
-            raise StrangeTextError(f"{rule.id} depends on what its sentence does not speak of")
+            raise UnexpectedLayoutError(f"{rule.id} depends on what its sentence does not speak of")
         places = tuple(names.index(name) if name in names else -1 for name in own)
         return Plan(part.cells, place, places, len(names), self.is_original)
 
@@ -118,7 +118,7 @@ class Executable(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Prepared:
+class BuiltLibrary:
     """A text that was checked, as it is to run."""
 
     executable: Executable
@@ -134,7 +134,7 @@ class Language(Protocol):
     def tool(self) -> str | None:
         """The path of the program that compiles or runs; None: none is installed."""
 
-    def checked(self, given: Given, rules: Sequence[Formalized]) -> Checked:
+    def checked(self, given: SourceText, rules: Sequence[FormalizedRequirement]) -> ParsedSource:
         """The text in the form that fretc writes.
 
         Args:
@@ -143,10 +143,12 @@ class Language(Protocol):
 
         Raises:
             NotAMonitorError: it names no requirement.
-            StrangeTextError: it has another form.
+            UnexpectedLayoutError: it has another form.
         """
 
-    def prepared(self, program: str, given: Given, checked: Checked, folder: Path) -> Prepared:
+    def prepared(
+        self, program: str, given: SourceText, checked: ParsedSource, folder: Path
+    ) -> BuiltLibrary:
         """The text, compiled; nothing of it has run.
 
         Args:
@@ -160,24 +162,26 @@ class Language(Protocol):
         """
 
 
-def atoms(rule: Formalized) -> tuple[str, ...]:
+def atoms(rule: FormalizedRequirement) -> tuple[str, ...]:
     """The order of the values in a letter."""
     return tuple(dict.fromkeys((*atoms_of(rule.sentence), *rule.watched)))
 
 
-def implemented(ids: Sequence[str], rules: Sequence[Formalized]) -> tuple[Formalized, ...]:
+def implemented(
+    ids: Sequence[str], rules: Sequence[FormalizedRequirement]
+) -> tuple[FormalizedRequirement, ...]:
     """The rules with the ids that a text tells.
 
     Raises:
         NotAMonitorError: there is none.
-        StrangeTextError: one of them is not there.
+        UnexpectedLayoutError: one of them is not there.
     """
     by_id = {each.id: each for each in rules}
     if not ids:
         raise NotAMonitorError("it names no requirement")
     for id in ids:
         if id not in by_id:
-            raise StrangeTextError(
+            raise UnexpectedLayoutError(
                 f"it has {id}, which is not among the requirements that are read"
             )
     return tuple(by_id[id] for id in dict.fromkeys(ids))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import Valuation
 from compiler.program.lowering import program
 from compiler.program.program import MARKS
@@ -59,7 +59,7 @@ class PythonRail:
     """A rail of a monitor in Python, with what it remembers in ticks from now."""
 
     def __init__(
-        self, monitor: Monitor, rule: Formalized, atoms: Sequence[str], *, doubt: bool
+        self, monitor: Monitor, rule: FormalizedRequirement, atoms: Sequence[str], *, doubt: bool
     ) -> None:
         """Before the first tick.
 

@@ -31,7 +31,7 @@ NUMBER = re.compile(r"(0|[1-9]\d*)u?", re.ASCII)
 _OPENING, _CLOSING = frozenset("([{"), frozenset(")]}")
 
 
-class StrangeTextError(Exception):
+class UnexpectedLayoutError(Exception):
     """The text is not laid out as fretc writes it; the message says where."""
 
 
@@ -50,18 +50,18 @@ class Lexis:
         """The text without comments and layout.
 
         Raises:
-            StrangeTextError: there is something in it that fretc never writes.
+            UnexpectedLayoutError: there is something in it that fretc never writes.
         """
         moving = self.moving.search(text)
         if moving:
-            raise StrangeTextError(
+            raise UnexpectedLayoutError(
                 f"line {_line(text, moving.start())} ends elsewhere than it seems"
             )
         found, place, line = list[str](), 0, 1
         while place < len(text):
             match = self.token.match(text, place)
             if match is None:
-                raise StrangeTextError(f"line {line} has `{text[place : place + 1]!a}`")
+                raise UnexpectedLayoutError(f"line {line} has `{text[place : place + 1]!a}`")
             if match["gap"] is None:
                 found.append(Token.at(match[0], line))
             elif "\n" in match[0] and found and found[-1] in self.line_bound:
@@ -75,15 +75,15 @@ def _line(text: str, place: int) -> int:
     return text.count("\n", 0, place) + 1
 
 
-def strange(statement: Sequence[str]) -> StrangeTextError:
+def strange(statement: Sequence[str]) -> UnexpectedLayoutError:
     """Of a statement that fretc would not write."""
     words = " ".join(statement).replace("\n", "\\n")
     line = next((f"line {token.line}" for token in statement if isinstance(token, Token)), "it")
-    return StrangeTextError(f"{line} is not laid out as fretc writes it: `{words[:80]}`")
+    return UnexpectedLayoutError(f"{line} is not laid out as fretc writes it: `{words[:80]}`")
 
 
 def same(given: Tokens, written: Tokens) -> None:
-    """Raises StrangeTextError, with the place, where two texts differ."""
+    """Raises UnexpectedLayoutError, with the place, where two texts differ."""
     if given == written:
         return
     pairs = zip(given, written, strict=False)
@@ -99,7 +99,7 @@ def split(text: Tokens, functions: Sequence[Tokens]) -> tuple[Tokens, list[Token
         functions: the tokens that each begins with, in the order of the text.
 
     Raises:
-        StrangeTextError: one is not there.
+        UnexpectedLayoutError: one is not there.
     """
     outside, bodies, place = list[str](), list[Tokens](), 0
     for head in functions:
@@ -115,7 +115,7 @@ def _place(text: Tokens, head: Tokens, start: int) -> int:
     for place in range(start, len(text)):
         if text[place : place + len(head)] == head and "{" in text[place:]:
             return place
-    raise StrangeTextError(f"there is no `{' '.join(head)}`")
+    raise UnexpectedLayoutError(f"there is no `{' '.join(head)}`")
 
 
 def _end(text: Tokens, start: int) -> int:
@@ -154,7 +154,7 @@ def is_constant(value: Sequence[str]) -> bool:
 
 
 def same_but_constants(given: Sequence[Tokens], own: Sequence[Tokens]) -> None:
-    """Raises StrangeTextError where fields differ in more than their constants.
+    """Raises UnexpectedLayoutError where fields differ in more than their constants.
 
     Args:
         given: fields with their values, `name : value`.
@@ -180,7 +180,7 @@ def records(text: Tokens, head: Tokens) -> list[Fields]:
         head: what each record begins with, up to its brace.
 
     Raises:
-        StrangeTextError: it is no array of records.
+        UnexpectedLayoutError: it is no array of records.
     """
     if text[:1] != ("[",) or text[-1:] != ("]",):
         raise strange(text)

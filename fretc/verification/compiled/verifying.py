@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import excluded
 from compiler.formalization.numbers.reals import MOST_SEARCHED, by_numbers
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
@@ -25,16 +25,16 @@ from compiler.logic.orders import Exclusion, only_possible
 from compiler.targets.python import monitor as python
 from fretc.verification.compiled.delays import FreeLetter, PythonDelayed
 from fretc.verification.compiled.plan import (
-    Checked,
     Executable,
-    Given,
     Language,
     Machines,
+    ParsedSource,
     Plan,
+    SourceText,
     atoms,
 )
 from fretc.verification.compiled.readings import NAMES, PythonJudging, PythonRail
-from fretc.verification.compiled.text import StrangeTextError
+from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.tools import ToolError
 from fretc.verification.engines.sandbox import Limits, Session, Stopped
 from fretc.verification.monitor import rails
@@ -43,10 +43,10 @@ from fretc.verification.monitor.verifying import MOST_STATES, judged_wrongly, lo
 from monitors.loading import load
 
 
-class Examined(NamedTuple):
+class RequirementOutcome(NamedTuple):
     """An outcome, with what it rests on."""
 
-    rule: Formalized
+    rule: FormalizedRequirement
     outcome: Outcome
     engine: str
     """What compiled or ran the text, with version and flags; empty where nothing did."""
@@ -55,13 +55,13 @@ class Examined(NamedTuple):
 
 
 def verified(
-    rules: Sequence[Formalized],
-    given: Given,
+    rules: Sequence[FormalizedRequirement],
+    given: SourceText,
     language: Language,
     program: str,
     limits: Limits,
-    others: Sequence[Formalized] = (),
-) -> Iterator[Examined]:
+    others: Sequence[FormalizedRequirement] = (),
+) -> Iterator[RequirementOutcome]:
     """Compare a text with each of its rules, in processes of their own.
 
     Args:
@@ -77,22 +77,22 @@ def verified(
         try:
             checked = language.checked(given, (*rules, *others))
             found = language.prepared(program, given, checked, Path(folder))
-        except (StrangeTextError, ToolError) as error:
+        except (UnexpectedLayoutError, ToolError) as error:
             for rule in rules:
-                yield Examined(rule, not_checked(str(error)), "", artefacts)
+                yield RequirementOutcome(rule, not_checked(str(error)), "", artefacts)
             return
         artefacts.update(found.artefacts)
         for rule in rules:
             outcome = _confined(rule, checked, found.executable, session)
-            yield Examined(rule, outcome, found.engine, artefacts)
+            yield RequirementOutcome(rule, outcome, found.engine, artefacts)
 
 
 def _confined(
-    rule: Formalized, checked: Checked, executable: Executable, session: Session
+    rule: FormalizedRequirement, checked: ParsedSource, executable: Executable, session: Session
 ) -> Outcome:
     try:
         plan = checked.plan(rule)
-    except StrangeTextError as error:
+    except UnexpectedLayoutError as error:
         return not_checked(str(error))
     outcome = session.call(explored, rule, executable, plan, MOST_STATES)
     if isinstance(outcome, Stopped):
@@ -103,7 +103,9 @@ def _confined(
 # In the process that runs it --------------------------------------------------------------------
 
 
-def explored(rule: Formalized, executable: Executable, plan: Plan, limit: int) -> Outcome:
+def explored(
+    rule: FormalizedRequirement, executable: Executable, plan: Plan, limit: int
+) -> Outcome:
     """Run the text, and compare it; a crash of a library is one of this process.
 
     Args:
@@ -119,7 +121,7 @@ def explored(rule: Formalized, executable: Executable, plan: Plan, limit: int) -
         return not_checked(str(error))
 
 
-def _explored(rule: Formalized, machines: Machines, limit: int) -> Outcome:
+def _explored(rule: FormalizedRequirement, machines: Machines, limit: int) -> Outcome:
     free = _without_delays(rule, machines, limit)
     if free is not None:
         return free
@@ -138,7 +140,7 @@ def _explored(rule: Formalized, machines: Machines, limit: int) -> Outcome:
     )
 
 
-def _without_delays(rule: Formalized, machines: Machines, limit: int) -> Outcome | None:
+def _without_delays(rule: FormalizedRequirement, machines: Machines, limit: int) -> Outcome | None:
     """Proved, if both monitors are the same whatever bits their delay lines give.
 
     Then each verdict of the text is that of the monitor in Python, for it follows from both rails
@@ -161,7 +163,7 @@ def _without_delays(rule: Formalized, machines: Machines, limit: int) -> Outcome
         further = tuple(f"delay line {place}" for place in range(len(windows)))
         free = PythonDelayed(right, left.lines)
         result = rails.in_lock_step(left, free, letters, limit, (*NAMES, *further))
-        if not isinstance(result, rails.Same):
+        if not isinstance(result, rails.Equivalent):
             return None
         states += result.states
         ticks = _PERIODS * max(line.length for line in left.lines)
@@ -184,7 +186,7 @@ _PERIODS = 4
 
 
 def _agree(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     machines: Machines,
     letters: Sequence[rails.Letter],
     ticks: int,
@@ -204,13 +206,13 @@ def _agree(
     return True
 
 
-def _letters(rule: Formalized, names: Sequence[str]) -> Sequence[rails.Letter]:
+def _letters(rule: FormalizedRequirement, names: Sequence[str]) -> Sequence[rails.Letter]:
     """The values that may come at a tick, unknown ones among them."""
     every = tuple(product((False, True, None), repeat=len(names)))
     return only_possible(every, names, excluded(rule))
 
 
-def _read(rule: Formalized, machines: Machines, limit: int) -> int | Outcome:
+def _read(rule: FormalizedRequirement, machines: Machines, limit: int) -> int | Outcome:
     """The states in which each rail tells what that of the monitor in Python tells."""
     names = atoms(rule)
     if len(names) > rails.MOST_PROPOSITIONS:
@@ -221,7 +223,9 @@ def _read(rule: Formalized, machines: Machines, limit: int) -> int | Outcome:
     every = _letters(rule, names)
     monitor, states = load("reference", python.text(rule)), 0
 
-    def compare(more: Sequence[Exclusion], *, doubt: bool) -> rails.Same | rails.Apart | None:
+    def compare(
+        more: Sequence[Exclusion], *, doubt: bool
+    ) -> rails.Equivalent | rails.Distinguished | None:
         letters = only_possible(every, names, more)
         left = machines.rail(letters, doubt=doubt)
         right = PythonRail(monitor, rule, names, doubt=doubt)
@@ -229,14 +233,14 @@ def _read(rule: Formalized, machines: Machines, limit: int) -> int | Outcome:
         return rails.in_lock_step(left, right, letters, most, NAMES)
 
     for doubt in (False, True):
-        result, note = by_numbers(rule, names, rails.Apart, partial(compare, doubt=doubt))
+        result, note = by_numbers(rule, names, rails.Distinguished, partial(compare, doubt=doubt))
         match result:
             case None:
                 return not_checked(f"with unknown values there are more than {limit} states")
-            case rails.Apart(word, signal):
+            case rails.Distinguished(word, signal):
                 which = "possible" if doubt else "certain"
                 fault = f"the monitor in Python tells another {signal} in `{which}` on a trace"
                 return refuted(f"{fault}{noted(note)}", Trace(names, word))
-            case rails.Same(count):
+            case rails.Equivalent(count):
                 states += count
     return states

@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Outcome, Proof, not_checked, proof, proved
 from compiler.targets import dafny
 from compiler.targets.dafny_claims import claims
@@ -37,7 +37,7 @@ _VERSION = re.compile(r"\b(\d+)\.\d+[\w.+-]*")
 
 
 def with_dafny(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     text: str,
     declarations: Declarations | None,
     *,

@@ -16,7 +16,7 @@ from typing import Any
 
 from compiler.targets.python import interceptor
 from compiler.targets.python.interceptor import MARKER
-from fretc.verification.interceptor.purity import StrangeError, bound_names, is_guarded
+from fretc.verification.interceptor.purity import UnexpectedCodeError, bound_names, is_guarded
 from fretish.bindings.declarations import Form, Interception
 from fretish.reading.text_encoding import is_utf8
 from monitors.loading import executed
@@ -83,7 +83,7 @@ def head(text: str) -> Head | str:
             _check_whole(text, tree, node)
     except (SyntaxError, ValueError, RecursionError) as error:
         return f"it is no Python: {error}"
-    except StrangeError as error:
+    except UnexpectedCodeError as error:
         return f"its core is not as fretc can read it: {error}"
     return Head(above)
 
@@ -142,14 +142,14 @@ def _check_node(node: str) -> None:
     Python has no end of ways to change a module from below, so that nothing else is looked into.
     """
     if _shape(node) not in _shapes():
-        raise StrangeError("the node below it is not one that fretc writes")
+        raise UnexpectedCodeError("the node below it is not one that fretc writes")
 
 
 def _check_whole(text: str, core: ast.Module, node: str) -> None:
     """Core and node are the module, one below the other."""
     parts = [*core.body, *ast.parse(node).body]
     if [ast.dump(part) for part in ast.parse(text).body] != [ast.dump(part) for part in parts]:
-        raise StrangeError("core and node are not one below the other")
+        raise UnexpectedCodeError("core and node are not one below the other")
 
 
 @cache

@@ -34,7 +34,7 @@ _UNARY = (ast.Not, ast.USub)
 _COMPARED = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq)
 
 
-class StrangeError(Exception):
+class UnexpectedCodeError(Exception):
     """What is not on the list."""
 
 
@@ -46,13 +46,13 @@ def bound_names(tree: ast.Module, taken: Collection[str]) -> frozenset[str]:
         taken: names that it must not bind.
 
     Raises:
-        StrangeError: it may not be pure, or binds such a name.
+        UnexpectedCodeError: it may not be pure, or binds such a name.
     """
     return _Module(taken).check(tree)
 
 
-def _strange(node: ast.AST) -> StrangeError:
-    return StrangeError(f"`{_line(node)}`")
+def _strange(node: ast.AST) -> UnexpectedCodeError:
+    return UnexpectedCodeError(f"`{_line(node)}`")
 
 
 def _demand(right: bool, node: ast.AST) -> None:
@@ -209,7 +209,7 @@ class _Module:
             ends |= free
             rest -= free
         if rest:
-            raise StrangeError(f"`{self._in_a_circle(min(rest), rest)}` calls itself")
+            raise UnexpectedCodeError(f"`{self._in_a_circle(min(rest), rest)}` calls itself")
 
     def _in_a_circle(self, name: str, rest: set[str]) -> str:
         """One that calls itself; each of `rest` calls another one of them."""

@@ -8,11 +8,11 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.program.lowering import program as lowered
 from compiler.program.program import Program, Requirement, Window
 from compiler.targets.javascript.monitor import text
-from fretc.verification.compiled.plan import Checked, Given, Prepared, implemented
+from fretc.verification.compiled.plan import BuiltLibrary, ParsedSource, SourceText, implemented
 from fretc.verification.compiled.tools import version
 from fretc.verification.javascript.form import formed
 from fretc.verification.javascript.node import FLAGS, Module, placed
@@ -25,7 +25,7 @@ def tool() -> str | None:
     return shutil.which("node")
 
 
-def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
+def checked(given: SourceText, rules: Sequence[FormalizedRequirement]) -> ParsedSource:
     """The text in the form that fretc writes.
 
     Raises:
@@ -35,10 +35,10 @@ def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
     made = _program(own_rules)
     cells, ids = tuple(cell.name for cell in made.cells), tuple(each.id for each in own_rules)
     form = formed(given.text, text(*own_rules), cells, _windows(made), ids)
-    return Checked(own_rules, ids, form, cells, ())
+    return ParsedSource(own_rules, ids, form, cells, ())
 
 
-def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prepared:
+def prepared(program: str, given: SourceText, checked: ParsedSource, folder: Path) -> BuiltLibrary:
     """The module.
 
     Raises:
@@ -48,10 +48,10 @@ def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prep
     ages = {place: _ages(each) for place, each in enumerate(made.requirements)}
     placed(given.text, folder)
     module = Module(program, folder, checked.cells, _windows(made), ages)
-    return Prepared(module, f"Node {version(program)} {' '.join(FLAGS)}", {})
+    return BuiltLibrary(module, f"Node {version(program)} {' '.join(FLAGS)}", {})
 
 
-def _program(rules: Sequence[Formalized]) -> Program:
+def _program(rules: Sequence[FormalizedRequirement]) -> Program:
     return lowered({rule.id: rule.watch for rule in rules})
 
 

@@ -199,10 +199,10 @@ class Node:
     def delayed(self, *, doubt: bool) -> None:
         """None: its windows are those of the monitor in Python, and are explored with all bits."""
 
-    def judging(self) -> Judging:
+    def judging(self) -> NodeMonitorMachine:
         """Both rails, before the first tick."""
         letters = tuple(product((False, True), repeat=len(self._plan.inputs)))
-        return Judging(self._table((0, 1), letters))
+        return NodeMonitorMachine(self._table((0, 1), letters))
 
     def rail(self, letters: Sequence[Letter], *, doubt: bool) -> TableRail:
         """One of them, before the first tick."""
@@ -252,7 +252,7 @@ class Node:
         return json.loads(line)
 
 
-class Told(NamedTuple):
+class Observation(NamedTuple):
     """What is told after a step."""
 
     rails: tuple[Reading, Reading]
@@ -272,7 +272,7 @@ class Table:
     letters: Mapping[Letter, int]
     rows: list[list[tuple[int, int]]] = field(default_factory=list)
     """Of each state and letter the next state, and the number of what is told."""
-    outcomes: list[Told] = field(default_factory=list)
+    outcomes: list[Observation] = field(default_factory=list)
 
     def take(self, answer: Any) -> None:
         """The steps of further states."""
@@ -280,7 +280,7 @@ class Table:
         for certain, possible, verdict, *truths, is_real in answer["told"]:
             rails = Reading(*certain), Reading(*possible)
             both = (_TRUTHS[each] if each >= 0 else "no truth value" for each in truths)
-            self.outcomes.append(Told(rails, (verdict, *both), is_real))
+            self.outcomes.append(Observation(rails, (verdict, *both), is_real))
 
     def step(self, state: int, letter: Letter) -> tuple[int, int]:
         """The next state, and the number of what is told."""
@@ -289,7 +289,7 @@ class Table:
         return self.rows[state][self.letters[letter]]
 
 
-class Judging:
+class NodeMonitorMachine:
     """Both rails, where all propositions are known."""
 
     def __init__(self, table: Table) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from compiler.agents.checking import checked
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, Result, not_applicable
 from compiler.project.folder import Project
 from compiler.targets.ajpf import bundle
@@ -26,7 +26,7 @@ _OF_AGENT = (Layer.AGENT, Layer.AJPF)
 
 
 def prove(
-    rules: Sequence[Formalized], project: Project, request: Request
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> tuple[Proof, ...] | Diagnostic:
     """Of the agent that is given; else of the one that the bundle of each rule has."""
     request.progress("agent: its properties")
@@ -44,7 +44,7 @@ def prove(
     return proofs
 
 
-def _bundle(rule: Formalized, limits: Limits) -> tuple[Proof, ...]:
+def _bundle(rule: FormalizedRequirement, limits: Limits) -> tuple[Proof, ...]:
     refused = ajpf.refusal(rule)
     agent = processes.confined(limits, bundle.checked_agent, rule) if refused is None else refused
     if isinstance(agent, Diagnostic):
@@ -69,6 +69,6 @@ _TOO_SOON = (Code.STATE_ZERO, Code.NO_TIME_TO_REACT)
 """What no reasoning cycle can keep: the agent that breaks it is one that no bundle has."""
 
 
-def _without_agent(rule: Formalized, reason: str) -> Proof:
+def _without_agent(rule: FormalizedRequirement, reason: str) -> Proof:
     outcome = not_applicable(f"there is none: {reason}")
     return unexamined(rule.id, Layer.AGENT, CLAIM, outcome)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof
 from compiler.project.folder import Project
 from fretc.verification.layers.request import Request, unknown
 
 
-def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+def prove(
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+) -> Iterator[Proof]:
     """The results of AJPF; where nothing else is asked, rules without one are not checked."""
     yield from request.ajpf
     if set(request.layers) == {Layer.AJPF}:

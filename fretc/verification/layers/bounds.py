@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.verification.layers.request import Request, setup_of
 from fretc.verification.loop.bounds import bounds_proofs
 
 
-def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+def prove(
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+) -> Iterator[Proof]:
     """Two proofs for each rule: the law of the answers, and the declared bound."""
     for rule in rules:
         request.progress(f"{rule.id}: bounds")

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from compiler.files import records
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof
 from compiler.project.folder import Project
 from fretc.verification.engines.crosshair import contract_texts, with_crosshair
@@ -18,7 +18,9 @@ from monitors.source_text import interceptor as original
 CLAIM = "CrossHair confirms the contracts in the text"
 
 
-def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+def prove(
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+) -> Iterator[Proof]:
     """A proof for each contract of the core: the node would be executed, and takes commands apart.
 
     None where there is no interceptor.

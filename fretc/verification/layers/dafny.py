@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof
 from compiler.project.folder import Project
 from compiler.targets import dafny
@@ -12,7 +12,9 @@ from fretc.verification.engines.dafny import with_dafny
 from fretc.verification.layers.request import Request, unknown
 
 
-def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+def prove(
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+) -> Iterator[Proof]:
     """A proof for each claim of the file of each rule."""
     for rule in rules:
         request.progress(f"{rule.id}: Dafny")

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, not_checked, proof
 from compiler.project.folder import Project
 from compiler.targets.c.monitor import TARGET
 from fretc.verification.c.analysis import analysed
-from fretc.verification.compiled.plan import Given
+from fretc.verification.compiled.plan import SourceText
 from fretc.verification.engines import frama_c
 from fretc.verification.layers.request import Request
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -35,7 +35,9 @@ def refusal(request: Request) -> Diagnostic | None:
     return None
 
 
-def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+def prove(
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+) -> Iterator[Proof]:
     """A proof for each rule: of the monitor that is given, else of the one that fretc writes.
 
     Raises:
@@ -49,9 +51,9 @@ def prove(rules: Sequence[Formalized], project: Project, request: Request) -> It
 
 
 def _proofs(
-    rules: Sequence[Formalized], project: Project, request: Request, program: str
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request, program: str
 ) -> Iterator[Proof]:
-    accepted = list[Formalized]()
+    accepted = list[FormalizedRequirement]()
     for rule in rules:
         refused = TARGET.refuse(rule)
         if refused is None:
@@ -67,13 +69,13 @@ def _proofs(
             yield proof(rule.id, Layer.MONITOR, CLAIM, outcome, engine, under, artefacts)
 
 
-def _not_checked(rule: Formalized, reason: str) -> Proof:
+def _not_checked(rule: FormalizedRequirement, reason: str) -> Proof:
     return proof(rule.id, Layer.MONITOR, CLAIM, not_checked(reason), frama_c.NAME)
 
 
 def _given(
-    rules: Sequence[Formalized], request: Request
-) -> Iterator[tuple[Given, Sequence[Formalized]]]:
+    rules: Sequence[FormalizedRequirement], request: Request
+) -> Iterator[tuple[SourceText, Sequence[FormalizedRequirement]]]:
     """The text that is given, else one for each rule; with the rules that it is about."""
     if request.monitor is not None and request.header is not None:
         texts = (request.monitor, request.header)
@@ -84,7 +86,7 @@ def _given(
         yield _named([(str(each.path), each.text) for each in monitor]), [rule]
 
 
-def _named(texts: Sequence[tuple[str, str]]) -> Given:
+def _named(texts: Sequence[tuple[str, str]]) -> SourceText:
     """The file in C comes before its header."""
     (name, text), (header_name, header) = texts
-    return Given(name, text, header_name, header)
+    return SourceText(name, text, header_name, header)

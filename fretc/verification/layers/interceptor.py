@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from compiler.files import records
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, not_applicable
 from compiler.project.folder import Project
 from compiler.targets.interceptor_options import options
@@ -21,7 +21,9 @@ from fretish.bindings.declarations import Interception
 CLAIM = "the interceptor keeps its contracts"
 
 
-def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+def prove(
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+) -> Iterator[Proof]:
     """A proof for each contract."""
     file = interceptor_of(project, request)
     declared = project.declarations.interceptor if project.declarations else None

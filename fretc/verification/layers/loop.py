@@ -7,14 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Proof
 from compiler.project.folder import Project
 from fretc.verification.layers.request import Request, setup_of
 from fretc.verification.loop.closed_loop import loop_proofs
 
 
-def prove(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+def prove(
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+) -> Iterator[Proof]:
     """Two proofs for each rule: the requirement is kept, and a stop is released in the end."""
     for rule in rules:
         request.progress(f"{rule.id}: loop")

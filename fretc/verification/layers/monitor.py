@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Proof, not_checked, proof
 from compiler.project.folder import Project
-from fretc.verification.compiled.plan import Given
+from fretc.verification.compiled.plan import SourceText
 from fretc.verification.engines.sandbox import Session, Stopped
 from fretc.verification.layers.languages import Row, language_of
 from fretc.verification.layers.request import Request, named_text, setup_of
@@ -20,7 +20,7 @@ ENGINE = "fretc, lock step with the counter automaton of the sentence"
 
 
 def prove(
-    rules: Sequence[Formalized], project: Project, request: Request
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterable[Proof] | Diagnostic:
     """One proof for each rule; the text may hold monitors of other rules, too.
 
@@ -40,11 +40,13 @@ def prove(
             help=language.install,
         )
     texts = (named_text(each) for each in (request.monitor, request.header))
-    given = Given(*(part for text in texts if text for part in (text.name, text.text)))
+    given = SourceText(*(part for text in texts if text for part in (text.name, text.text)))
     return _of_language(rules, project, request, language, (program, given))
 
 
-def _of_python(rules: Sequence[Formalized], project: Project, request: Request) -> Iterator[Proof]:
+def _of_python(
+    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+) -> Iterator[Proof]:
     given = request.monitor
     with Session(request.limits) as session:
         whole = session.call(written, given.text, tuple(project.rules)) if given else None
@@ -60,11 +62,11 @@ def _of_python(rules: Sequence[Formalized], project: Project, request: Request) 
 
 
 def _of_language(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     project: Project,
     request: Request,
     language: Row,
-    made: tuple[str, Given],
+    made: tuple[str, SourceText],
 ) -> Iterator[Proof]:
     """Proofs of a monitor in a language.
 

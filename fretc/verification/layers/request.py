@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import PurePath
 
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Outcome, Proof, not_checked, proof
 from compiler.project.folder import Project
 from compiler.targets.python import interceptor, monitor
@@ -52,7 +52,7 @@ class Request:
         return layer in self.demanded or str(layer) in requirement.verify
 
 
-def setup_of(rule: Formalized, project: Project, request: Request) -> Setup:
+def setup_of(rule: FormalizedRequirement, project: Project, request: Request) -> Setup:
     """The parts of the closed loop around a requirement."""
     declared = project.declarations
     return Setup(

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, cast
 from compiler.logic.claims import Layer
 
 if TYPE_CHECKING:
-    from compiler.formalization.formalized import Formalized
+    from compiler.formalization.formalized import FormalizedRequirement
     from compiler.logic.claims import Proof
     from compiler.project.folder import Project
     from fretc.verification.layers.request import Request
@@ -36,7 +36,7 @@ class Method:
     """Whether it steps the monitor of a requirement, and its runs are runs of that monitor."""
 
     def prove(
-        self, rules: Sequence[Formalized], project: Project, request: Request
+        self, rules: Sequence[FormalizedRequirement], project: Project, request: Request
     ) -> Iterable[Proof] | Diagnostic:
         """The proofs about the rules; a diagnostic where a text of the request has a mistake.
 

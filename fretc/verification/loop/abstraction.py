@@ -15,7 +15,7 @@ from itertools import product
 from typing import Any, NamedTuple, Protocol
 
 from compiler.logic.kripke import TooManyStatesError
-from fretc.verification.loop.drive import Channel, Queue
+from fretc.verification.loop.actuation_model import Channel, Queue
 from fretc.verification.loop.model import Loop, Node, Tick
 
 NONE, ARRIVED = -1, -2

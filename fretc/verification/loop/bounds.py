@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, meanings
 from compiler.logic.claims import (
     Layer,
@@ -45,8 +45,8 @@ from fretc.verification.loop.abstraction import (
     relation,
     times_of,
 )
+from fretc.verification.loop.actuation_model import ActuationModel, Channel
 from fretc.verification.loop.closed_loop import Setup, artefacts, assumptions, case, inapplicable
-from fretc.verification.loop.drive import Channel, Drive
 from fretc.verification.loop.search import Case, NotALoopError, Parts, as_table, reach
 from fretc.verification.monitor.statements import is_same
 from fretish import syntax as s
@@ -95,7 +95,7 @@ class Answer:
     z3: str = ""
 
 
-def bounds_proofs(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
+def bounds_proofs(rule: FormalizedRequirement, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
     """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
     reason = _inapplicable(rule, setup)
     query = reason or question(rule, setup)
@@ -129,7 +129,7 @@ def _answered(query: Question | str) -> str:
     return f"every demand is answered within {beat} ticks for each message of `lost` and {_MORE}"
 
 
-def _enough(rule: Formalized) -> str:
+def _enough(rule: FormalizedRequirement) -> str:
     if s.deadline(rule.sentence.timing) is None:
         return "some bound is enough"
     return f"the bound of {_ticks(rule.ticks or 0)} is enough"
@@ -142,7 +142,7 @@ def _ticks(amount: int) -> str:
 # The question ---------------------------------------------------------------------------------
 
 
-def _inapplicable(rule: Formalized, setup: Setup) -> str | None:
+def _inapplicable(rule: FormalizedRequirement, setup: Setup) -> str | None:
     """Why there is no bound to ask about; None: there is one."""
     reason, sentence = inapplicable(rule, setup), rule.sentence
     if reason is not None:
@@ -154,7 +154,7 @@ def _inapplicable(rule: Formalized, setup: Setup) -> str | None:
     return None
 
 
-def question(rule: Formalized, setup: Setup) -> Question | str:
+def question(rule: FormalizedRequirement, setup: Setup) -> Question | str:
     """The question to prove, of a requirement that has a bound; or why it cannot be asked."""
     problem = case(rule, setup)
     if isinstance(problem, str):
@@ -281,7 +281,7 @@ def _with(query: Question, timing: s.Timing) -> Case:
     return replace(query.case, safety=monitor, observer=monitor, formula=rule.ft_infinite)
 
 
-def _least(query: Question, least: int, drive: Drive) -> Outcome:
+def _least(query: Question, least: int, drive: ActuationModel) -> Outcome:
     """Whether the bound is enough.
 
     Args:
@@ -307,7 +307,7 @@ def _bound(ticks: int) -> s.Timing:
     return s.Within(s.Duration(ticks, "tick")) if ticks else s.Immediately()
 
 
-def _violating(query: Question, drive: Drive) -> Any:
+def _violating(query: Question, drive: ActuationModel) -> Any:
     """The shortest run that violates the sentence as it is."""
     assert query.ticks is not None
     parts = Parts.of(_with(query, _bound(query.ticks)), drive)

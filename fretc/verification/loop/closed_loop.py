@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from math import gcd
 
 from compiler.files.text_files import sha256
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import excluded, exclusion_in_words
 from compiler.logic import spot as automata
 from compiler.logic.claims import Layer, Outcome, Proof, not_applicable, not_checked, proof
@@ -23,7 +23,7 @@ from compiler.targets.python import monitor as target
 from fretc.verification.engines import sandbox as processes
 from fretc.verification.engines.sandbox import Limits, Stopped
 from fretc.verification.interceptor.file import otherwise
-from fretc.verification.loop.drive import Channel
+from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.search import Case, Results, search
 from fretish.bindings.declarations import Assumed, Form, Interception, Planner, Requests
 from fretish.clock import in_words
@@ -53,7 +53,7 @@ class Setup:
     assumed: Assumed | None
 
 
-def loop_proofs(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
+def loop_proofs(rule: FormalizedRequirement, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
     """The proofs of both claims: the requirement is kept, and the stop is released."""
     reason = inapplicable(rule, setup)
     problem = reason or case(rule, setup)
@@ -74,7 +74,11 @@ def loop_proofs(rule: Formalized, setup: Setup, limits: Limits) -> tuple[Proof, 
 
 
 def _evidence(
-    rule: Formalized, setup: Setup, claim: str, result: Outcome, premises: tuple[str, ...]
+    rule: FormalizedRequirement,
+    setup: Setup,
+    claim: str,
+    result: Outcome,
+    premises: tuple[str, ...],
 ) -> Proof:
     return proof(
         rule.id,
@@ -87,7 +91,7 @@ def _evidence(
     )
 
 
-def artefacts(rule: Formalized, setup: Setup) -> dict[str, str]:
+def artefacts(rule: FormalizedRequirement, setup: Setup) -> dict[str, str]:
     """SHA-256 of each text, and of what the bindings assume."""
     texts = [setup.monitor, *([setup.interceptor] if setup.interceptor else [])]
     hashes = {text.name: sha256(text.text) for text in texts}
@@ -98,7 +102,7 @@ def artefacts(rule: Formalized, setup: Setup) -> dict[str, str]:
 # The case -------------------------------------------------------------------------------------
 
 
-def inapplicable(rule: Formalized, setup: Setup) -> str | None:
+def inapplicable(rule: FormalizedRequirement, setup: Setup) -> str | None:
     """Why no loop decides the requirement; None: one does."""
     if setup.interception is None or setup.interceptor is None:
         return "the bindings declare no interceptor (`[interceptor]`)"
@@ -110,7 +114,7 @@ def inapplicable(rule: Formalized, setup: Setup) -> str | None:
     return None
 
 
-def case(rule: Formalized, setup: Setup) -> Case | str:
+def case(rule: FormalizedRequirement, setup: Setup) -> Case | str:
     """The case to search, of a requirement that a loop decides; or why it cannot be searched."""
     interception, assumed = setup.interception, setup.assumed
     assert interception is not None
@@ -135,7 +139,9 @@ def case(rule: Formalized, setup: Setup) -> Case | str:
     )
 
 
-def channel(rule: Formalized, interception: Interception, assumed: Assumed) -> Channel | str:
+def channel(
+    rule: FormalizedRequirement, interception: Interception, assumed: Assumed
+) -> Channel | str:
     """The assumptions in cells; or why no cell fits."""
     tick = rule.clock.period if rule.clock else None
     if tick is None:
@@ -170,7 +176,7 @@ def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
 
 
 def assumptions(
-    rule: Formalized, setup: Setup, problem: Case, *, any_time: bool = False
+    rule: FormalizedRequirement, setup: Setup, problem: Case, *, any_time: bool = False
 ) -> Iterator[str]:
     """The assumptions of the verdict in words, each with its place of declaration.
 

@@ -28,7 +28,7 @@ from typing import NamedTuple
 from compiler.formalization.letters import Valuation
 from compiler.logic.orders import Exclusion, only_possible
 from fretc.verification.interceptor.machine import Event
-from fretc.verification.loop.drive import Drive, Wheels, Word
+from fretc.verification.loop.actuation_model import ActuationModel, ActuationState, Word
 from fretc.verification.monitor.machine import Stepped
 
 
@@ -37,7 +37,7 @@ class Node(NamedTuple):
 
     safety: Hashable
     observer: Hashable
-    wheels: Wheels
+    wheels: ActuationState
     losses: int
     """Stop messages lost since the last one that was not."""
     requested: bool
@@ -83,7 +83,7 @@ class Loop:
         self,
         safety: Stepped,
         observer: Stepped | None,
-        drive: Drive,
+        drive: ActuationModel,
         environment: Environment,
     ) -> None:
         """Before the first tick: the robot stands, and no message has come or is in flight.
@@ -140,7 +140,7 @@ class Loop:
             wheels, silent = self._begun(node.wheels, tick, still), self._silence(node, sent)
             yield tick, Node(safety, observer, wheels, losses, requested, silent)
 
-    def _begun(self, wheels: Wheels, tick: Tick, still: int) -> Wheels:
+    def _begun(self, wheels: ActuationState, tick: Tick, still: int) -> ActuationState:
         return self.drive.begun(wheels, still, ((tick.requested, 0),) if tick.sent else ())
 
     def word(self, before: Node, tick: Tick, after: Node) -> tuple[Event | None, ...]:

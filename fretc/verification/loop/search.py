@@ -16,7 +16,7 @@ from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted, 
 from compiler.logic.kripke import Explored, TooManyStatesError, check, explore
 from compiler.logic.orders import Exclusion
 from fretc.verification.interceptor.machine import InterceptorMachine, NotAnInterceptorError
-from fretc.verification.loop.drive import Channel, Drive
+from fretc.verification.loop.actuation_model import ActuationModel, Channel
 from fretc.verification.loop.model import Environment, Loop, Node, Tick
 from fretc.verification.loop.replay import Watched, moments, replayed
 from fretc.verification.monitor.machine import Stepped
@@ -96,7 +96,7 @@ class Parts:
     observer: Watched
 
     @classmethod
-    def of(cls, case: Case, drive: Drive | None = None) -> Parts:
+    def of(cls, case: Case, drive: ActuationModel | None = None) -> Parts:
         """The parts of a case.
 
         Args:
@@ -125,14 +125,14 @@ class Parts:
         return cls(loop, safety, observer)
 
 
-def new_drive(case: Case) -> Drive:
+def new_drive(case: Case) -> ActuationModel:
     """The drive of a case.
 
     Raises:
         NotAnInterceptorError: the text of its interceptor is not what it should be.
     """
     machine = InterceptorMachine(case.interceptor, case.settings, case.limit)
-    return Drive(machine, case.channel)
+    return ActuationModel(machine, case.channel)
 
 
 @lru_cache(maxsize=8)
@@ -342,7 +342,7 @@ def is_safety(formula: f.Formula, positive: bool = True) -> bool:
             | f.Once()
             | f.Historically()
             | f.Since()
-            | f.Odds()
+            | f.ProbabilityBound()
         ):
             return False
         case _:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Sequence
 
-from fretc.verification.monitor.statements import body_of, demand
+from fretc.verification.monitor.statements import body_of, require
 
 _COLUMNS = frozenset(
     "previous weak_previous once historically since released since_from since_between "
@@ -31,11 +31,11 @@ def check_columns(node: ast.stmt, literals: Sequence[str]) -> None:
     for statement in body:
         match statement:
             case ast.Assign([ast.Name(name)], value):
-                demand(name not in bound and name not in {*_COLUMNS, "Signals"}, statement)
+                require(name not in bound and name not in {*_COLUMNS, "Signals"}, statement)
                 _check_column(value, bound)
                 bound.add(name)
             case _:
-                demand(False, statement)
+                require(False, statement)
     match last:
         case ast.Return(ast.Tuple(entries)):
             for entry in entries:
@@ -44,23 +44,23 @@ def check_columns(node: ast.stmt, literals: Sequence[str]) -> None:
                         for keyword in keywords:
                             _check_column(keyword.value, bound)
                     case _:
-                        demand(False, entry)
+                        require(False, entry)
         case _:
-            demand(False, last)
+            require(False, last)
 
 
 def _check_column(node: ast.expr, bound: Iterable[str]) -> None:
     match node:
         case ast.Name(name):
-            demand(name in bound, node)
+            require(name in bound, node)
         case ast.Constant(value):
-            demand(value is None or isinstance(value, int), node)
+            require(value is None or isinstance(value, int), node)
         case ast.BinOp(left, ast.BitAnd() | ast.BitOr(), right):
             _check_column(left, bound)
             _check_column(right, bound)
         case ast.Call(ast.Name(name), args, []):
-            demand(name in _COLUMNS, node)
+            require(name in _COLUMNS, node)
             for arg in args:
                 _check_column(arg, bound)
         case _:
-            demand(False, node)
+            require(False, node)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import excluded
 from compiler.logic.orders import Exclusion
 from compiler.program.program import SIGNALS
@@ -117,7 +117,7 @@ class Disagreement:
 
 
 def agreed(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     monitor: Monitor,
     place: int,
     atoms: Sequence[str],

@@ -12,12 +12,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from compiler.targets.python.comparisons import ANNOTATIONS, FUNCTIONS, NUMBER, TRUTH, WORD
 from fretc.verification.monitor.statements import (
-    StrangeError,
+    UnexpectedCodeError,
     body_of,
     constants,
-    demand,
     is_one_of,
     reads,
+    require,
 )
 from fretish.expressions import MOST_EXPONENT
 from monitors.kernel.variables import Variable
@@ -32,7 +32,7 @@ def declared_variables(node: ast.stmt) -> Mapping[str, Variable]:
     """The variables of a monitor.
 
     Raises:
-        StrangeError: they are not written as fretc writes them.
+        UnexpectedCodeError: they are not written as fretc writes them.
     """
     found: dict[str, Variable] = {}
     match node:
@@ -40,13 +40,13 @@ def declared_variables(node: ast.stmt) -> Mapping[str, Variable]:
             for key, value in zip(keys, values, strict=True):
                 match key, value:
                     case ast.Constant(str(name)), ast.Call(ast.Name("Variable"), args, more):
-                        demand(name not in found, node)
+                        require(name not in found, node)
                         found[name] = _variable(args, more, node)
                     case _:
-                        demand(False, node)
+                        require(False, node)
         case _:
-            demand(False, node)
-    demand(bool(found), node)
+            require(False, node)
+    require(bool(found), node)
     return found
 
 
@@ -58,14 +58,16 @@ def _variable(args: Sequence[ast.expr], more: Sequence[ast.keyword], node: ast.s
             ast.keyword("infinite", value)
         ]:
             infinite = tuple(each for each in ("+inf", "-inf") if each in constants(value))
-            demand(bool(infinite) and infinite == constants(value), node)
+            require(bool(infinite) and infinite == constants(value), node)
             return Variable(parameter, NUMBER, infinite=infinite)
         case [ast.Constant(str(parameter)), ast.Constant("word"), words], []:
             texts = tuple(word for word in constants(words) if isinstance(word, str))
-            demand(bool(texts) and texts == constants(words), node)
+            require(bool(texts) and texts == constants(words), node)
             return Variable(parameter, WORD, texts)
         case _:
-            raise StrangeError(f"it is not laid out as fretc writes it: `{ast.unparse(node)}`")
+            raise UnexpectedCodeError(
+                f"it is not laid out as fretc writes it: `{ast.unparse(node)}`"
+            )
 
 
 def check_front(
@@ -83,7 +85,7 @@ def check_front(
         requirements: how many the monitor has.
 
     Raises:
-        StrangeError: they do something else.
+        UnexpectedCodeError: they do something else.
     """
     truths, step, run = methods
     names = [variable.parameter for variable in variables.values()]
@@ -91,15 +93,15 @@ def check_front(
     verdicts = "self.verdicts()" + "[0]" * (requirements == 1)
     row = _tuple(names)
     stepped = body_of(step, "step", f"self, *, {parameters}")
-    demand(reads(stepped, f"self.take(({row},))\nreturn {verdicts}"), step)
+    require(reads(stepped, f"self.take(({row},))\nreturn {verdicts}"), step)
     rows = "self, rows: Iterable[Sequence[Value] | Mapping[str, Value]]"
-    demand(reads(body_of(run, "run", rows), f"self.take(rows)\nreturn {verdicts}"), run)
+    require(reads(body_of(run, "run", rows), f"self.take(rows)\nreturn {verdicts}"), run)
     body = body_of(truths, "truths", f"self, {parameters}")
     given, rest, last = body[: len(names)], body[len(names) : -1], body[-1]
-    demand(reads(given, "\n".join(_given(variables))), truths)
-    demand(is_one_of(last, f"return {_tuple(propositions)}"), last)
+    require(reads(given, "\n".join(_given(variables))), truths)
+    require(is_one_of(last, f"return {_tuple(propositions)}"), last)
     bound = _check_statements(rest, frozenset(names))
-    demand(bound >= {*propositions}, last)
+    require(bound >= {*propositions}, last)
 
 
 def _tuple(names: Iterable[str]) -> str:
@@ -124,21 +126,21 @@ def _check_statements(statements: Sequence[ast.stmt], bound: frozenset[str]) -> 
         match statement:
             case ast.Assign([ast.Name(name)], ast.IfExp(_, before, ast.Subscript(_, at)) as value):
                 form = f"{ast.unparse(before)} if kept is None else kept[{ast.unparse(at)}]"
-                demand("kept" in bound and is_one_of(value, form), statement)
-                demand(isinstance(at, ast.Constant) and type(at.value) is int, statement)
+                require("kept" in bound and is_one_of(value, form), statement)
+                require(isinstance(at, ast.Constant) and type(at.value) is int, statement)
                 _check_number(before, bound)
             case ast.Assign([ast.Name(name)], value):
                 _check_truth(value, bound)
             case ast.Assign([ast.Attribute(ast.Name("self"), "kept")], ast.Tuple(values)):
-                demand(place == len(statements) - 1 and "kept" in bound, statement)
+                require(place == len(statements) - 1 and "kept" in bound, statement)
                 for each in values:
                     _check_number(each, bound)
                 continue
             case _:
-                raise StrangeError(
+                raise UnexpectedCodeError(
                     f"it is not laid out as fretc writes it: `{ast.unparse(statement)}`"
                 )
-        demand(name not in fixed and name not in bound, statement)
+        require(name not in fixed and name not in bound, statement)
         bound |= {name}
     return bound
 
@@ -148,27 +150,27 @@ def _check_truth(node: ast.expr, bound: frozenset[str]) -> None:
         case ast.Constant(None | True | False):
             pass
         case ast.Call(ast.Name("compared" | "is_word"), [left, ast.Constant(str(sign)), right], []):
-            demand(sign in _SIGNS, node)
+            require(sign in _SIGNS, node)
             _check_number(left, bound)
             _check_number(right, bound)
         case _:
-            demand(False, node)
+            require(False, node)
 
 
 def _check_number(node: ast.expr, bound: frozenset[str]) -> None:
     match node:
         case ast.Name(name):
-            demand(name in bound and name != "kept", node)
+            require(name in bound and name != "kept", node)
         case ast.Constant(str()):
             pass  # a word
         case ast.Call(ast.Name("exact"), [ast.Constant(str(text))], []):
-            demand(_CONSTANT.fullmatch(text) is not None, node)
+            require(_CONSTANT.fullmatch(text) is not None, node)
         case ast.Call(ast.Name("power"), [base, ast.Constant(int(exponent))], []):
-            demand(type(exponent) is int and 1 <= exponent <= MOST_EXPONENT, node)
+            require(type(exponent) is int and 1 <= exponent <= MOST_EXPONENT, node)
             _check_number(base, bound)
         case ast.Call(ast.Name(name), args, []):
-            demand(name in _COMPUTED, node)
+            require(name in _COMPUTED, node)
             for arg in args:
                 _check_number(arg, bound)
         case _:
-            demand(False, node)
+            require(False, node)

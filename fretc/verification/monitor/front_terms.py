@@ -16,7 +16,7 @@ from math import inf, nan, nextafter
 from typing import Any
 
 from fretc.verification.monitor.front_layout import declared_variables
-from fretc.verification.monitor.statements import StrangeError
+from fretc.verification.monitor.statements import UnexpectedCodeError
 from fretc.verification.monitor.text_check import own
 from monitors.kernel import Monitor
 from monitors.kernel.readings import exact
@@ -45,7 +45,7 @@ def terms(text: str) -> Mapping[str, Term]:
         text: a monitor's, laid out as fretc writes it.
 
     Raises:
-        StrangeError: it looks back at what it makes of it itself.
+        UnexpectedCodeError: it looks back at what it makes of it itself.
     """
     parts = _Parts.of(text)
     return {name: parts.term(ast.Name(local)) for name, local in parts.propositions.items()}
@@ -112,14 +112,14 @@ class _Parts:
                 return (function, *(self.term(arg) for arg in args))
             case ast.IfExp(_, before, ast.Subscript(_, ast.Constant(int(place)))):
                 if place >= len(self.kept):
-                    raise StrangeError("it looks back at what it does not keep")
+                    raise UnexpectedCodeError("it looks back at what it does not keep")
                 return ("earlier", self.term(before), self.term(self.kept[place]))
             case _:
                 raise AssertionError(f"not laid out as fretc writes it: {ast.unparse(node)}")
 
     def _assigned(self, name: str) -> Term:
         if name in self.waiting:
-            raise StrangeError("what it keeps depends on what it kept of all ticks before")
+            raise UnexpectedCodeError("what it keeps depends on what it kept of all ticks before")
         if name not in self.known:
             self.waiting.append(name)
             self.known[name] = self.term(self.assigned[name])

@@ -28,7 +28,7 @@ Letter = tuple[Truth, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Same:
+class Equivalent:
     """The monitors agree on every trace."""
 
     states: int
@@ -36,7 +36,7 @@ class Same:
 
 
 @dataclass(frozen=True, slots=True)
-class Apart:
+class Distinguished:
     """A trace of one rail at whose last tick the monitors differ.
 
     A shortest one, unless there are too many pairs of states.
@@ -54,7 +54,7 @@ def compared(
     atoms: Sequence[str],
     limit: int,
     excluded: Sequence[Exclusion] = (),
-) -> Same | Apart | None:
+) -> Equivalent | Distinguished | None:
     """Compare a requirement of one monitor with the only one of the other.
 
     Args:
@@ -73,10 +73,10 @@ def compared(
         left = _Rail(machine, place, doubt, atoms)
         right = _Rail(reference, 0, doubt, atoms)
         result = in_lock_step(left, right, letters, limit, _NAMES)
-        if not isinstance(result, Same):
+        if not isinstance(result, Equivalent):
             return result
         states += result.states
-    return Same(states)
+    return Equivalent(states)
 
 
 _STARTS = ({"broken": -1, "doomed": -1, "last": -1, "open": -1}, {"last": 1, "open": 2})
@@ -138,7 +138,7 @@ def in_lock_step(
     letters: Sequence[Any],
     limit: int,
     names: Sequence[str],
-) -> Same | Apart | None:
+) -> Equivalent | Distinguished | None:
     """Whether both give the same values on every trace, from the present states; if not, where.
 
     By classes of states that must be equal if all pairs are (`equivalence.Classes`); a shortest
@@ -153,10 +153,10 @@ def in_lock_step(
     """
     start = left.save(), right.save()
     result = _from(start, left, right, letters, limit, names, Classes())
-    if not isinstance(result, Apart):
+    if not isinstance(result, Distinguished):
         return result
     shortest = _from(start, left, right, letters, limit, names, Pairs())
-    return shortest if isinstance(shortest, Apart) else result
+    return shortest if isinstance(shortest, Distinguished) else result
 
 
 def _from(
@@ -167,7 +167,7 @@ def _from(
     limit: int,
     names: Sequence[str],
     visited: Visited,
-) -> Same | Apart | None:
+) -> Equivalent | Distinguished | None:
     """Breadth first through the pairs that are new, from the first one."""
     pairs = [start]
     origins: list[tuple[int, Any] | None] = [None]
@@ -177,14 +177,14 @@ def _from(
             actual, expected = left.step(first, letter), right.step(second, letter)
             if actual != expected:
                 signal = next(n for n, a, b in zip(names, actual, expected, strict=True) if a != b)
-                return Apart((*_word(origins, place), letter), signal)
+                return Distinguished((*_word(origins, place), letter), signal)
             reached = left.save(), right.save()
             if visited.add(*reached):
                 pairs.append(reached)
                 origins.append((place, letter))
         if len(pairs) > limit:
             return None
-    return Same(len(pairs))
+    return Equivalent(len(pairs))
 
 
 def _word(origins: Sequence[tuple[int, Letter] | None], place: int) -> Iterator[Letter]:

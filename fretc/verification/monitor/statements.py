@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from functools import cache
 
 
-class StrangeError(Exception):
+class UnexpectedCodeError(Exception):
     """The text is not as the generator writes it."""
 
 
-def demand(right: bool, node: ast.AST) -> None:
-    """Raises StrangeError, with the line of the node, where something is not right."""
+def require(right: bool, node: ast.AST) -> None:
+    """Raises UnexpectedCodeError, with the line of the node, where something is not right."""
     if not right:
         line = (ast.unparse(node).splitlines() or ["nothing"])[0]
-        raise StrangeError(f"it is not laid out as fretc writes it: `{line}`")
+        raise UnexpectedCodeError(f"it is not laid out as fretc writes it: `{line}`")
 
 
 @cache
@@ -45,10 +45,10 @@ def is_same(text: str, other: str) -> bool:
 
 def constants(node: ast.AST) -> tuple[object, ...]:
     """The values of a tuple of constants."""
-    demand(isinstance(node, ast.Tuple), node)
+    require(isinstance(node, ast.Tuple), node)
     assert isinstance(node, ast.Tuple)
     for part in node.elts:
-        demand(isinstance(part, ast.Constant), part)
+        require(isinstance(part, ast.Constant), part)
     return tuple(part.value for part in node.elts if isinstance(part, ast.Constant))
 
 
@@ -56,19 +56,19 @@ def names_in(node: ast.AST) -> tuple[str, ...]:
     """The values of a tuple of texts."""
     values = constants(node)
     names = tuple(value for value in values if isinstance(value, str))
-    demand(names == values, node)
+    require(names == values, node)
     return names
 
 
 def body_of(node: ast.stmt, name: str, arguments: str, *decorators: str) -> list[ast.stmt]:
     """The statements of a function below its docstring; there is at least one."""
-    demand(isinstance(node, ast.FunctionDef), node)
+    require(isinstance(node, ast.FunctionDef), node)
     assert isinstance(node, ast.FunctionDef)
-    demand(node.name == name and not getattr(node, "type_params", ()), node)
-    demand(ast.unparse(node.args) == _arguments(arguments), node.args)
-    demand([ast.unparse(d) for d in node.decorator_list] == [*decorators], node)
+    require(node.name == name and not getattr(node, "type_params", ()), node)
+    require(ast.unparse(node.args) == _arguments(arguments), node.args)
+    require([ast.unparse(d) for d in node.decorator_list] == [*decorators], node)
     body = below_docstring(node)
-    demand(bool(body), node)
+    require(bool(body), node)
     return body
 
 

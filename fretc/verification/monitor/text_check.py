@@ -24,14 +24,14 @@ from compiler.targets.python.program import locals_of, negation
 from fretc.verification.monitor.column_layout import check_columns
 from fretc.verification.monitor.front_layout import check_front, declared_variables
 from fretc.verification.monitor.statements import (
-    StrangeError,
+    UnexpectedCodeError,
     below_docstring,
     body_of,
     constants,
-    demand,
     is_one_of,
     names_in,
     reads,
+    require,
 )
 from fretc.verification.monitor.tick_layout import FIXED, Rail, Tick, check_advance
 from fretish.reading.text_encoding import is_utf8
@@ -55,7 +55,7 @@ def strange(text: str) -> str | None:
         _check_module(_parsed(own), by_variables=runtime is kernel_of_variables())
     except SyntaxError as error:
         return f"it is no Python: {error}"
-    except StrangeError as error:
+    except UnexpectedCodeError as error:
         return str(error)
     return None
 
@@ -84,22 +84,24 @@ def _check_module(module: ast.Module, *, by_variables: bool) -> None:
         case [ast.ClassDef() as rail, ast.ClassDef() as monitor, binding, run]:
             pass
         case _:
-            raise StrangeError("it is not laid out as fretc writes it: two classes and no more")
+            raise UnexpectedCodeError(
+                "it is not laid out as fretc writes it: two classes and no more"
+            )
     title = rail.name.removesuffix("Rail")
-    demand(rail.name == f"{title}Rail" and title != "", rail)
-    demand(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
+    require(rail.name == f"{title}Rail" and title != "", rail)
+    require(monitor.name == f"{title}Monitor" and _is_plain(rail) and _is_plain(monitor), monitor)
     base = "VariableMonitor" if by_variables else "Monitor"
-    demand([ast.unparse(each) for each in (*rail.bases, *monitor.bases)] == [base], monitor)
-    demand(is_one_of(binding, f"MONITOR: type[{base}] = {monitor.name}"), binding)
+    require([ast.unparse(each) for each in (*rail.bases, *monitor.bases)] == [base], monitor)
+    require(is_one_of(binding, f"MONITOR: type[{base}] = {monitor.name}"), binding)
     _check_annotations(module, title)
     main = "main_by_variables" if by_variables else "main"
-    demand(is_one_of(run, f'if __name__ == "__main__":\n    sys.exit({main}(MONITOR))'), run)
+    require(is_one_of(run, f'if __name__ == "__main__":\n    sys.exit({main}(MONITOR))'), run)
     names, advance = _rail(rail)
     inputs, step, verdicts = _monitor(monitor, rail.name, names, by_variables=by_variables)
     reserved = {*FIXED, *_OF_RAILS, *locals_of(inputs.values())}
-    demand(reserved.isdisjoint(names.cells), rail)
+    require(reserved.isdisjoint(names.cells), rail)
     suffixes = tuple(f"_{name}" for name in (*MARKS, "signals"))
-    demand(not any(cell.startswith("_") or cell.endswith(suffixes) for cell in names.cells), rail)
+    require(not any(cell.startswith("_") or cell.endswith(suffixes) for cell in names.cells), rail)
     tick = check_advance(advance, names, inputs)
     _check_verdicts(verdicts, names.prefixes, tick)
     if not by_variables:
@@ -112,9 +114,9 @@ def _check_annotations(module: ast.Module, title: str) -> None:
     for node in ast.walk(module):
         match node:
             case ast.FunctionDef(returns=ast.expr() as annotation):
-                demand(ast.unparse(annotation) in allowed, annotation)
+                require(ast.unparse(annotation) in allowed, annotation)
             case ast.AnnAssign(_, annotation) | ast.arg(_, ast.expr() as annotation):
-                demand(ast.unparse(annotation) in allowed, annotation)
+                require(ast.unparse(annotation) in allowed, annotation)
 
 
 _ANNOTATIONS = frozenset(
@@ -143,7 +145,7 @@ def _is_plain(node: ast.ClassDef) -> bool:
 def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
     """The names of a rail, after a check of all of it but `advance`."""
     body = below_docstring(node)
-    demand(len(body) == 6, node)
+    require(len(body) == 6, node)
     slots, cells, initial, advance, signals, marks = body
     match slots, cells:
         case (
@@ -152,13 +154,13 @@ def _rail(node: ast.ClassDef) -> tuple[Rail, ast.stmt]:
         ):
             pass
         case _:
-            raise StrangeError("it is not laid out as fretc writes it: `__slots__`, `CELLS`")
+            raise UnexpectedCodeError("it is not laid out as fretc writes it: `__slots__`, `CELLS`")
     prefixes = _prefixes(signals, marks)
     names = Rail(names_in(all_cells), frozenset(_windows(initial)), prefixes)
     reserved = ("doubt", "tick", *names.marks, *names.signals)
     everything = (*reserved, *names.cells)
-    demand(len({*everything}) == len(everything), cells)
-    demand(sorted(names_in(all_slots)) == sorted(everything), slots)
+    require(len({*everything}) == len(everything), cells)
+    require(sorted(names_in(all_slots)) == sorted(everything), slots)
     _check_initial(initial, names)
     return names, advance
 
@@ -176,7 +178,7 @@ def _prefixes(signals: ast.stmt, marks: ast.stmt) -> tuple[str, ...]:
         (marks, "marks", ", ".join(f"Marks({each})" for each in noted)),
     ):
         body = body_of(function, name, "self")
-        demand(len(body) == 1 and is_one_of(body[0], f"return ({values},)"), function)
+        require(len(body) == 1 and is_one_of(body[0], f"return ({values},)"), function)
     return prefixes
 
 
@@ -195,14 +197,14 @@ def _check_initial(node: ast.stmt, rail: Rail) -> None:
         match statement:
             case ast.Assign([ast.Attribute(ast.Name("self"), name)], value):
                 right = name in rail.cells and _is_initial(value)
-                demand(right or is_one_of(value, fixed.get(name, "nothing")), statement)
+                require(right or is_one_of(value, fixed.get(name, "nothing")), statement)
                 names.append(name)
             case ast.AnnAssign(ast.Attribute(ast.Name("self"), name), _, ast.expr() as value):
-                demand(is_one_of(value, signals.get(name, "nothing")), statement)
+                require(is_one_of(value, signals.get(name, "nothing")), statement)
                 names.append(name)
             case _:
-                demand(False, statement)
-    demand(sorted(names) == sorted((*fixed, *signals, *rail.cells)), node)
+                require(False, statement)
+    require(sorted(names) == sorted((*fixed, *signals, *rail.cells)), node)
 
 
 def _is_initial(node: ast.expr) -> bool:
@@ -224,16 +226,16 @@ def _monitor(
     """
     body = below_docstring(node)
     variables = [body.pop(3), body.pop(7)] if by_variables and len(body) == 13 else []
-    demand(len(body) == 11 and by_variables is bool(variables), node)
+    require(len(body) == 11 and by_variables is bool(variables), node)
     program, requirements, propositions, literals, *rest = body
     rail_binding, must, may, step, run, verdicts, columns = rest
-    demand(isinstance(program, ast.Assign) and _is_text(program, "PROGRAM"), program)
+    require(isinstance(program, ast.Assign) and _is_text(program, "PROGRAM"), program)
     _check_requirements(requirements, names.prefixes)
     declared = declared_variables(variables[0]) if variables else {}
     inputs = _inputs(propositions, names.prefixes, declared)
     literal_names = _literals(literals, inputs)
-    demand(is_one_of(rail_binding, f"RAIL = {rail}"), rail_binding)
-    demand(is_one_of(must, f"must: {rail}") and is_one_of(may, f"may: {rail}"), must)
+    require(is_one_of(rail_binding, f"RAIL = {rail}"), rail_binding)
+    require(is_one_of(must, f"must: {rail}") and is_one_of(may, f"may: {rail}"), must)
     if variables:
         check_front(
             (variables[1], step, run), declared, tuple(inputs.values()), len(names.prefixes)
@@ -241,7 +243,7 @@ def _monitor(
     else:
         rows = "self, rows: Iterable[Row | Mapping[str, Truth]]"
         ran = f"self.advance(rows)\nreturn {_all_verdicts(names.prefixes)}"
-        demand(reads(body_of(run, "run", rows), ran), run)
+        require(reads(body_of(run, "run", rows), ran), run)
     check_columns(columns, literal_names)
     return inputs, step, verdicts
 
@@ -257,15 +259,15 @@ def _check_requirements(node: ast.stmt, prefixes: Sequence[str]) -> None:
             for entry in entries:
                 match entry:
                     case ast.Call(ast.Name("Requirement"), [ast.Constant(str(id)), *rest], []):
-                        demand(len(rest) == 3, entry)
-                        demand(all(isinstance(value, ast.Constant) for value in rest), entry)
+                        require(len(rest) == 3, entry)
+                        require(all(isinstance(value, ast.Constant) for value in rest), entry)
                         ids.append(id)
                     case _:
-                        demand(False, entry)
+                        require(False, entry)
         case _:
-            demand(False, node)
-    demand(bool(ids) and "" not in ids and len({*ids}) == len(ids), node)
-    demand(tuple(prefixes_of(ids).values()) == tuple(prefixes), node)
+            require(False, node)
+    require(bool(ids) and "" not in ids and len({*ids}) == len(ids), node)
+    require(tuple(prefixes_of(ids).values()) == tuple(prefixes), node)
 
 
 def _inputs(
@@ -275,14 +277,14 @@ def _inputs(
     match node:
         case ast.AnnAssign(ast.Name("PROPOSITIONS"), _, ast.Dict(keys, values)):
             names = names_in(ast.Tuple([key for key in keys if key is not None]))
-            demand(len({*names}) == len(keys) and all(names), node)
+            require(len({*names}) == len(keys) and all(names), node)
             parameters = parameters_of(names, prefixes, variables)
             inputs = {name: parameters[name] for name in names}
-            demand(tuple(inputs.values()) == names_in(ast.Tuple(values)), node)
-            demand(all(v.parameter == parameters[n] for n, v in variables.items()), node)
+            require(tuple(inputs.values()) == names_in(ast.Tuple(values)), node)
+            require(all(v.parameter == parameters[n] for n, v in variables.items()), node)
             return inputs
         case _:
-            demand(False, node)
+            require(False, node)
             return {}
 
 
@@ -295,11 +297,11 @@ def _literals(node: ast.stmt, inputs: Mapping[str, str]) -> tuple[str, ...]:
                 name, proposition, positive = (*constants(entry), None, None, None)[:3]
                 parameter = inputs.get(str(proposition), "")
                 right = parameter if positive is True else negation(parameter)
-                demand(parameter != "" and isinstance(positive, bool) and name == right, entry)
+                require(parameter != "" and isinstance(positive, bool) and name == right, entry)
                 names.append(right)
             return tuple(names)
         case _:
-            demand(False, node)
+            require(False, node)
             return ()
 
 
@@ -317,8 +319,8 @@ def _check_step(node: ast.stmt, inputs: Sequence[str], prefixes: Sequence[str], 
         text += f"{tick.inlined}\n{_verdict(prefixes[0], tick)}"
     body = body_of(node, "step", parameters if inputs else "self")
     for statement, expected in zip(body, ast.parse(text).body, strict=False):
-        demand(is_one_of(statement, ast.unparse(expected)), statement)
-    demand(reads(body, text), node)
+        require(is_one_of(statement, ast.unparse(expected)), statement)
+    require(reads(body, text), node)
 
 
 def _verdict(prefix: str, tick: Tick) -> str:
@@ -341,7 +343,7 @@ def _check_verdicts(node: ast.stmt, prefixes: Sequence[str], tick: Tick) -> None
         values.append(f"VIOLATED if {_violated('must', prefix, tick)} else {rest}")
     rails = "must = self.must\n" + "may = self.may\n" * bool(tick.settled)
     text = f"{rails}return ({', '.join(values)},)"
-    demand(reads(body_of(node, "verdicts", "self"), text), node)
+    require(reads(body_of(node, "verdicts", "self"), text), node)
 
 
 _SETTLED = SIGNALS.index("settled")

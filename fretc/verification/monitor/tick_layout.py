@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from compiler.program.program import MARKS, SIGNALS
 from compiler.targets.python.program import negation
 from fretc.verification.monitor.statements import (
-    StrangeError,
+    UnexpectedCodeError,
     body_of,
-    demand,
     is_one_of,
     normal,
+    require,
 )
 
 FIXED = frozenset(
@@ -67,20 +67,20 @@ def check_advance(node: ast.stmt, rail: Rail, inputs: Mapping[str, str]) -> Tick
         inputs: the propositions in the order of a row, each with its parameter.
 
     Raises:
-        StrangeError: it does something else.
+        UnexpectedCodeError: it does something else.
     """
     body = body_of(node, "advance", "self, rows: Iterable[Sequence[Any]]")
     place = next((i for i, part in enumerate(body) if isinstance(part, ast.For)), None)
-    demand(place is not None, node)
+    require(place is not None, node)
     assert place is not None
     loop = body[place]
     assert isinstance(loop, ast.For)
-    demand(place > 2, node)
+    require(place > 2, node)
     carried = tuple(_carried(body[:place], rail))
-    demand(is_one_of(loop.iter, "rows") and not loop.orelse, loop)
+    require(is_one_of(loop.iter, "rows") and not loop.orelse, loop)
     row = ", ".join(inputs.values()) + "," * (len(inputs) == 1)
-    demand(is_one_of(loop.target, f"({row})" if inputs else "_"), loop)
-    demand(bool(loop.body) and is_one_of(loop.body[0], "tick += 1"), loop)
+    require(is_one_of(loop.target, f"({row})" if inputs else "_"), loop)
+    require(bool(loop.body) and is_one_of(loop.body[0], "tick += 1"), loop)
     bound = _Tick(rail, frozenset(carried)).check(loop.body[1:], inputs)
     signals = _check_end(body[place + 1 :], rail, carried, bound)
     return Tick(
@@ -146,13 +146,13 @@ class _OnRail(ast.NodeTransformer):
 def _carried(statements: Sequence[ast.stmt], rail: Rail) -> Iterator[str]:
     """The names that are read from the rail before the first row."""
     fixed = [ast.unparse(statement) for statement in statements]
-    demand(fixed[:3] == ["known = True", "doubt = self.doubt", "tick = self.tick"], statements[0])
+    require(fixed[:3] == ["known = True", "doubt = self.doubt", "tick = self.tick"], statements[0])
     allowed = (*rail.cells, *rail.marks)
     for statement in statements[3:]:
         name = ast.unparse(statement).partition(" = ")[0]
-        demand(name in allowed and is_one_of(statement, f"{name} = self.{name}"), statement)
+        require(name in allowed and is_one_of(statement, f"{name} = self.{name}"), statement)
         yield name
-    demand(all(f"{cell} = self.{cell}" in fixed for cell in rail.cells), statements[0])
+    require(all(f"{cell} = self.{cell}" in fixed for cell in rail.cells), statements[0])
 
 
 def _check_end(
@@ -161,10 +161,10 @@ def _check_end(
     """Check the end of `advance`: it stores cells, marks and signals; gives the texts of these."""
     pending = {*_stored(carried)}
     if len(statements) < 2:
-        raise StrangeError("it is not laid out as fretc writes it: `advance` does not end")
+        raise UnexpectedCodeError("it is not laid out as fretc writes it: `advance` does not end")
     first, *rest, last = statements
-    demand(is_one_of(first, "if tick == self.tick:\n    return True"), first)
-    demand(is_one_of(last, "return known"), last)
+    require(is_one_of(first, "if tick == self.tick:\n    return True"), first)
+    require(is_one_of(last, "return known"), last)
     signals: dict[str, Mapping[str, str]] = {}
     opened: dict[str, str] = {}
     for statement in rest:
@@ -172,16 +172,16 @@ def _check_end(
         if text in pending:
             pending.remove(text)
         elif text in opened:  # of the last tick, and not yet put back
-            demand(f"self.{opened[text]}_open = {opened[text]}_open" in pending, statement)
+            require(f"self.{opened[text]}_open = {opened[text]}_open" in pending, statement)
         else:
             prefix, values = _signals(statement, rail)
-            demand(prefix not in signals, statement)
+            require(prefix not in signals, statement)
             for value in values.values():
                 _check_value(value, bound - rail.windows, frozenset())
             signals[prefix] = {name: ast.unparse(value) for name, value in values.items()}
             owed = signals[prefix]["owed"]
             opened[normal(f"{prefix}_open = {prefix}_last if {owed} else -1")] = prefix
-    demand(not pending and signals.keys() == {*rail.prefixes}, first)
+    require(not pending and signals.keys() == {*rail.prefixes}, first)
     return signals
 
 
@@ -189,9 +189,9 @@ def _signals(statement: ast.stmt, rail: Rail) -> tuple[str, Mapping[str, ast.exp
     """The prefix of a requirement, and its signals at the last tick."""
     match statement:
         case ast.Assign([ast.Attribute(ast.Name("self"), name)], ast.Tuple(values)):
-            demand(name in rail.signals and len(values) == len(SIGNALS), statement)
+            require(name in rail.signals and len(values) == len(SIGNALS), statement)
             return name.removesuffix("_signals"), dict(zip(SIGNALS, values, strict=True))
-    raise StrangeError(f"it is not laid out as fretc writes it: `{ast.unparse(statement)}`")
+    raise UnexpectedCodeError(f"it is not laid out as fretc writes it: `{ast.unparse(statement)}`")
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,7 +219,7 @@ if {_is_odd(name)}:
         {both} = doubt
     else:
         {name} = boolean({name}, {proposition!r})"""
-            demand(
+            require(
                 bool(rest) and is_one_of(rest[0], block), rest[0] if rest else ast.Module([], [])
             )
             rest.pop(0)
@@ -232,7 +232,7 @@ if {_is_odd(name)}:
                 continue
             match statement:
                 case ast.Assign([ast.Tuple(targets)], ast.Tuple(values)):
-                    demand(len(targets) == len(values), statement)
+                    require(len(targets) == len(values), statement)
                 case ast.Assign([ast.Name() as target], value):
                     targets, values = [target], [value]
                 case ast.If(test, body, orelse):
@@ -240,7 +240,7 @@ if {_is_odd(name)}:
                     bound = self._after(body, bound) & self._after(orelse, bound)
                     continue
                 case _:
-                    demand(False, statement)
+                    require(False, statement)
             for value in values:
                 self._check(value, bound)
             bound |= {self._target(target) for target in targets}
@@ -248,7 +248,7 @@ if {_is_odd(name)}:
 
     def _target(self, node: ast.expr) -> str:
         fixed = {*FIXED, *self.rail.marks, *self.rail.windows}
-        demand(isinstance(node, ast.Name) and node.id not in fixed, node)
+        require(isinstance(node, ast.Name) and node.id not in fixed, node)
         assert isinstance(node, ast.Name)
         return node.id
 
@@ -298,22 +298,22 @@ def _check_value(node: ast.expr, bound: frozenset[str], windows: frozenset[str])
     match node:
         case ast.Name(name):
             if name not in bound:
-                raise StrangeError(f"what it does at a tick depends on `{name}`")
+                raise UnexpectedCodeError(f"what it does at a tick depends on `{name}`")
         case ast.Constant(value):
-            demand(isinstance(value, int), node)
+            require(isinstance(value, int), node)
         case ast.UnaryOp(ast.Not() | ast.USub(), arg):
             check(arg)
         case ast.BoolOp(_, args):
             check(*args)
         case ast.Compare(left, [operator], [right]):
-            demand(isinstance(operator, _OPERATORS), node)
+            require(isinstance(operator, _OPERATORS), node)
             check(left, right)
         case ast.BinOp(left, ast.Add() | ast.Sub(), right):
             check(left, right)
         case ast.IfExp(test, body, orelse):
             check(test, body, orelse)
         case ast.Call(ast.Attribute(ast.Name(name), "step"), [left, right], []):
-            demand(name in windows, node)
+            require(name in windows, node)
             check(left, right)
         case _:
-            demand(False, node)
+            require(False, node)

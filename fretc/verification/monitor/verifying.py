@@ -19,7 +19,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, excluded
 from compiler.formalization.numbers.reals import MOST_SEARCHED, by_numbers
 from compiler.logic.claims import Outcome, Trace, not_checked, proved, refuted
@@ -37,7 +37,7 @@ from fretc.verification.monitor.equivalence import (
 )
 from fretc.verification.monitor.machine import Stepped
 from fretc.verification.monitor.slices import Alone, slice_of
-from fretc.verification.monitor.statements import StrangeError
+from fretc.verification.monitor.statements import UnexpectedCodeError
 from fretc.verification.monitor.text_check import own, strange
 from monitors.kernel import Monitor
 from monitors.kernel.variables import Variable
@@ -52,7 +52,10 @@ class NotAMonitorError(Exception):
 
 
 def verified(
-    rule: Formalized, text: str, limit: int = MOST_STATES, others: Sequence[Formalized] = ()
+    rule: FormalizedRequirement,
+    text: str,
+    limit: int = MOST_STATES,
+    others: Sequence[FormalizedRequirement] = (),
 ) -> Outcome:
     """Compare the text of a monitor with its rule.
 
@@ -69,7 +72,7 @@ def verified(
 
 
 def verified_beside(
-    rule: Formalized, text: str, whole: str | None, limit: int = MOST_STATES
+    rule: FormalizedRequirement, text: str, whole: str | None, limit: int = MOST_STATES
 ) -> Outcome:
     """As `verified`.
 
@@ -88,7 +91,7 @@ def verified_beside(
     return _compared(rule, text, monitor, limit, whole)
 
 
-def written(text: str, rules: Sequence[Formalized]) -> str | None:
+def written(text: str, rules: Sequence[FormalizedRequirement]) -> str | None:
     """What fretc writes for the requirements of a text; None where not all of them are known.
 
     Raises:
@@ -119,7 +122,7 @@ def _opened(text: str) -> Monitor | str:
 
 
 def _compared(
-    rule: Formalized, text: str, monitor: Monitor, limit: int, whole: str | None
+    rule: FormalizedRequirement, text: str, monitor: Monitor, limit: int, whole: str | None
 ) -> Outcome:
     """The outcome for a text that is safe to execute."""
     places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == rule.id]
@@ -157,7 +160,7 @@ def _compared(
 
 
 def _needed(
-    rule: Formalized, text: str, monitor: Monitor, atoms: tuple[str, ...]
+    rule: FormalizedRequirement, text: str, monitor: Monitor, atoms: tuple[str, ...]
 ) -> tuple[tuple[str, ...], frozenset[str] | None]:
     """The atoms and the cells that a requirement depends on; all, where it may depend on more."""
     own = atoms_of(rule.sentence)
@@ -167,7 +170,7 @@ def _needed(
 
 
 def lock_step(
-    rule: Formalized, machine: Machine, atoms: Sequence[str], limit: int
+    rule: FormalizedRequirement, machine: Machine, atoms: Sequence[str], limit: int
 ) -> Equivalence | Difference | str:
     """The comparison with the automaton of the sentence, over all valuations of the atoms.
 
@@ -263,7 +266,7 @@ def _is_like(whole: str, text: str) -> bool:
 
 
 def _front_compared(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     texts: tuple[str, str | None],
     text: str,
     monitor: Monitor,
@@ -282,12 +285,12 @@ def _front_compared(
 
 
 def _differing(
-    rule: Formalized, text: str, written: str, monitor: Monitor, atoms: Sequence[str]
+    rule: FormalizedRequirement, text: str, written: str, monitor: Monitor, atoms: Sequence[str]
 ) -> Outcome | None:
     """Why the variables of a text, or what it compares, are not those of the other."""
     try:
         actual, expected = front_terms.terms(text), front_terms.terms(written)
-    except StrangeError as error:
+    except UnexpectedCodeError as error:
         return not_checked(str(error))
     names = [name for name in rule.watched if name in expected]
     if all(actual.get(name) == expected[name] for name in names):
@@ -308,7 +311,7 @@ def _kinds(variables: Mapping[str, Variable]) -> Mapping[str, object]:
 
 
 def _compared_with_generated(
-    rule: Formalized,
+    rule: FormalizedRequirement,
     generated: str,
     text: str,
     monitor: Monitor,
@@ -337,19 +340,19 @@ def _compared_with_generated(
     reference = load("generated", generated)
     never = excluded(rule)
 
-    def compare_without(more: Sequence[Exclusion]) -> rails.Same | rails.Apart | None:
+    def compare_without(more: Sequence[Exclusion]) -> rails.Equivalent | rails.Distinguished | None:
         most = min(limit, MOST_SEARCHED) if more else limit
         every = (*never, *more)
         return rails.compared(monitor, place, reference, names[:count], most, every)
 
-    comparison, note = by_numbers(rule, names[:count], rails.Apart, compare_without)
+    comparison, note = by_numbers(rule, names[:count], rails.Distinguished, compare_without)
     match comparison:
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")
-        case rails.Apart(word, signal):
+        case rails.Distinguished(word, signal):
             fault = f"the text that fretc writes tells another {signal}{noted(note)}"
             return _disagreement(names, word, fault)
-        case rails.Same(states):
+        case rails.Equivalent(states):
             terms = Terms()
             if terms.of(text, place) == terms.of(generated, 0):
                 return states

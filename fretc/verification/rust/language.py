@@ -6,11 +6,11 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.rust.monitor import TARGET
 from compiler.targets.target import Options
 from fretc.verification.compiled.library import saved
-from fretc.verification.compiled.plan import Checked, Given, Prepared, implemented
+from fretc.verification.compiled.plan import BuiltLibrary, ParsedSource, SourceText, implemented
 from fretc.verification.rust.build import BASE, built, compiler
 from fretc.verification.rust.form import LEXIS, formed
 
@@ -20,7 +20,7 @@ _OUTCOMES = re.compile(r"^[ \t]+/// (.*)\n[ \t]+pub (\w+): Outcome,$", re.MULTIL
 tool = compiler
 
 
-def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
+def checked(given: SourceText, rules: Sequence[FormalizedRequirement]) -> ParsedSource:
     """The text in the form that fretc writes.
 
     Raises:
@@ -33,10 +33,10 @@ def checked(given: Given, rules: Sequence[Formalized]) -> Checked:
     outcomes = tuple(name for _, name in _OUTCOMES.findall(own))
     form = formed(given.text, own, cells, inputs, outcomes)
     is_original = LEXIS.tokens(given.text) == LEXIS.tokens(own)
-    return Checked(own_rules, outcomes, form, cells, inputs, is_original)
+    return ParsedSource(own_rules, outcomes, form, cells, inputs, is_original)
 
 
-def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prepared:
+def prepared(program: str, given: SourceText, checked: ParsedSource, folder: Path) -> BuiltLibrary:
     """The library; nothing of it has run.
 
     Raises:
@@ -44,7 +44,7 @@ def prepared(program: str, given: Given, checked: Checked, folder: Path) -> Prep
     """
     binary = built(program, given.text, checked.cells, checked.inputs, checked.outcomes)
     library, digest = saved(binary, folder, BASE, checked.cells)
-    return Prepared(library, binary.engine, {f"{Path(given.name).stem}.so": digest})
+    return BuiltLibrary(library, binary.engine, {f"{Path(given.name).stem}.so": digest})
 
 
 def _fields(text: str, struct: str) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from threading import Event as Flag
 from typing import TYPE_CHECKING, assert_never
 from urllib.parse import SplitResult
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from fretc.watch.sources.foxglove_protocol import (
     SUBPROTOCOLS,
     Advertised,
@@ -186,7 +186,7 @@ class Foxglove(Middleware):
 
         Raises:
             _GoneError, OSError, WebSocketException: the server is of no use any more.
-            MisshapenError: it speaks another protocol.
+            SchemaError: it speaks another protocol.
         """
         if connection.socket.subprotocol is None:
             raise _GoneError("it does not speak Foxglove's protocol")
@@ -315,7 +315,7 @@ def _reason(error: Exception) -> tuple[str, str | None]:
             return f"it has not answered within {PATIENCE:g} s", None
         case OSError():
             return error.strerror or str(error), None
-        case MisshapenError():
+        case SchemaError():
             return f"it sends what is not of the protocol: {str(error)[:_EXCERPT]}", None
         case InvalidStatus():
             status = f"HTTP status {error.response.status_code}"

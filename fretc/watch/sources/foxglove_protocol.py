@@ -16,7 +16,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from urllib.parse import SplitResult, urlsplit
 
-from compiler.files.checked_json import MisshapenError, Shape
+from compiler.files.checked_json import SchemaError, Shape
 from compiler.files.checked_json import plain as json_value
 from fretc.watch.sources.source import Channel
 from fretish.diagnostics.diagnostic import Code, Diagnostic
@@ -97,7 +97,7 @@ def read(message: str | bytes, topics: Collection[str]) -> Message | None:
     """One message of a server; None: nothing that concerns these topics.
 
     Raises:
-        MisshapenError: it is not of the protocol.
+        SchemaError: it is not of the protocol.
     """
     return _text(message, topics) if isinstance(message, str) else _binary(message)
 
@@ -105,10 +105,10 @@ def read(message: str | bytes, topics: Collection[str]) -> Message | None:
 def _binary(message: bytes) -> Message | None:
     match message[:1]:
         case b"":
-            raise MisshapenError("a binary message is empty")
+            raise SchemaError("a binary message is empty")
         case b"\x01":
             if len(message) < _DATA_HEAD.size:
-                raise MisshapenError("a message of a channel breaks off")
+                raise SchemaError("a message of a channel breaks off")
             subscription, time = _DATA_HEAD.unpack_from(message)
             return Data(subscription, time, message[_DATA_HEAD.size :])
         case b"\x02":

@@ -16,7 +16,7 @@ from fretish.bindings.tables.signals import SignalTables
 from fretish.bindings.tables.variables import VariableTables
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
-from fretish.reading.limits import within
+from fretish.reading.limits import with_budget
 from fretish.reading.toml_text import Tables, read
 
 _TABLES = ("clock", "signal", "proposition", "variable", "interceptor", "assume", "map", "run",
@@ -33,7 +33,7 @@ def read_bindings(source: Source) -> tuple[Declarations | None, tuple[Diagnostic
         proposition, or in a shared table, is among the `mistakes` of the declarations; with any
         other error there are none.
     """
-    found = within(len(source.text), source.span(0, 0), lambda: _read(source))
+    found = with_budget(len(source.text), source.span(0, 0), lambda: _read(source))
     return (None, (found,)) if isinstance(found, Diagnostic) else found
 
 

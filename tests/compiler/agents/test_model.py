@@ -6,7 +6,7 @@ from itertools import pairwise
 import pytest
 
 from compiler.agents.gwendolen import Agent, Change, read
-from compiler.agents.model import Intention, Model, Stage, State, narration
+from compiler.agents.model import Intention, Model, ReasoningStep, State, narration
 from compiler.logic import formula as f
 from compiler.logic.kripke import Explored, TooManyStatesError, check
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -183,7 +183,7 @@ def events(state: State) -> list[str]:
 
 def perceived(model: Model, state: State) -> set[tuple[tuple[str, ...], ...]]:
     """What is believed on each way through perceiving, one set of names for each state."""
-    if state.stage is not Stage.PERCEIVE:
+    if state.stage is not ReasoningStep.PERCEIVE:
         return {()}
     return {
         (tuple(sorted(after.beliefs)), *rest)
@@ -204,7 +204,7 @@ def test_percepts_that_change_at_once_are_believed_one_after_the_other_in_any_or
 def test_what_went_comes_before_what_came() -> None:
     model = Model(agent(ONCE), ("a", "b"))
     state = replace(model.initial, percepts=frozenset("a"), perceived=frozenset("b"))
-    assert perceived(model, replace(state, stage=Stage.PERCEIVE)) == {((), ("a",), ("a",))}
+    assert perceived(model, replace(state, stage=ReasoningStep.PERCEIVE)) == {((), ("a",), ("a",))}
 
 
 AFTER = ("perceives nothing new", "turns to +near", "plans +near")
@@ -231,10 +231,10 @@ def test_an_agent_may_take_each_percept_in_a_turn_of_its_own() -> None:
 def test_a_percept_that_waits_is_not_noticed_twice() -> None:
     model = Model(agent(ONCE), ("near",))
     near = frozenset({"near"})
-    state = replace(model.initial, percepts=near, stage=Stage.PERCEIVE, in_turn=True)
+    state = replace(model.initial, percepts=near, stage=ReasoningStep.PERCEIVE, in_turn=True)
     ((_, noticed),) = model.steps(state)
     assert events(noticed) == ["the percept +near"]
-    again = replace(noticed, up_to_date=False, stage=Stage.PERCEIVE)
+    again = replace(noticed, up_to_date=False, stage=ReasoningStep.PERCEIVE)
     ((_, still),) = model.steps(again)
     assert events(still) == ["the percept +near"]
 
@@ -246,20 +246,20 @@ def outcomes(model: Model, state: State) -> set[tuple[frozenset[str], tuple[str,
 def test_a_belief_of_two_sources_may_outlive_one_of_them_or_not() -> None:
     model = Model(agent("+go : {True} <- -near;", " near"), ("near",))
     near = frozenset({"near"})
-    both = replace(model.initial, perceived=near, stage=Stage.PERCEIVE)
+    both = replace(model.initial, perceived=near, stage=ReasoningStep.PERCEIVE)
     assert outcomes(model, both) == {
         (near, ()),
         (near, ("-near",)),
         (frozenset(), ("-near",)),
     }
     removing = Intention(Change("+", "go"), (Change("-", "near"),))
-    executing = replace(both, stage=Stage.EXECUTE, current=removing)
+    executing = replace(both, stage=ReasoningStep.EXECUTE, current=removing)
     assert outcomes(model, executing) == {
         (near, ("-near",)),
         (frozenset(), ("-near",)),
         (frozenset(), ("-near", "-near")),
     }
-    owned = replace(model.initial, percepts=near, stage=Stage.PERCEIVE)
+    owned = replace(model.initial, percepts=near, stage=ReasoningStep.PERCEIVE)
     assert outcomes(model, owned) == {(near, ()), (near, ("+near",))}
 
 

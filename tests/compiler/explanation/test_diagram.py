@@ -9,7 +9,7 @@ import pytest
 
 from compiler.explanation.diagram import Diagram, Kind, Stretch, diagram, words
 from compiler.explanation.drawing import drawing, shortened, slots, svg, text
-from compiler.explanation.windows import Window
+from compiler.explanation.windows import ObligationWindow
 from compiler.files.templating import render
 from fretish.clock import Clock
 from tests import meaning
@@ -19,7 +19,7 @@ from tests.strategies import Template, templates
 SVG = "{http://www.w3.org/2000/svg}"
 
 
-def mattering(drawn: Template, picture: Diagram, window: Window) -> set[int]:
+def mattering(drawn: Template, picture: Diagram, window: ObligationWindow) -> set[int]:
     """The ticks at which the response can make the difference, where this trigger is alone.
 
     By brute force: over all responses of the trace, before and after flipping one tick.
@@ -41,7 +41,7 @@ def mattering(drawn: Template, picture: Diagram, window: Window) -> set[int]:
     }
 
 
-def drawn_for(picture: Diagram, window: Window) -> set[int]:
+def drawn_for(picture: Diagram, window: ObligationWindow) -> set[int]:
     """The ticks of the lanes that say what this trigger asks for."""
     several = len(picture.windows) > 1
     return {

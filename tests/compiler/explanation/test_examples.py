@@ -7,7 +7,7 @@ import pytest
 
 from compiler.explanation.examples import Example, Examples, examples
 from compiler.explanation.reasons import why
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.spot import holds_on
 from tests import meaning
 from tests.effort import FULL
@@ -19,7 +19,7 @@ QUIET = 3
 
 
 @cache
-def found(sentence: str) -> tuple[Formalized, Examples]:
+def found(sentence: str) -> tuple[FormalizedRequirement, Examples]:
     made = rule(sentence)
     return made, examples(made)
 

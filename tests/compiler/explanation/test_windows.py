@@ -6,7 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.explanation.windows import Need, Part, Window, intervals, kept, window
+from compiler.explanation.windows import (
+    Expectation,
+    ObligationWindow,
+    TickRange,
+    intervals,
+    kept,
+    window,
+)
 from compiler.formalization.reference import Template as Counted
 from compiler.formalization.reference import template as counted_of
 from fretish import syntax as s
@@ -52,5 +59,5 @@ def test_long_traces_are_judged_as_fretish_means_them(
 
 def test_after_asks_twice() -> None:
     rule = Counted(None, s.ConditionKind.HOLDING, s.After, 2)
-    parts = (Part(1, 3, Need.NONE), Part(4, 4, Need.ALL))
-    assert window(rule, 1, 9, [False] * 10) == Window(1, 9, parts)
+    parts = (TickRange(1, 3, Expectation.NONE), TickRange(4, 4, Expectation.ALL))
+    assert window(rule, 1, 9, [False] * 10) == ObligationWindow(1, 9, parts)

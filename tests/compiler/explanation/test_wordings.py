@@ -12,7 +12,7 @@ import pytest
 from compiler.explanation.diagram import diagram
 from compiler.explanation.drawing import svg
 from compiler.explanation.explain import explanation, text
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import load
 from fretc.play.page import html
 from fretish.units import NAMES, base_name, unit
@@ -25,7 +25,7 @@ UNITS = (*(name for name in NAMES if name != "1"), "m/s^2", "km/h", "deg/s", "cm
 NUMBERS = ("3.0", "0.50", "30", "1.5e-3")
 
 
-def rule(name: str, digits: str) -> Formalized:
+def rule(name: str, digits: str) -> FormalizedRequirement:
     """A sentence with a number in a unit, of a signal in another one of the kind."""
     found = unit(name)
     assert found is not None

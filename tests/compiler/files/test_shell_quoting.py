@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.files.shell_quoting import (
-    UnsayableError,
+    UnencodableNameError,
     check_of,
     is_sha256,
     unsayable,
@@ -53,7 +53,7 @@ def shell(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
 def test_what_a_shell_reads_is_the_name_and_no_option(names: list[str]) -> None:
     try:
         command = words(names)
-    except UnsayableError:
+    except UnencodableNameError:
         assert any(not name or not name.isprintable() for name in names)
         return
     assert command.isprintable()
@@ -81,9 +81,9 @@ def test_the_hashes_of_files_of_any_name_are_checked_and_nothing_else_happens(
     "name", ["a\nEND\ntouch PWNED\n.mcap", "a\r.mcap", "a\x1b[2Jb.mcap", "a\u202eb.mcap", ""]
 )
 def test_a_name_that_cannot_be_pasted_is_told_in_a_comment(tmp_path: Path, name: str) -> None:
-    with pytest.raises(UnsayableError):
+    with pytest.raises(UnencodableNameError):
         word(name)
-    with pytest.raises(UnsayableError):
+    with pytest.raises(UnencodableNameError):
         check_of([("0" * 64, name)])
     comment = unsayable(name)
     assert comment.isprintable()

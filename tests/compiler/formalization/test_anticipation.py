@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Result
 from fretc.verification.monitor.verifying import verified
 from tests.effort import FULL, pairwise
@@ -29,7 +29,7 @@ def words(names: tuple[str, ...], count: int, seed: str) -> list[dict[str, list[
     return found
 
 
-def check(sentence: str, made: Formalized, names: tuple[str, ...], count: int) -> None:
+def check(sentence: str, made: FormalizedRequirement, names: tuple[str, ...], count: int) -> None:
     machine, oracle = monitor(sentence), Ltl3(made.ft_infinite)
     for columns in words(names, count, sentence):
         letters = [

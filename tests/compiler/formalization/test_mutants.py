@@ -17,8 +17,8 @@ from typing import Any, TypeVar, get_args
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
-from compiler.formalization.past import Watch
+from compiler.formalization.formalized import FormalizedRequirement
+from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
 from compiler.logic.claims import Result
 from compiler.targets.python import monitor as target
@@ -205,7 +205,7 @@ def _with(formula: f.Formula, place: int, child: f.Formula) -> f.Formula:
     return f.rebuild(formula, lambda known: child if next(places) == place else known)
 
 
-def of_watch(watch: Watch) -> Iterator[tuple[str, Watch]]:
+def of_watch(watch: MonitorSpec) -> Iterator[tuple[str, MonitorSpec]]:
     for field in fields(watch):
         signal = getattr(watch, field.name)
         if field.name in ("horizon", "renewed") or signal is None:
@@ -219,7 +219,7 @@ def of_watch(watch: Watch) -> Iterator[tuple[str, Watch]]:
                 yield f"{field.name}: always triggered", changed(watch, field.name, other)
 
 
-def changed(watch: Watch, signal: str, other: f.Formula) -> Watch:
+def changed(watch: MonitorSpec, signal: str, other: f.Formula) -> MonitorSpec:
     changes: dict[str, Any] = {signal: other}
     return replace(watch, **changes)
 
@@ -238,7 +238,7 @@ REFUTED, DIFFERS, REFUSED, TOLD, SAME = "refuted", "differs", "refused", "told a
 class Judge:
     """What is found of a monitor with a mistake."""
 
-    def __init__(self, right: Formalized) -> None:
+    def __init__(self, right: FormalizedRequirement) -> None:
         self.rule = right
         self.machine = load("right.py", target.text(right))
         choose = random.Random(right.id)
@@ -373,7 +373,7 @@ def test_a_mistake_in_a_formula_is_found_or_proved_to_change_nothing(numbers: li
     assert found[REFUTED] >= (5 if FULL else 10), found
 
 
-def _same(watch: Watch) -> Watch:
+def _same(watch: MonitorSpec) -> MonitorSpec:
     return watch
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import formulas
 from compiler.logic import printing
 from compiler.logic.spot import same_language
@@ -16,7 +16,7 @@ from tests import meaning
 from tests.each import each
 
 
-def rule(sentence: str) -> Formalized:
+def rule(sentence: str) -> FormalizedRequirement:
     ((requirement,), _) = requirements(Source("r.fret", sentence))
     formalized, diagnostics = formalize(requirement, None)
     assert formalized is not None, diagnostics

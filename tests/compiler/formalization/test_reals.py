@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from compiler.explanation.examples import examples
 from compiler.explanation.explain import explanation
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons
 from compiler.formalization.numbers.reals import Impossible, Possible, Reals, Undecided, by_numbers
 from compiler.logic.claims import Result
@@ -88,7 +88,7 @@ def _has_solution(bounds: Sequence[Bound]) -> bool:
     return _has_solution(rest)
 
 
-def asked(some: Sequence[Linear]) -> tuple[Formalized, dict[str, Linear]]:
+def asked(some: Sequence[Linear]) -> tuple[FormalizedRequirement, dict[str, Linear]]:
     """A rule that compares them, and which of its atoms each one is."""
     made = rule(f"the sw shall satisfy {' | '.join(f'({each.text})' for each in some)}")
     names = comparisons(made)

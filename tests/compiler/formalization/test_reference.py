@@ -12,7 +12,7 @@ import spot
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import meanings
 from compiler.formalization.reference import (
     BROKEN,
@@ -162,7 +162,7 @@ def guards_of(graph: Any, names: Sequence[str]) -> dict[Valuation, Any]:
     return guards
 
 
-def in_spot(made: Formalized) -> Any:
+def in_spot(made: FormalizedRequirement) -> Any:
     return spot.formula(printing.text(made.ft_infinite, printing.SPOT))
 
 

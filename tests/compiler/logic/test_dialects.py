@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.definition import holds
@@ -26,7 +26,7 @@ SINCE = f.Not(f.Since(f.Xor(a, f.TRUE), f.Previous(b), f.Interval(1, 3)))
 FIRST = f.Iff(f.Historically(f.And((a, f.Not(b))), f.EVER), f.Or((f.FIRST, f.Once(c, f.EVER))))
 
 
-def rule(sentence: str) -> Formalized:
+def rule(sentence: str) -> FormalizedRequirement:
     ((requirement,), _) = requirements(Source("r.fret", sentence))
     formalized, diagnostics = formalize(requirement, None)
     assert formalized is not None, diagnostics

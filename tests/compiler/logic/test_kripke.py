@@ -85,7 +85,7 @@ def test_constants_are_formulas_too() -> None:
     assert check(kripke, f.FALSE) == Lasso((), (0,))
 
 
-@pytest.mark.parametrize("formula", [f.globally(f.LAST), f.Odds(">=", "0.9", p)])
+@pytest.mark.parametrize("formula", [f.globally(f.LAST), f.ProbabilityBound(">=", "0.9", p)])
 def test_what_is_not_about_single_endless_runs_is_not_checked(formula: f.Formula) -> None:
     with pytest.raises(ValueError, match="single endless runs"):
         check(Kripke((NONE,), ((0,),)), formula)

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.formalization.past import Watch
+from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
 from compiler.logic.definition import holds
 from compiler.logic.evaluation import evaluate_unknown
@@ -34,7 +34,7 @@ def of(*formulas: f.Formula) -> Program:
     """A program that tells the formulas, each as the trigger of a requirement."""
     no = f.FALSE
     watches = {
-        f"R{i}": Watch(formula, no, no, no, no, no, None, None, renewed=False)
+        f"R{i}": MonitorSpec(formula, no, no, no, no, no, None, None, renewed=False)
         for i, formula in enumerate(formulas)
     }
     return program(watches)

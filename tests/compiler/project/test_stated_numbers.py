@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from compiler.formalization.formalize import formalize
-from compiler.project.stated_numbers import disagreements, first_unit
+from compiler.project.stated_numbers import check_stated_numbers, first_unit
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source
@@ -35,7 +35,7 @@ def codes(title: str = "", text: str = "", params: str = "") -> list[tuple[str, 
     rule, _ = formalize(requirement, declared)
     assert rule is not None
     assert rule.declarations is not None
-    diagnostics = disagreements(rule, rule.declarations)
+    diagnostics = check_stated_numbers(rule, rule.declarations)
     return [(each.code.name, each.span.text if each.span else "") for each in diagnostics]
 
 

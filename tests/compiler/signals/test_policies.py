@@ -67,9 +67,9 @@ def test_durations_are_inputs_in_the_order_in_which_they_close() -> None:
     inner = e.Persistence(e.Name("a"), 10)
     tree = e.And((e.Not(e.Persistence(e.Not(inner), 20)), inner))
     lowered = meaning(Proposition("p", tree), ())
-    assert lowered.truth == n.All((n.Not(n.Held(1)), n.Held(2)))
+    assert lowered.truth == n.All((n.Not(n.HeldFor(1)), n.HeldFor(2)))
     assert lowered.held == (
         (n.Flag("a"), 10),
-        (n.Not(n.Held(0)), 20),
+        (n.Not(n.HeldFor(0)), 20),
         (n.Flag("a"), 10),
     )

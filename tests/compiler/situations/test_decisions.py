@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from compiler.formalization import reference
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import meanings
 from compiler.formalization.reference import State, step
 from compiler.logic.evaluation import evaluate, evaluate_unknown
@@ -179,7 +179,7 @@ expr = "abs(speed) < 0.010 m/s for 200 ms"
 """
 
 
-def bound(sentence: str) -> Formalized:
+def bound(sentence: str) -> FormalizedRequirement:
     declarations, mistakes = read_bindings(Source("bindings.toml", BINDINGS))
     assert not mistakes, mistakes
     made, found = formalize(Requirement("R1", Source("r.fret", sentence).span()), declarations)
@@ -187,7 +187,7 @@ def bound(sentence: str) -> Formalized:
     return made
 
 
-def thresholds(made: Formalized) -> list[Situation]:
+def thresholds(made: FormalizedRequirement) -> list[Situation]:
     return [each for each in situations(made) if each.place is not None]
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.situations.changes import MOST_PARTS, changes
 from compiler.situations.mutants import OPERATORS, Mutant, mutants
 from fretish import expressions as e
@@ -33,12 +33,12 @@ max_age = "1 s"
 """
 
 
-def formalized(sentence: str) -> Formalized | None:
+def formalized(sentence: str) -> FormalizedRequirement | None:
     found, _ = formalize(Requirement("R1", Source("r.fret", sentence).span()), None)
     return found
 
 
-def timed(sentence: str) -> Formalized:
+def timed(sentence: str) -> FormalizedRequirement:
     """With a clock and a signal."""
     declarations, _ = read_bindings(Source("bindings.toml", CLOCK))
     found, diagnostics = formalize(
@@ -48,7 +48,7 @@ def timed(sentence: str) -> Formalized:
     return found
 
 
-def assert_others(original: Formalized, found: tuple[Mutant, ...]) -> None:
+def assert_others(original: FormalizedRequirement, found: tuple[Mutant, ...]) -> None:
     """Each is a sentence of its own, that its text says; keys are unique, and in order."""
     texts = [canonical(each.rule.written) for each in found]
     assert len({*texts, canonical(original.written)}) == len(texts) + 1

@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
 from compiler.situations.demands import of_demand
-from compiler.situations.facts import facts
 from compiler.situations.situations import Situation, situations
+from compiler.situations.tick_predicates import facts
 from fretc.analysis.arena.counters import Counter
 from fretc.analysis.arena.memory import Memory, Past
 from fretc.analysis.arena.transition import Transition
@@ -27,7 +27,7 @@ def of(scope: str) -> Iterator[Template]:
     return (drawn for drawn in some_templates() if drawn.scope == scope)
 
 
-def timed(made: Formalized, *, exact: bool = False) -> list[Situation]:
+def timed(made: FormalizedRequirement, *, exact: bool = False) -> list[Situation]:
     """Those that are not about single operands."""
     return [each for each in situations(made, exact=exact) if ":" not in each.key]
 

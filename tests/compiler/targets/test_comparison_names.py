@@ -9,7 +9,7 @@ from compiler.emit import TARGETS
 from compiler.explanation.constant_parts import constant_parts
 from compiler.explanation.examples import examples
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import excluded
 from compiler.targets.comparison_names import comparison_names, definitions
 from compiler.targets.ltl import text
@@ -46,7 +46,7 @@ NAMES = {
 }
 
 
-def rule(sentence: str = SENTENCE, bindings: str = BINDINGS) -> Formalized:
+def rule(sentence: str = SENTENCE, bindings: str = BINDINGS) -> FormalizedRequirement:
     declared, wrong = read_bindings(Source("bindings.toml", bindings))
     assert declared is not None, wrong
     found, said = formalize(Requirement("A1", Source("a1.fret", sentence).span()), declared)

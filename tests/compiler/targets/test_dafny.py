@@ -11,7 +11,7 @@ import pytest
 
 from compiler.emit import TARGETS
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.reference import accepts, initial, step, template
 from compiler.project.folder import load
 from compiler.targets.dafny import text
@@ -85,7 +85,7 @@ def bound(text: str = BINDINGS) -> Declarations:
     return found
 
 
-def rule(sentence: str, declarations: Declarations | None = None) -> Formalized:
+def rule(sentence: str, declarations: Declarations | None = None) -> FormalizedRequirement:
     requirement = Requirement("R1", Source("r.fret", sentence).span())
     made, diagnostics = formalize(requirement, declarations)
     assert made is not None, diagnostics

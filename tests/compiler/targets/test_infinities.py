@@ -22,7 +22,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.javascript import monitor as javascript
 from compiler.targets.python import monitor as python
 from fretc.logs.signals.signals import sample
@@ -90,7 +90,7 @@ class Bound:
         return float(sum(map(Fraction, found)) / len(found))
 
 
-def rule_of(bound: Bound) -> Formalized:
+def rule_of(bound: Bound) -> FormalizedRequirement:
     source = Source("r.fret", SENTENCE)
     found, wrong = formalize(Requirement("R1", source.span()), declare(bound.text))
     assert found is not None, wrong

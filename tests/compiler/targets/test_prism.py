@@ -108,7 +108,7 @@ def test_chains_of_next_mean_the_bounds() -> None:
 
 def test_a_complement_is_exact_whatever_its_digits() -> None:
     digits = "0." + "9" * 40
-    odds = f.Odds(">=", digits, f.globally(f.Atom("q"), f.Interval(0, 2)))
+    odds = f.ProbabilityBound(">=", digits, f.globally(f.Atom("q"), f.Interval(0, 2)))
     found = complement(odds)
     assert found.op == "<="
     assert Fraction(found.bound) == 1 - Fraction(digits)

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from compiler.agents import psl
 from compiler.emit import TARGETS, renamed
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.spelling.reserved_words import LUSTRE, SMV, TABLES, C
@@ -72,7 +72,7 @@ def _code(text: str) -> str:
     return re.sub(r"//.*|#[^!\[].*|--.*|/\*.*?\*/", "", text)
 
 
-def about(names: Sequence[str]) -> Formalized:
+def about(names: Sequence[str]) -> FormalizedRequirement:
     """A rule that is broken where none of the names is true."""
     return rule(f"the sw shall always satisfy {disjunction(names)}")
 

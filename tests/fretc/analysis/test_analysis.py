@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis import verdicts
 from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import Conflict, OpenQuestion, Verdict
-from fretc.analysis.games.squaring import Leaps
+from fretc.analysis.games.squaring import IterativeSquaring
 from fretc.analysis.verdicts import Completeness
 from fretish.bindings.declarations import Role
 from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, roles, rule, staged
@@ -42,7 +42,9 @@ MIXER_OUTPUTS = (
 )  # fmt: skip
 
 
-def published(project: str, constants: Mapping[str, int] | None = None) -> list[Formalized]:
+def published(
+    project: str, constants: Mapping[str, int] | None = None
+) -> list[FormalizedRequirement]:
     """The requirements of a case study of NASA FRET, with its constants written out."""
     found = []
     for record in PUBLISHED:
@@ -340,7 +342,7 @@ def test_the_environment_keeps_its_promises_while_it_wins() -> None:
 
 
 def test_what_takes_too_long_comes_with_a_clue(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Leaps, "is_due", lambda self: False)
+    monkeypatch.setattr(IterativeSquaring, "is_due", lambda self: False)
     setting = staged(
         "whenever a the sw shall within 1000000 ticks satisfy x",
         "whenever b the sw shall for 1000001 ticks satisfy !x",

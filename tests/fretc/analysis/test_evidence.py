@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from compiler.files.records import plain, replace
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import load
 from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.roles import roles
@@ -49,7 +49,7 @@ sentence = "the operator shall never satisfy start & stop"
 
 def rules_of(
     folder: Path, tables: str = TABLES, sentences: Mapping[str, str] = SENTENCES
-) -> tuple[tuple[Formalized, ...], tuple[Formalized, ...]]:
+) -> tuple[tuple[FormalizedRequirement, ...], tuple[FormalizedRequirement, ...]]:
     """Requirements and assumptions of a project."""
     texts = (f'+++\nid = "{id}"\n+++\n{text}\n' for id, text in sentences.items())
     (folder / "r.fret").write_text("\n".join(texts))
@@ -60,7 +60,9 @@ def rules_of(
     return project.rules, assumed
 
 
-def analyzed(rules: tuple[Formalized, ...], assumed: tuple[Formalized, ...]) -> Document:
+def analyzed(
+    rules: tuple[FormalizedRequirement, ...], assumed: tuple[FormalizedRequirement, ...]
+) -> Document:
     chosen = roles([*rules, *assumed])
     assert not isinstance(chosen, tuple)
     return document(rules, assumed, analyze(rules, chosen, assumed), as_fret=False)

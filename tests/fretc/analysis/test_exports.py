@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from compiler.project.folder import whole
+from compiler.project.folder import load_folder
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import roles
 from fretc.analysis.findings import Verdict
-from fretc.analysis.stage import stage
+from fretc.analysis.realizability_problem import stage
 from fretc.analysis.verdicts import verdict
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
@@ -150,7 +150,7 @@ def test_hover_is_reached_within_twelve_ticks_and_not_within_six(
     """
     text = export("LPC_mini", DELAYED if delayed else PLANE, without, delayed)
     assert fretc("import", write("export.json", text), "-o", "set").status == 0
-    project = whole("set")
+    project = load_folder("set")
     assert not isinstance(project, Diagnostic)
     named = roles(project.rules)
     assert not isinstance(named, tuple)

@@ -10,7 +10,7 @@ import spot
 from compiler.logic import printing
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import Analysis, Inconsistency
-from fretc.analysis.games.squaring import Leaps
+from fretc.analysis.games.squaring import IterativeSquaring
 from fretc.analysis.implications import inconsistencies
 from tests.requirement_sets import analyzed, drawn, rules, staged, terse
 
@@ -191,7 +191,7 @@ def test_leaps_over_many_ticks_change_no_finding(monkeypatch: pytest.MonkeyPatch
         sentences = (terse if seed % 2 else drawn)(("leaps", seed), most=3)
         before = analyzed(*sentences)
         with monkeypatch.context() as patched:
-            patched.setattr(Leaps, "is_due", lambda self: True)
+            patched.setattr(IterativeSquaring, "is_due", lambda self: True)
             after = analyzed(*sentences)
         for name in ("consistent", "always", "never", "redundant", "removable", "vacuous"):
             assert getattr(after, name) == getattr(before, name), (name, sentences)

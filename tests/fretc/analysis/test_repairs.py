@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.analysis import analyze
 from fretc.analysis.findings import Analysis, Repair, Verdict
 from fretish.bindings.declarations import Role
@@ -114,7 +114,9 @@ def test_assumptions_that_are_there_stay() -> None:
     ]
 
 
-def changed(sentences: Sequence[str], repair: Repair) -> tuple[list[Formalized], list[Formalized]]:
+def changed(
+    sentences: Sequence[str], repair: Repair
+) -> tuple[list[FormalizedRequirement], list[FormalizedRequirement]]:
     """The requirements of its conflict and the assumptions, as the repair has them."""
     mine = [each for each in rules(*sentences) if each.id in repair.conflict]
     if repair.requirement is None:

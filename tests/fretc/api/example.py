@@ -9,7 +9,7 @@ import fretc
 
 def everything(folder: str, log: str) -> list[str]:
     project: fretc.Project = fretc.read_project(folder)
-    rule: fretc.Formalized = fretc.formalize("the rover shall always satisfy p")
+    rule: fretc.FormalizedRequirement = fretc.formalize("the rover shall always satisfy p")
     assert_type(fretc.formulas(rule), fretc.Formulas)
     assert_type(fretc.formulas(rule).past, str | None)
     monitor = fretc.load_monitor(*project.rules, rule)

@@ -44,6 +44,11 @@ def test_another_name_is_no_attribute() -> None:
         getattr(fretc, "audit_log")  # noqa: B009
 
 
+def test_a_name_of_the_previous_version_still_works_and_warns() -> None:
+    with pytest.warns(DeprecationWarning, match="`fretc.Formalized` is now"):
+        assert getattr(fretc, "Formalized") is fretc.FormalizedRequirement  # noqa: B009
+
+
 def test_all_names_are_listed() -> None:
     assert set(fretc.__all__) <= set(dir(fretc))
 

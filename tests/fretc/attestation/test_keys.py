@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from securesystemslib.dsse import Envelope
 from securesystemslib.signer import SSlibKey
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from fretc.attestation.keys import (
     PAYLOAD_TYPE,
     UnusableKeyError,
@@ -72,7 +72,7 @@ def test_any_character_of_the_line_that_is_changed_breaks_it(data: st.DataObject
 def verifies(line: str) -> bool:
     try:
         return read_envelope(line).is_signed_by(public_key(keys.public(MINE)))
-    except MisshapenError:
+    except SchemaError:
         return False
 
 
@@ -94,7 +94,7 @@ def test_an_envelope_of_another_form_is_refused(change: object) -> None:
     content = json.loads(ENVELOPE)
     assert callable(change)
     change(content)
-    with pytest.raises(MisshapenError):
+    with pytest.raises(SchemaError):
         read_envelope(json.dumps(content))
 
 
@@ -105,12 +105,12 @@ def test_each_content_has_one_text() -> None:
     other = sig[:-3] + chr(ord(sig[-3]) + 1) + "=="
     assert base64.b64decode(other) == base64.b64decode(sig)
     content["signatures"][0]["sig"] = other
-    with pytest.raises(MisshapenError, match="must be base64"):
+    with pytest.raises(SchemaError, match="must be base64"):
         read_envelope(json.dumps(content))
 
 
 def test_a_name_that_stands_twice_is_refused() -> None:
-    with pytest.raises(MisshapenError, match="is there twice"):
+    with pytest.raises(SchemaError, match="is there twice"):
         read_envelope(ENVELOPE.replace('{"payload"', '{"payload": "e30=", "payload"', 1))
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from fretc.attestation.statement import REVIEW, Statement, Subject, read, text
 
 ONE = Statement(REVIEW, (Subject(REVIEW, "R1:a", "ab" * 32), Subject(REVIEW, "", "cd" * 32)))
@@ -43,7 +43,7 @@ def changed(change: Callable[[dict[str, Any]], object]) -> bytes:
     ],
 )
 def test_another_statement_is_refused(change: Callable[[dict[str, Any]], object]) -> None:
-    with pytest.raises(MisshapenError):
+    with pytest.raises(SchemaError):
         read(changed(change))
 
 
@@ -58,5 +58,5 @@ def test_another_statement_is_refused(change: Callable[[dict[str, Any]], object]
     ],
 )
 def test_what_is_no_plain_json_is_refused(payload: bytes) -> None:
-    with pytest.raises(MisshapenError):
+    with pytest.raises(SchemaError):
         read(payload)

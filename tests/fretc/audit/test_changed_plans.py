@@ -10,7 +10,7 @@ import pytest
 from compiler.files import text_files
 from fretc.audit import many_logs as auditing
 from fretc.audit import one_log
-from fretc.audit.many_logs import locally
+from fretc.audit.many_logs import local_executor
 from fretc.audit.plan import Plan
 from fretc.audit.store import parts
 from tests.fretc.audit.test_into_store import session, tables
@@ -105,5 +105,5 @@ def test_processes_take_over_the_same(tmp_path: Path, judged: list[tuple[str, st
     stored(before, "store")
     stored(now, "nothing")
     with session(LOGS, now, Path("store")) as one:
-        one.run(locally(2, None, one.earlier.results), lambda _: None)
+        one.run(local_executor(2, None, one.earlier.results), lambda _: None)
     assert tables(Path("store")) == tables(Path("nothing"))

@@ -17,9 +17,9 @@ import pytest
 from compiler.files import text_files as files
 from compiler.files.user_key import user_key
 from compiler.project.folder import load
-from compiler.project.paths import beside, requirement_files
-from fretc.audit.into_store import Session, StoredAudit
-from fretc.audit.many_logs import IN_TURN, Engine, LogAudits, audit_logs, audited, locally
+from compiler.project.paths import requirement_files, sibling_path
+from fretc.audit.into_store import StoredAudit, StoreWriter
+from fretc.audit.many_logs import SEQUENTIAL, Engine, LogAudits, audit_logs, audited, local_executor
 from fretc.audit.plan import Plan, planned
 from fretc.audit.store import parts
 from fretc.audit.store.reader import Store, evidence, opened
@@ -46,23 +46,23 @@ def fretc(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
 def plan(evaluation: str = "columns") -> Plan:
     paths = requirement_files("requirements")
     assert not isinstance(paths, Diagnostic)
-    result = planned(load(paths, beside("requirements", "bindings.toml")), evaluation)
+    result = planned(load(paths, sibling_path("requirements", "bindings.toml")), evaluation)
     assert isinstance(result, Plan)
     return result
 
 
 def session(
     logs: Sequence[str] = LOGS, own: Plan | None = None, folder: Path = STORE, rehash: bool = False
-) -> Session:
+) -> StoreWriter:
     key = user_key()
     assert isinstance(key, bytes)
-    return Session(folder, own or plan(), logs, key, rehash=rehash)
+    return StoreWriter(folder, own or plan(), logs, key, rehash=rehash)
 
 
 def stored(
     logs: Sequence[str] = LOGS,
     own: Plan | None = None,
-    engine: Engine = IN_TURN,
+    engine: Engine = SEQUENTIAL,
     folder: Path = STORE,
 ) -> tuple[StoredAudit, list[str]]:
     """Audit into a store; also the logs that were read."""
@@ -131,7 +131,7 @@ def test_a_store_depends_on_no_engine_and_no_order(
     assert evidence(first.source).document == whole.document
     assert (first.diagnostics, first.read) == (whole.diagnostics, whole.read)
     manifest = (STORE / "manifest.json").read_bytes()
-    for number, engine in enumerate((backwards, locally(2))):
+    for number, engine in enumerate((backwards, local_executor(2))):
         folder = Path(f"store{number}")
         stored([*LOGS, "none.mcap"], engine=engine, folder=folder)
         assert tables(folder) == tables()
@@ -262,7 +262,7 @@ def test_another_fretc_or_evaluation_makes_all_of_it_new(
     stored()
     with session(own=plan("online")) as one:
         assert (one.known, one.earlier.stale) == ({}, True)
-    monkeypatch.setattr("fretc.audit.plan.edition", lambda: "another")
+    monkeypatch.setattr("fretc.audit.plan.build_id", lambda: "another")
     assert known() == {}
 
 
@@ -285,7 +285,7 @@ def test_only_what_is_written_counts_as_kept(fretc: Fretc, monkeypatch: pytest.M
     wrong = Diagnostic(Code.NOT_WRITTEN, "the disk is full")
     monkeypatch.setattr("fretc.audit.into_store.write_part", lambda *_: wrong)
     with session() as one:
-        assert one.run(IN_TURN, lambda _: None) == wrong
+        assert one.run(SEQUENTIAL, lambda _: None) == wrong
     assert one.kept == len(known()) == 0
 
 

@@ -250,7 +250,7 @@ def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audit
 ) -> None:
     real = auditing.audited
 
-    def deadly(plan: Plan, log: str, *rest: Any) -> auditing.LogAudit:
+    def deadly(plan: Plan, log: str, *rest: Any) -> auditing.LogResult:
         if log == "bad.mcap":
             os.kill(os.getpid(), signal.SIGKILL)
         return real(plan, log, *rest)

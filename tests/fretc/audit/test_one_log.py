@@ -10,7 +10,7 @@ from compiler.files.records import plain
 from compiler.formalization.formalize import formalize
 from compiler.situations.situations import situations
 from compiler.targets.python.monitor import text
-from fretc.audit.evidence.writer import Evidence, as_record
+from fretc.audit.evidence.writer import RunResult, as_record
 from fretc.audit.one_log import MonitoredRequirement, audit, signals_of
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.declarations import Declarations
@@ -64,7 +64,7 @@ def recorded(
 
 def audited(
     sentence: str, recording: Recording, declarations: Declarations | None = None
-) -> Evidence:
+) -> RunResult:
     bindings = declarations or declared()
     ((requirement,), _) = requirements(Source("R1.fret", sentence))
     rule, diagnostics = formalize(requirement, bindings)

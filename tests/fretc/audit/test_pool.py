@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.audit.pool import Killed, Late, Limits, each
+from fretc.audit.pool import Limits, TimedOut, WorkerDied, each
 
 
 @pytest.mark.parametrize("jobs", [1, 2, 5])
@@ -54,7 +54,7 @@ def test_a_thing_that_kills_its_process_twice_is_told_and_the_others_are_done(jo
         return -thing
 
     results = dict(each(work, range(8), jobs))
-    assert results.pop(3) == Killed(-signal.SIGKILL)
+    assert results.pop(3) == WorkerDied(-signal.SIGKILL)
     assert results == {i: -i for i in range(8) if i != 3}
     assert not active_children()
 
@@ -74,7 +74,7 @@ def test_a_thing_whose_process_is_killed_once_is_done_the_second_time(tmp_path: 
 def test_a_thing_that_takes_too_long_is_late_and_the_others_are_done(jobs: int) -> None:
     work = lambda thing: time.sleep(60 if thing % 3 == 1 else 0)  # noqa: E731
     results = dict(each(work, range(6), jobs, Limits(each=0.3)))
-    assert results == {0: None, 1: Late.OWN, 2: None, 3: None, 4: Late.OWN, 5: None}
+    assert results == {0: None, 1: TimedOut.OWN, 2: None, 3: None, 4: TimedOut.OWN, 5: None}
     assert not active_children()
 
 
@@ -82,9 +82,9 @@ def test_when_the_time_of_all_is_over_each_that_is_not_done_is_late() -> None:
     work = lambda thing: time.sleep(60 if thing else 0)  # noqa: E731
     assert dict(each(work, range(5), 1, Limits(all=0.5))) == {
         0: None,
-        **dict.fromkeys(range(1, 5), Late.ALL),
+        **dict.fromkeys(range(1, 5), TimedOut.ALL),
     }
-    assert dict(each(work, [0], 1, Limits(all=0.0))) == {0: Late.ALL}
+    assert dict(each(work, [0], 1, Limits(all=0.0))) == {0: TimedOut.ALL}
     assert not active_children()
 
 
@@ -94,11 +94,11 @@ def test_a_thing_is_late_however_the_process_is_busy() -> None:
         while thing:
             pass
 
-    assert dict(each(work, [1], 1, Limits(each=0.3))) == {0: Late.OWN}
+    assert dict(each(work, [1], 1, Limits(each=0.3))) == {0: TimedOut.OWN}
 
 
 def test_how_a_process_ended_is_told_in_words() -> None:
-    assert (str(Killed(-9)), str(Killed(7))) == ("signal 9", "exit status 7")
+    assert (str(WorkerDied(-9)), str(WorkerDied(7))) == ("signal 9", "exit status 7")
 
 
 def test_a_result_that_is_larger_than_a_pipe_comes_whole() -> None:

@@ -11,7 +11,7 @@ from compiler.project.folder import load
 from fretc.audit import many_logs as auditing
 from fretc.audit import one_log
 from fretc.audit.evidence.schema import Result
-from fretc.audit.many_logs import LogAudit, audited
+from fretc.audit.many_logs import LogResult, audited
 from fretc.audit.plan import Plan, keys, planned
 from fretc.logs.signals.integrity import Integrity
 from tests.effort import some
@@ -106,7 +106,7 @@ def log(tmp_path: Path) -> str:
     return str(write(tmp_path / "log.mcap", [*sent()]))
 
 
-def taken(before: Plan, now: Plan, found: LogAudit) -> tuple[Result, ...]:
+def taken(before: Plan, now: Plan, found: LogResult) -> tuple[Result, ...]:
     """The results of an audit by claims that are what they were."""
     same = {id for id, key in keys(before).items() if keys(now).get(id) == key}
     return tuple(each for each in found.results if each.requirement in same)

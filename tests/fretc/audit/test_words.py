@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fretc.audit.evidence.reader import Evidence, read
+from fretc.audit.evidence.reader import EvidenceFile, read
 from tests.command import Fretc
 from tests.command import write as put
 from tests.fretc.logs.logs import MS, S, Sent, payload, write
@@ -46,11 +46,11 @@ def project(fretc: Fretc) -> None:
     put("requirements/bindings.toml", BINDINGS)
 
 
-def audited(fretc: Fretc, words: list[str]) -> Evidence:
+def audited(fretc: Fretc, words: list[str]) -> EvidenceFile:
     write(Path("log.mcap"), sent(words))
     fretc("audit", "log.mcap", "--evidence", "e.json")
     found = read("e.json")
-    assert isinstance(found, Evidence), found
+    assert isinstance(found, EvidenceFile), found
     return found
 
 
@@ -89,7 +89,7 @@ def test_evidence_of_words_is_refused_where_it_is_no_series(fretc: Fretc) -> Non
     file["results"][0]["violations"][0]["window"]["words"]["mode"]["words"].pop()
     put("e.json", json.dumps(file))
     found = read("e.json")
-    assert not isinstance(found, Evidence)
+    assert not isinstance(found, EvidenceFile)
     assert found.code.number == "F503"
 
 

@@ -308,9 +308,9 @@ def test_what_is_accepted_is_counted_once_wherever_it_comes_from(
 
 def audited(*findings: Mapping[str, object]) -> None:
     """Evidence of a run that satisfies R1, of the project as it is now."""
-    from compiler.project.folder import Project, whole
+    from compiler.project.folder import Project, load_folder
 
-    known = whole("requirements")
+    known = load_folder("requirements")
     assert isinstance(known, Project)
     result = cases.result(known, "satisfied")
     result["health"]["findings"] = list(findings)

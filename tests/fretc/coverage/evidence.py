@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.schema import (
     SCHEMA,
     Bindings,
@@ -28,7 +28,7 @@ def of_run(run: str, shown: Shown, requirement: str = "R1") -> Result:
     return result(run=run, requirement=requirement, situations=Situations(seen, perhaps))
 
 
-def evidence(*results: Result, named: bool = True) -> Evidence:
+def evidence(*results: Result, named: bool = True) -> EvidenceFile:
     """Of all of them; without `named` the requirements say of no situation."""
     ids = dict.fromkeys(each.requirement for each in results)
     situations = tuple(Situation(key, f"it is {key}") for key in KEYS)
@@ -39,4 +39,4 @@ def evidence(*results: Result, named: bool = True) -> Evidence:
         for id in ids
     )
     document = Document(SCHEMA, "1", Bindings("bindings.toml", SHA), requirements, results)
-    return Evidence("evidence.json", SHA, document)
+    return EvidenceFile("evidence.json", SHA, document)

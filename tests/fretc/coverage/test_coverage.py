@@ -10,27 +10,32 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compiler.files.templating import template_root
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.store.anywhere import source
 from fretc.audit.store.writer import write_document
 from fretc.coverage import record
-from fretc.coverage.coverage import Coverage, Standing, coverage
+from fretc.coverage.coverage import Coverage, CoverageStatus, coverage
 from fretc.coverage.directions import is_complete
 from fretc.coverage.text_output import lines
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.fretc.coverage.evidence import KEYS, Shown, evidence, of_run
 
 SHOWN = st.none() | st.dictionaries(st.sampled_from(KEYS), st.integers(-5, 5))
-BETTER = (Standing.NOT_MEASURED, Standing.NEVER, Standing.PERHAPS, Standing.SEEN)
+BETTER = (
+    CoverageStatus.NOT_MEASURED,
+    CoverageStatus.NEVER,
+    CoverageStatus.PERHAPS,
+    CoverageStatus.SEEN,
+)
 
 
-def standings(covered: Coverage) -> dict[tuple[str, str], Standing]:
+def standings(covered: Coverage) -> dict[tuple[str, str], CoverageStatus]:
     return {
         (one.id, each.key): each.standing for one in covered.requirements for each in one.situations
     }
 
 
-def of(shown: list[Shown]) -> Evidence:
+def of(shown: list[Shown]) -> EvidenceFile:
     return evidence(*(of_run(f"{n}.mcap", each) for n, each in enumerate(shown)))
 
 
@@ -48,12 +53,12 @@ def test_a_standing_is_what_the_best_run_shows(shown: list[Shown]) -> None:
     for key in KEYS:
         ticks = [each[key] for each in shown if each is not None and key in each]
         if any(tick >= 0 for tick in ticks):
-            expected = Standing.SEEN
+            expected = CoverageStatus.SEEN
         elif ticks:
-            expected = Standing.PERHAPS
+            expected = CoverageStatus.PERHAPS
         else:
             measured = any(each is not None for each in shown)
-            expected = Standing.NEVER if measured else Standing.NOT_MEASURED
+            expected = CoverageStatus.NEVER if measured else CoverageStatus.NOT_MEASURED
         assert found["R1", key] is expected
 
 
@@ -62,7 +67,8 @@ def test_the_least_runs_show_all_that_is_seen(shown: list[Shown]) -> None:
     covered = coverage(of(shown))
     some = of([shown[place] for place in covered.least.runs] or [{}])
     assert all(
-        (standings(coverage(some))["R1", key] is Standing.SEEN) is (standing is Standing.SEEN)
+        (standings(coverage(some))["R1", key] is CoverageStatus.SEEN)
+        is (standing is CoverageStatus.SEEN)
         for (_, key), standing in standings(covered).items()
     )
 
@@ -91,7 +97,7 @@ def test_evidence_of_earlier_versions_has_measured_nothing() -> None:
 
 def test_what_only_results_name_is_no_situation() -> None:
     covered = coverage(evidence(of_run("a.mcap", {"invented": 3})))
-    assert set(standings(covered).values()) == {Standing.NEVER}
+    assert set(standings(covered).values()) == {CoverageStatus.NEVER}
 
 
 def test_two_logs_of_one_name_are_two_runs() -> None:

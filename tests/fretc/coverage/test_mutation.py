@@ -17,8 +17,8 @@ from fretc.audit.measurements.judgement import Judgement, judged
 from fretc.coverage import mutation_record
 from fretc.coverage.mutation import (
     Difference,
-    Survey,
-    Suspects,
+    MutantBatch,
+    MutationResult,
     difference,
     judgements,
     suspects,
@@ -58,7 +58,7 @@ def by_itself(own: Monitor, trace: Trace, *, intact: bool) -> Judgement:
     return judged(own, columns, cut, ticks, intact=intact, end=end, engine=kernel.stepped)
 
 
-def together(of: Suspects, trace: Trace, *, intact: bool = True) -> list[Judgement]:
+def together(of: MutantBatch, trace: Trace, *, intact: bool = True) -> list[Judgement]:
     return [*judgements(of.monitor, trace, Verdict.INCONCLUSIVE, intact=intact)]
 
 
@@ -142,14 +142,14 @@ def test_what_is_unknown_notices_nothing() -> None:
     assert stuck <= {mutant.key for mutant in of.mutants}
 
 
-def surveyed() -> Survey:
+def surveyed() -> MutationResult:
     of = suspects(rule(SENTENCES[3]))
     first, second, *_ = of.mutants
     apart = {
         ("R1", first.key): (0, Difference("satisfied", "violated", 3)),
         ("R1", second.key): (1, Difference("satisfied", "vacuous", None)),
     }
-    return Survey(("a.mcap", "b.mcap"), (of,), frozenset({"R1"}), apart, ())
+    return MutationResult(("a.mcap", "b.mcap"), (of,), frozenset({"R1"}), apart, ())
 
 
 def test_its_json_is_of_its_schema() -> None:
@@ -177,8 +177,8 @@ def test_what_no_run_notices_is_printed_with_its_sentence() -> None:
 
 def test_runs_without_a_verdict_say_so() -> None:
     of = suspects(rule(SENTENCES[3]))
-    nothing = Survey(("a.mcap",), (of,), frozenset(), {}, ())
+    nothing = MutationResult(("a.mcap",), (of,), frozenset(), {}, ())
     (head, *_) = lines(nothing, {}, every=False)
     assert head[0].endswith("noticed; no run has a verdict on it")
     assert not nothing.is_complete
-    assert not Survey((), (), frozenset(), {}, ()).is_complete
+    assert not MutationResult((), (), frozenset(), {}, ()).is_complete

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import load
 from compiler.targets.python.monitor import text
 from fretc.play.versions import Side, Versions, side_by_side, versions
@@ -62,7 +62,7 @@ def test_a_shortest_run_tells_two_sentences_apart_or_none_does() -> None:
     assert fates == {Absence, Difference}
 
 
-def named(sentence: str, id: str) -> Formalized:
+def named(sentence: str, id: str) -> FormalizedRequirement:
     found = rule(sentence)
     return replace(found, requirement=replace(found.requirement, id=id))
 

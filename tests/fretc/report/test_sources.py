@@ -12,7 +12,7 @@ from benchmarks.report import JSON, STORE, project, written
 from compiler.files.templating import to_json
 from compiler.project.folder import Project
 from fretc.audit.evidence.briefs import Briefs, EvidenceSource, brief, run_facts
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.schema import Result
 from fretc.audit.store.anywhere import source
 from fretc.audit.store.writer import write_document
@@ -106,7 +106,7 @@ def test_a_report_from_a_store_is_that_from_the_file(
 ) -> None:
     file = cases.report_of(known, folder, *(cases.result(known, **each) for each in drawn))
     one = source(str(folder / "evidence.json"))
-    assert isinstance(one, Evidence)
+    assert isinstance(one, EvidenceFile)
     sha256 = write_document(folder / "evidencestore", one.document)  # as long: lines are the same
     assert isinstance(sha256, str)
     store = make(known, str(folder / "evidencestore"))

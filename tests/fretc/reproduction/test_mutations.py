@@ -24,10 +24,10 @@ from compiler.logic.claims import (
     refuted,
     vacuous,
 )
-from compiler.project.folder import Project, whole
+from compiler.project.folder import Project, load_folder
 from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.reader import read
-from fretc.audit.many_logs import IN_TURN, LogAudit, LogAudits, audit_logs
+from fretc.audit.many_logs import SEQUENTIAL, LogAudits, LogResult, audit_logs
 from fretc.audit.plan import Plan, planned
 from fretc.audit.store.anywhere import required
 from fretc.report.traceability.chain import chains
@@ -206,7 +206,7 @@ class Case:
 
     def __init__(self, project: Project, plan: Plan, lock: Lock, manifest: Manifest) -> None:
         self.project, self._plan, self._lock, self._manifest = project, plan, lock, manifest
-        self._known: dict[tuple[str, str], LogAudit] = {}
+        self._known: dict[tuple[str, str], LogResult] = {}
 
     def judged(self, text: str) -> Sequence[Recheck] | Diagnostic:
         document = required(write("build/changed.json", text))
@@ -223,7 +223,7 @@ class Case:
         for one in logs:
             key = (plan.integrity, one)
             if key not in self._known:
-                with closing(IN_TURN(plan, [one])) as audits:
+                with closing(SEQUENTIAL(plan, [one])) as audits:
                     for done in audits:
                         assert not isinstance(done, Diagnostic)
                         self._known[key] = done[1]
@@ -253,7 +253,7 @@ def case(folder: Path) -> Case:
     log("logs/good.mcap", 0, 1.5, 3, 0, 0, 0)
     log("logs/bad.mcap", 0, 1.5, 0, 0, 1.5)
     manifested()
-    project, manifest = whole("requirements"), read_manifest("logs.sha256")
+    project, manifest = load_folder("requirements"), read_manifest("logs.sha256")
     assert isinstance(project, Project)
     assert isinstance(manifest, Manifest)
     plan = planned(project)

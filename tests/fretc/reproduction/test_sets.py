@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from compiler.files.records import decoded, plain
 from compiler.files.templating import to_json
 from fretc.analysis.analysis import Options, analyze
@@ -64,7 +64,7 @@ def test_no_change_of_an_analysis_stands() -> None:
             continue
         try:
             forged = decoded({**known, "analysis": other}, Document)
-        except MisshapenError:
+        except SchemaError:
             continue
         found = [each.finding for each in compared(forged, now)]
         assert {Finding.DIFFERS, Finding.UNKNOWN} & {*found}, where

@@ -11,8 +11,8 @@ from threading import Thread
 from types import SimpleNamespace
 from typing import Self
 
-from compiler.formalization.formalized import Formalized
-from fretc.testing.conformance.campaign import Campaign
+from compiler.formalization.formalized import FormalizedRequirement
+from fretc.testing.conformance.conformance_run import ConformanceRun
 from fretc.testing.conformance.findings import Conformance
 from fretc.testing.conformance.program import Program
 from tests.requirement_sets import roles, rule, rules
@@ -26,7 +26,7 @@ INPUTS, OUTPUTS = ("start", "stop"), ("alarm", "run")
 PROMISE = "whenever start the plant shall for 3 ticks satisfy !stop"
 """Without it the first two fight."""
 ASSUMED = rule("A1", PROMISE)
-RULES: Mapping[str, Formalized] = {each.id: each for each in rules(*SENTENCES)}
+RULES: Mapping[str, FormalizedRequirement] = {each.id: each for each in rules(*SENTENCES)}
 RIGHT = """\
 import sys
 
@@ -123,7 +123,7 @@ def seen_of(text: str, folder: Path | None = None) -> Conformance:
         path = folder / "program.py"
         path.write_text(text)
         kind, command = Program, [sys.executable, "-ISE", str(path)]
-    campaign = Campaign([*RULES.values()], [ASSUMED], roles(INPUTS, OUTPUTS), 60)
+    campaign = ConformanceRun([*RULES.values()], [ASSUMED], roles(INPUTS, OUTPUTS), 60)
     columns = campaign.referee.inputs, campaign.referee.outputs
     campaign.run(partial(kind, command, *columns, seconds=60), lambda words: None)
     return campaign.findings(command)

@@ -9,7 +9,7 @@ from itertools import count, product
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.definition import holds
 from compiler.logic.evaluation import evaluate
 from compiler.situations.mutants import mutants
@@ -74,7 +74,7 @@ def comes_by(word: Word, situation: Situation, last: int) -> bool:
 
 
 def manner(
-    rule: Formalized, situation: Situation, word: Word, ending: tuple[int | None, bool]
+    rule: FormalizedRequirement, situation: Situation, word: Word, ending: tuple[int | None, bool]
 ) -> int | None:
     """How well a word shows a situation, 0 best; None: it does not show it.
 
@@ -98,7 +98,7 @@ def manner(
 Need = tuple[str, Polarity]
 
 
-def listed(rule: Formalized) -> tuple[Mapping[Need, Mapping[int, int]], int]:
+def listed(rule: FormalizedRequirement) -> tuple[Mapping[Need, Mapping[int, int]], int]:
     """Of each situation and polarity the length of a shortest word of each manner."""
     found: dict[Need, dict[int, int]] = {}
     known = [each for each in situations(rule) if each.unknown is None]
@@ -202,7 +202,7 @@ def test_what_is_unknown_decides_and_no_shorter_run_depends_on_it(sentence: str)
         assert sum(row.values[situation.unknown] is None for row in tests[name].rows) == 1
 
 
-def depends(rule: Formalized, situation: Situation, word: Word) -> bool:
+def depends(rule: FormalizedRequirement, situation: Situation, word: Word) -> bool:
     """Whether the verdict of a word depends on an atom at a tick of the situation."""
     atom = situation.unknown
     assert atom is not None
@@ -215,7 +215,7 @@ def depends(rule: Formalized, situation: Situation, word: Word) -> bool:
     return False
 
 
-def verdict(rule: Formalized, word: Word) -> bool:
+def verdict(rule: FormalizedRequirement, word: Word) -> bool:
     return defined(rule, letters(rule, word))[1]
 
 

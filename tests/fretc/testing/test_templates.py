@@ -7,7 +7,7 @@ from itertools import product
 import pytest
 
 from compiler.formalization import reference
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import atoms_of, meanings
 from compiler.formalization.reference import State
 from compiler.situations.mutants import mutants
@@ -22,7 +22,7 @@ TRIED = some(few_templates((0, 1, 2, 3)), 5)
 """Every one of the 504, or one of each scope, each with a timing of its own."""
 
 
-def accept_the_same(one: Formalized, other: Formalized) -> bool:
+def accept_the_same(one: FormalizedRequirement, other: FormalizedRequirement) -> bool:
     """Whether two sentences accept the same finite words: both reference automata side by side."""
     atoms = tuple(dict.fromkeys([*atoms_of(one.sentence), *atoms_of(other.sentence)]))
     sides = []

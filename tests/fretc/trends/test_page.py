@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.reader import EvidenceFile
 from fretc.trends.changes import Tone
 from fretc.trends.charts import strip
 from fretc.trends.page import html
@@ -48,7 +48,7 @@ def nights(scenario: str = "door") -> Trends:
                 ("R4", "no data" if night == 5 else "satisfied"),
             )
         ]
-        sources.append(Evidence(f"{night}.json", SHA, document(results)))
+        sources.append(EvidenceFile(f"{night}.json", SHA, document(results)))
     found = trends_of(sources)
     assert isinstance(found, Trends)
     return found

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.evidence.schema import Result
 from fretc.trends.changes import RED, Change
 from fretc.trends.comparisons import Finding
@@ -23,7 +23,7 @@ OTHER = "1" * 64
 
 def trends(*nights: Sequence[Result], by: str | None = None) -> Trends:
     """Of evidence that is named by its number, in the order given."""
-    sources = [Evidence(f"{i}.json", SHA, document(night)) for i, night in enumerate(nights)]
+    sources = [EvidenceFile(f"{i}.json", SHA, document(night)) for i, night in enumerate(nights)]
     found = trends_of(sources, by)
     assert isinstance(found, Trends), found
     return found
@@ -55,7 +55,9 @@ def test_equal_times_and_missing_ones_are_in_the_natural_order_of_names(
 ) -> None:
     verdicts = {"2": "satisfied", "9": "violated", "10": "satisfied", "100": "violated"}
     sources = [
-        Evidence(f"n/{name}.json", SHA, document([judged("a.mcap", verdicts[name], night=night)]))
+        EvidenceFile(
+            f"n/{name}.json", SHA, document([judged("a.mcap", verdicts[name], night=night)])
+        )
         for name in order
     ]
     found = trends_of(sources)
@@ -70,7 +72,7 @@ def test_equal_times_and_missing_ones_are_in_the_natural_order_of_names(
 @given(order=st.permutations(["v9", "v10", "v11"]), by=st.sampled_from(["version", "evidence"]))
 def test_versions_of_one_time_are_in_their_natural_order(order: Sequence[str], by: str) -> None:
     nights = [
-        Evidence(f"{v}.json", SHA, document([judged(f"{v}/a.mcap", version=v)])) for v in order
+        EvidenceFile(f"{v}.json", SHA, document([judged(f"{v}/a.mcap", version=v)])) for v in order
     ]
     found = trends_of(nights, by)
     assert isinstance(found, Trends)
@@ -96,7 +98,7 @@ def test_one_evidence_is_compared_day_by_day_or_by_a_label() -> None:
     assert [each.name for each in found.rounds] == ["2025-11-08", "2025-11-09", "2025-11-10"]
     assert changes(found) == {("R1", "a.mcap"): Change.STILL}
     assert changes(trends(runs, by="version")) == {("R1", "a.mcap"): Change.NEW}
-    unlabelled = trends_of([Evidence("", SHA, document(runs))], "robot")
+    unlabelled = trends_of([EvidenceFile("", SHA, document(runs))], "robot")
     assert not isinstance(unlabelled, Trends)
     assert unlabelled.code.number == "F560"
 
@@ -178,7 +180,7 @@ def test_a_newer_log_of_a_scenario_takes_the_place_of_one_left_out_by_its_date()
 def chosen(before: Sequence[Result], now: Sequence[Result], choice: str) -> Trends:
     """Two nights, the second of which audited a choice of its logs."""
     nights = [document(before), document(now, CHOICES[choice])]
-    found = trends_of([Evidence(f"{i}.json", SHA, night) for i, night in enumerate(nights)])
+    found = trends_of([EvidenceFile(f"{i}.json", SHA, night) for i, night in enumerate(nights)])
     assert isinstance(found, Trends)
     return found
 

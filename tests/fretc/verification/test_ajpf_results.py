@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from compiler.files.records import replace
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Layer, Outcome, Proof, Result, not_checked, vacuous
 from compiler.targets.ajpf.bundle import emit
 from compiler.targets.target import Options
@@ -47,7 +47,7 @@ def ran(ran_once: Mcapl, tmp_path: Path) -> Mcapl:
     return ran_once.copied(tmp_path / "build")
 
 
-def only(mcapl: Mcapl, other: Formalized | None = None) -> Proof:
+def only(mcapl: Mcapl, other: FormalizedRequirement | None = None) -> Proof:
     (proof,), diagnostics = ajpf_proofs([other or rule(R1)], [str(mcapl.bundle / "result.json")])
     assert not diagnostics
     return proof

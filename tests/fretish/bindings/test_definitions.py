@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.definitions import expanded, used
@@ -37,7 +37,7 @@ def declared(**values: str) -> tuple[Declarations | None, tuple[Diagnostic, ...]
     return read_bindings(Source("bindings.toml", HEAD + "".join(tables)))
 
 
-def outcome(text: str, **values: str) -> Formalized | tuple[Diagnostic, ...]:
+def outcome(text: str, **values: str) -> FormalizedRequirement | tuple[Diagnostic, ...]:
     declarations, wrong = declared(**values)
     assert declarations is not None, wrong
     ((requirement,), _) = requirements(Source("r.fret", f"the agv shall always satisfy {text}"))
@@ -45,9 +45,9 @@ def outcome(text: str, **values: str) -> Formalized | tuple[Diagnostic, ...]:
     return tuple(each for each in said if each.is_error) if rule is None else rule
 
 
-def rule(text: str, **values: str) -> Formalized:
+def rule(text: str, **values: str) -> FormalizedRequirement:
     found = outcome(text, **values)
-    assert isinstance(found, Formalized), found
+    assert isinstance(found, FormalizedRequirement), found
     return found
 
 

@@ -4,8 +4,8 @@ import tomllib
 
 import pytest
 
-from compiler.formalization.formalize import duplicates, formalize
-from compiler.project.stated_numbers import disagreements
+from compiler.formalization.formalize import duplicate_ids, formalize
+from compiler.project.stated_numbers import check_stated_numbers
 from compiler.targets.python import monitor
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
@@ -28,11 +28,13 @@ def diagnostics_of(kind: str, declared: str, example: str) -> list[Diagnostic]:
         beside, wrong = read_bindings(Source("bindings.toml", declared))
         assert beside is not None, wrong
     written, diagnostics = requirements(Source("r.fret", example.strip("\n")))
-    found: list[Diagnostic] = [*diagnostics, *duplicates(written).values()]
+    found: list[Diagnostic] = [*diagnostics, *duplicate_ids(written).values()]
     for requirement in written:
         rule, remarks = formalize(requirement, beside)
         found.extend(remarks)
-        found.extend(disagreements(rule, rule.declarations) if rule and rule.declarations else ())
+        found.extend(
+            check_stated_numbers(rule, rule.declarations) if rule and rule.declarations else ()
+        )
         remark = monitor.remark(rule) if rule else None
         found.extend([remark] if remark else [])
     return found

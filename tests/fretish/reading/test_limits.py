@@ -8,7 +8,7 @@ import pytest
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.reading import limits
-from fretish.reading.limits import ExceededError, budget, within
+from fretish.reading.limits import ExceededError, budget, with_budget
 
 PLACE = Source("r.fret", "the sw").span(0, 0)
 
@@ -25,13 +25,13 @@ def growing() -> list[bytes]:
 
 
 def test_what_is_read_within_its_limits_is_given() -> None:
-    assert within(10, PLACE, lambda: 7) == 7
+    assert with_budget(10, PLACE, lambda: 7) == 7
 
 
 def test_reading_without_end_is_f930(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "SECONDS", 0.2)
     start = time.process_time()
-    diagnostic = within(10, PLACE, endless)
+    diagnostic = with_budget(10, PLACE, endless)
     assert time.process_time() - start < 2
     assert isinstance(diagnostic, Diagnostic)
     assert (diagnostic.code, diagnostic.span) == (Code.TOO_COSTLY, PLACE)
@@ -40,7 +40,7 @@ def test_reading_without_end_is_f930(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_reading_that_takes_more_and_more_memory_is_f930(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "MEMORY", 40 * 2**20)
-    diagnostic = within(10, PLACE, growing)
+    diagnostic = with_budget(10, PLACE, growing)
     assert isinstance(diagnostic, Diagnostic)
     assert diagnostic.message.startswith("it would take more than 40 MiB of memory")
 
@@ -57,7 +57,7 @@ def test_a_library_that_takes_every_exception_for_its_own_is_ended_all_the_same(
             except Exception:
                 continue
 
-    assert isinstance(within(10, PLACE, careless), Diagnostic)
+    assert isinstance(with_budget(10, PLACE, careless), Diagnostic)
 
 
 @pytest.mark.slow
@@ -70,18 +70,18 @@ def test_what_is_larger_may_take_longer(monkeypatch: pytest.MonkeyPatch) -> None
             pass
         return "read"
 
-    assert isinstance(within(1_000, PLACE, busy), Diagnostic)
-    assert within(200_000, PLACE, busy) == "read"
+    assert isinstance(with_budget(1_000, PLACE, busy), Diagnostic)
+    assert with_budget(200_000, PLACE, busy) == "read"
 
 
 def test_a_budget_within_another_is_a_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "SECONDS", 0.2)
 
     def outer() -> object:
-        return [within(0, PLACE, endless) for _ in range(1000)]
+        return [with_budget(0, PLACE, endless) for _ in range(1000)]
 
     start = time.process_time()
-    assert isinstance(within(0, PLACE, outer), Diagnostic)
+    assert isinstance(with_budget(0, PLACE, outer), Diagnostic)
     assert time.process_time() - start < 2
 
 
@@ -97,7 +97,7 @@ def test_nothing_is_ended_behind_a_budget(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_a_thread_reads_without_a_budget() -> None:
     found: list[object] = []
-    thread = threading.Thread(target=lambda: found.append(within(10, PLACE, lambda: 7)))
+    thread = threading.Thread(target=lambda: found.append(with_budget(10, PLACE, lambda: 7)))
     thread.start()
     thread.join()
     assert found == [7]

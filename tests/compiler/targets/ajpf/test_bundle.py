@@ -12,7 +12,7 @@ from compiler.agents import gwendolen, psl
 from compiler.agents.checking import agent_evidence
 from compiler.files.text_files import sha256
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.ajpf.bundle import TARGET, emit, refusal
 from compiler.targets.target import DEFAULT, Options
 from fretish.bindings.declarations import Declarations
@@ -35,14 +35,14 @@ def declared(text: str) -> Declarations:
     return found
 
 
-def rule(sentence: str, id: str = "R1", bindings: str | None = None) -> Formalized:
+def rule(sentence: str, id: str = "R1", bindings: str | None = None) -> FormalizedRequirement:
     requirement = Requirement(id, Source("r.fret", sentence).span())
     made, diagnostics = formalize(requirement, declared(bindings) if bindings else None)
     assert made is not None, diagnostics
     return made
 
 
-def bundle(made: Formalized, options: Options = DEFAULT) -> dict[str, str]:
+def bundle(made: FormalizedRequirement, options: Options = DEFAULT) -> dict[str, str]:
     diagnostic = refusal(made, options)
     assert diagnostic is None, render(diagnostic)
     return {str(artifact.path): artifact.text for artifact in emit([made], options)}

@@ -11,7 +11,7 @@ from compiler.agents import psl
 from compiler.agents.psl_printing import property_text
 from compiler.emit import TARGETS
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.spot import equivalent, same_language
@@ -38,7 +38,7 @@ def target(options: Options) -> Target:
     return plain.weak if options.weaken else plain
 
 
-def rule(sentence: str, id: str = "R1", bindings: str = "") -> Formalized:
+def rule(sentence: str, id: str = "R1", bindings: str = "") -> FormalizedRequirement:
     declarations, wrong = read_bindings(Source("bindings.toml", bindings))
     assert not wrong, wrong
     made, diagnostics = formalize(Requirement(id, Source("r.fret", sentence).span()), declarations)

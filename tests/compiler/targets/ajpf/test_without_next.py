@@ -149,7 +149,7 @@ def test_no_form_is_long() -> None:
         (f.Globally(P, f.Interval(1, None)), False),
         (f.Globally(f.Once(P, f.EVER), f.EVER), False),
         (f.LAST, False),
-        (f.Odds(">=", "1", P), False),
+        (f.ProbabilityBound(">=", "1", P), False),
     ],
 )
 def test_next_free_is_logic_and_unbounded_operators_of_the_future(

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.c.monitor import TARGET
 from compiler.targets.python.monitor import text
 from monitors.kernel import Monitor
@@ -79,7 +79,7 @@ def hold(machine: Monitor, program: Program, *traces: Rows, place: int = 0) -> N
 
 
 @cache
-def of_requirements() -> list[Formalized]:
+def of_requirements() -> list[FormalizedRequirement]:
     """Requirements of each form: a latch, counters, the tick before, a deadline, a ring."""
     return [
         rule(WITHIN, "R1"),
@@ -93,12 +93,12 @@ def of_requirements() -> list[Formalized]:
     ]
 
 
-def monitors(rules: list[Formalized]) -> Monitor:
+def monitors(rules: list[FormalizedRequirement]) -> Monitor:
     return load("monitors.py", text(*rules))
 
 
 @cache
-def of_templates() -> list[Formalized]:
+def of_templates() -> list[FormalizedRequirement]:
     return [rule(template.sentence, f"R{i}") for i, template in enumerate(templates())]
 
 

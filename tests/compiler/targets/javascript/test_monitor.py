@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
-from compiler.formalization.past import Watch
+from compiler.formalization.formalized import FormalizedRequirement
+from compiler.formalization.past import MonitorSpec
 from compiler.logic import formula as f
 from compiler.targets.javascript import monitor as target
 from compiler.targets.python.monitor import text as in_python
@@ -87,7 +87,9 @@ def agree(folder: Path, sentences: Sequence[tuple[str, ...]], words: int, length
     alike(folder, rules, words, length)
 
 
-def alike(folder: Path, rules: Sequence[Sequence[Formalized]], words: int, length: int) -> None:
+def alike(
+    folder: Path, rules: Sequence[Sequence[FormalizedRequirement]], words: int, length: int
+) -> None:
     choose = random.Random(f"{[each.id for group in rules for each in group]}")
     machines = [load("monitor.py", in_python(*each)) for each in rules]
     judged = [
@@ -140,7 +142,7 @@ def test_every_bound_of_a_window(tmp_path: Path) -> None:
         replace(
             plain,
             requirement=replace(plain.requirement, id=f"R{place}"),
-            watch=Watch(each, no, no, no, no, no, f.Not(each), None, renewed=False),
+            watch=MonitorSpec(each, no, no, no, no, no, f.Not(each), None, renewed=False),
         )
         for place, each in enumerate(formulas)
     ]

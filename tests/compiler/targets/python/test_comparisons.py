@@ -13,7 +13,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor as target
 from compiler.targets.python.comparisons import (
     FUNCTIONS,
@@ -377,7 +377,7 @@ expr = "v <= 150 cm/s"
 """
 
 
-def of(sentence: str) -> Formalized:
+def of(sentence: str) -> FormalizedRequirement:
     declared, wrong = read_bindings(Source("bindings.toml", BINDINGS))
     assert wrong == ()
     source = Source("r.fret", f"the sw shall always satisfy {sentence}")

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python.monitor import text
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.traces import trace
@@ -40,7 +40,7 @@ COMPARISONS = (
 
 
 @cache
-def rule(comparison: str) -> Formalized:
+def rule(comparison: str) -> FormalizedRequirement:
     declarations, wrong = read_bindings(Source("bindings.toml", BINDINGS))
     assert declarations is not None, wrong
     sentence = f"the r shall always satisfy {comparison}"

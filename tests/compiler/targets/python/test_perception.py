@@ -16,7 +16,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.policies import policy
 from compiler.targets.python import monitor, perception
 from fretc.logs.signals.signals import sample as audited
@@ -57,7 +57,7 @@ messages = st.lists(
 )
 
 
-def rules(bindings: str, sentences: Sequence[str]) -> list[Formalized]:
+def rules(bindings: str, sentences: Sequence[str]) -> list[FormalizedRequirement]:
     found = []
     for i, sentence in enumerate(sentences):
         requirement = Requirement(f"R{i}", Source("r.fret", sentence).span())

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import load
 from compiler.project.paths import listed
 from compiler.targets.python import interceptor
@@ -154,7 +154,7 @@ def test_what_no_node_can_subscribe_to_is_refused(
     assert found.help
 
 
-def _one(bindings: str, folder: Path) -> Formalized:
+def _one(bindings: str, folder: Path) -> FormalizedRequirement:
     (folder / "bindings.toml").write_text(bindings)
     (folder / "a.fret").write_text("the sw shall always satisfy p\n")
     (subject,) = load([str(folder / "a.fret")]).rules

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler.targets.words import words
+from compiler.targets.witness_traces import words
 from monitors.kernel import Monitor
 from tests.c_monitors import of_python
 from tests.compiler.targets.c.test_c_monitor import CLASHES, drawn, monitors, of_requirements, rows

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 import spot
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import printing
 from compiler.targets.python import monitor as target
@@ -18,8 +18,8 @@ from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arithmetic import cells
 from fretc.analysis.findings import Verdict
-from fretc.analysis.games.plays import Counterstrategy, Strategy
-from fretc.analysis.stage import Stage, stage
+from fretc.analysis.games.game_traces import Counterstrategy, Strategy
+from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretc.analysis.verdicts import verdict
 from fretish.bindings.declarations import Variable
 from monitors.loading import load
@@ -44,7 +44,7 @@ SETS = range(16) if FULL else range(6, 16)
 """Seeds of drawn sets; those that are left out by default take longest."""
 
 
-def whole(found: Formalized) -> Formalized:
+def whole(found: FormalizedRequirement) -> FormalizedRequirement:
     """The rule, with all of its variables declared as whole numbers."""
     declared = {name: Variable(name, type="integer") for name in found.variables}
     return replace(found, glossary=declared)
@@ -106,14 +106,14 @@ def in_bits(comparison: str) -> str:
     return " | ".join(terms) or "0"
 
 
-def staged_numbers(sentences: Sequence[str], meant: Mapping[str, str]) -> Stage:
+def staged_numbers(sentences: Sequence[str], meant: Mapping[str, str]) -> RealizabilityProblem:
     texts = [written(each, meant) for each in sentences]
     texts.append(f"the sw shall always satisfy {ranges('ou')}")
     assumed = whole(rule("A1", f"the op shall always satisfy {ranges('ij')}"))
     return stage([whole(each) for each in rules(*texts)], [assumed], ROLES)
 
 
-def setting(seed: int) -> Stage:
+def setting(seed: int) -> RealizabilityProblem:
     return staged_numbers(*drawn(seed))
 
 
@@ -154,7 +154,7 @@ def test_cells_are_all_numbers() -> None:
     assert len(SETS) // 5 < lost < len(SETS) * 4 // 5
 
 
-def assert_lost(found: Stage) -> None:
+def assert_lost(found: RealizabilityProblem) -> None:
     """The environment's numbers keep its promise, and the system's break something at the end."""
     game = found.game(found.arena.counters, ENDLESS)
     play = Counterstrategy(game, game.solution(traps=True), ENDLESS).play()
@@ -167,7 +167,7 @@ def assert_lost(found: Stage) -> None:
     assert ("violated" in last.values()) is (play.loop is None)
 
 
-def assert_won(found: Stage, choose: random.Random) -> None:
+def assert_won(found: RealizabilityProblem, choose: random.Random) -> None:
     """The numbers of a strategy break nothing."""
     game = found.game(found.arena.counters, ENDLESS)
     strategy = Strategy(game, game.solution())
@@ -187,7 +187,7 @@ def assert_won(found: Stage, choose: random.Random) -> None:
         assert "violated" not in verdicts.values()
 
 
-def stepped(found: Stage, ticks: Sequence[Tick]) -> list[dict[str, str]]:
+def stepped(found: RealizabilityProblem, ticks: Sequence[Tick]) -> list[dict[str, str]]:
     """Tick by tick the verdicts of the requirements and of the promise."""
     machine: Any = load("monitor.py", target.text(*found.rules, *found.assumptions))
     verdicts = []

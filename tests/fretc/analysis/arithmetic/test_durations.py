@@ -6,13 +6,13 @@ from itertools import chain
 import pytest
 
 from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.analysis.analysis import Options, analyze
 from fretc.analysis.arena.budget import ENDLESS
 from fretc.analysis.findings import Analysis
-from fretc.analysis.games import plays, squaring
+from fretc.analysis.games import game_traces, squaring
 from fretc.analysis.games.replay import remembering
-from fretc.analysis.stage import stage
+from fretc.analysis.realizability_problem import stage
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
@@ -21,7 +21,7 @@ from tests.fretc.analysis.arithmetic.test_steps import TICK, declared
 ROLES = {"p0": Role.INPUT, "p1": Role.INPUT, "p2": Role.OUTPUT}
 
 
-def made(ticks: int, within: int) -> list[Formalized]:
+def made(ticks: int, within: int) -> list[FormalizedRequirement]:
     """`p0` lasts so many ticks, and fights with a deadline."""
     declarations = declared(
         [f'expr = "x > 3 for {ticks * TICK} ns"', 'expr = "x > 5"', 'expr = "y > 1"']
@@ -40,7 +40,7 @@ def made(ticks: int, within: int) -> list[Formalized]:
     return rules
 
 
-def found(rules: list[Formalized]) -> Analysis:
+def found(rules: list[FormalizedRequirement]) -> Analysis:
     return analyze(rules, ROLES, (), Options(repairs=False))
 
 
@@ -51,8 +51,8 @@ def test_leaps_leave_what_lasts_as_it_is(
     """`p0` is certain when it has lasted since the first tick; a deadline from there is lost."""
     rules = made(ticks, within)
     slow = found(rules)
-    monkeypatch.setattr(squaring.Leaps, "is_due", lambda self: True)
-    monkeypatch.setattr(plays, "_LONG", 0)
+    monkeypatch.setattr(squaring.IterativeSquaring, "is_due", lambda self: True)
+    monkeypatch.setattr(game_traces, "_LONG", 0)
     fast = found(rules)
     for answer in (slow, fast):
         assert [each.requirements for each in answer.conflicts] == [("R1", "R2"), ("R1", "R3")]

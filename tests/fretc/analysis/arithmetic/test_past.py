@@ -9,7 +9,7 @@ import pytest
 from compiler.targets.python import monitor as target
 from fretc.analysis.analysis import Options, analyze
 from fretc.analysis.findings import Verdict
-from fretc.analysis.games import plays, squaring
+from fretc.analysis.games import game_traces, squaring
 from monitors.loading import load
 from tests.effort import FULL
 from tests.requirement_sets import analyzed, conflicts, roles, rule, rules
@@ -58,8 +58,8 @@ def test_a_play_with_numbers_of_before_has_each_of_its_ticks(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Leaps begin at once; but no number of the tick before is known after one."""
-    monkeypatch.setattr(squaring.Leaps, "is_due", lambda self: True)
-    monkeypatch.setattr(plays, "_LONG", 0)
+    monkeypatch.setattr(squaring.IterativeSquaring, "is_due", lambda self: True)
+    monkeypatch.setattr(game_traces, "_LONG", 0)
     low = "the sw shall for 6 ticks satisfy v <= 0"
     high = "upon a the sw shall within 7 ticks satisfy v >= 2"
     found = analyzed(RATE, low, high, roles=NAMED)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import spot
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import printing
 from compiler.logic.formula import atoms
 from fretc.analysis.arena.budget import Budget
@@ -17,7 +17,7 @@ from fretc.analysis.controllers.files import Form, automata, controller
 from fretc.analysis.controllers.machine import Machine, NoMachineError, machine
 from fretc.analysis.controllers.moves import mealy
 from fretc.analysis.games.replay import first_breaches
-from fretc.analysis.stage import Stage
+from fretc.analysis.realizability_problem import RealizabilityProblem
 from monitors.kernel.verdicts import VIOLATED
 from tests.effort import FULL
 from tests.monitoring import monitor
@@ -31,14 +31,14 @@ WAITS = (
 )
 
 
-def made(setting: Stage) -> Machine | None:
+def made(setting: RealizabilityProblem) -> Machine | None:
     """The machine of a set that can be kept."""
     game = setting.game(setting.arena.counters, ENDLESS)
     solution = game.solution()
     return machine(game, solution, ENDLESS) if solution.is_realizable else None
 
 
-def program(found: Machine, setting: Stage) -> Any:
+def program(found: Machine, setting: RealizabilityProblem) -> Any:
     """The class that is written."""
     ids = [rule.id for rule in setting.rules]
     text = controller([circuit(found, ids, 1)], dict.fromkeys(ids, ""), {}).text
@@ -58,11 +58,13 @@ def runs_that(automaton: Any, formula: str) -> bool:
     ).is_empty()
 
 
-def formula(rules: Sequence[Formalized]) -> str:
+def formula(rules: Sequence[FormalizedRequirement]) -> str:
     return " & ".join(f"({printing.future(rule.ft_infinite)})" for rule in rules) or "1"
 
 
-def machines(count: int, *, given: bool) -> Iterator[tuple[Stage, list[Formalized], Machine]]:
+def machines(
+    count: int, *, given: bool
+) -> Iterator[tuple[RealizabilityProblem, list[FormalizedRequirement], Machine]]:
     for seed in range(count):
         promises = [assumed(("controller", seed, i)) for i in range(2)] if given else []
         setting = staged(*drawn(("controller", seed), most=4), assumed=promises)
@@ -108,7 +110,7 @@ def test_the_program_does_as_the_automaton_and_breaks_nothing() -> None:
         assert_kept(setting, letters)
 
 
-def assert_kept(setting: Stage, letters: Sequence[dict[str, bool]]) -> None:
+def assert_kept(setting: RealizabilityProblem, letters: Sequence[dict[str, bool]]) -> None:
     names = {name for rule in setting.rules for s in rule.watch.signals for name in atoms(s)}
     known = {
         name: sum(letter[name] << tick for tick, letter in enumerate(letters)) for name in names

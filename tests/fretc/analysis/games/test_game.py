@@ -9,11 +9,11 @@ from compiler.logic.decision_diagrams import Function
 from compiler.logic.formula import atoms
 from compiler.logic.spot import holds_on
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
-from fretc.analysis.games import plays, squaring
+from fretc.analysis.games import game_traces, squaring
 from fretc.analysis.games.game import Game, Letter
-from fretc.analysis.games.plays import Counterstrategy, Place, Strategy
+from fretc.analysis.games.game_traces import Counterstrategy, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches
-from fretc.analysis.stage import Stage
+from fretc.analysis.realizability_problem import RealizabilityProblem
 from tests.effort import FULL
 from tests.requirement_sets import (
     assumed,
@@ -30,7 +30,7 @@ SETS = 5_000 if FULL else 80
 ENDLESS = Budget(float("inf"))
 
 
-def assert_lost(setting: Stage) -> None:
+def assert_lost(setting: RealizabilityProblem) -> None:
     """The environment's play breaks something, at its last tick or by never meeting it."""
     game = setting.game(setting.arena.counters, ENDLESS)
     play = Counterstrategy(game, game.solution(traps=True), ENDLESS).play()
@@ -42,12 +42,12 @@ def assert_lost(setting: Stage) -> None:
     assert not earlier, "a play ends with the first breach"
 
 
-def known(setting: Stage, letters: Sequence[Letter]) -> dict[str, int]:
+def known(setting: RealizabilityProblem, letters: Sequence[Letter]) -> dict[str, int]:
     names = {name for rule in setting.rules for s in rule.watch.signals for name in atoms(s)}
     return columns(setting.arena.alphabet, [(letter, 1) for letter in letters], names)
 
 
-def assert_won(setting: Stage, choose: random.Random) -> None:
+def assert_won(setting: RealizabilityProblem, choose: random.Random) -> None:
     """The system's strategy breaks nothing, and meets its liveness where inputs go round."""
     alphabet = setting.arena.alphabet
     game = setting.game(setting.arena.counters, ENDLESS)
@@ -89,8 +89,8 @@ def test_the_game_is_spot_s_and_both_players_do_win() -> None:
 @pytest.mark.slow
 def test_leaps_over_many_ticks_change_no_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
     """Here they begin at once, where they never do with such small bounds."""
-    monkeypatch.setattr(squaring.Leaps, "is_due", lambda self: True)
-    monkeypatch.setattr(plays, "_LONG", 0)
+    monkeypatch.setattr(squaring.IterativeSquaring, "is_due", lambda self: True)
+    monkeypatch.setattr(game_traces, "_LONG", 0)
     leaps, surviving = 0, Game.surviving
 
     def counted(game: Game, states: Function, inputs: Letter) -> Function:

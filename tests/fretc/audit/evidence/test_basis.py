@@ -18,7 +18,7 @@ import pytest
 from mcap.writer import Writer
 
 from compiler.files.records import decoded
-from compiler.project.folder import whole
+from compiler.project.folder import load_folder
 from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.schema import Document
 from fretc.audit.evidence.writer import text
@@ -494,7 +494,7 @@ _OUTDATED = re.compile(r"F504 warning: the evidence of (.+?) is suspect")
 def asked(fretc: Fretc) -> Said:
     diff = json.loads(fretc("diff", "--format", "json").out)
     check = fretc("check").err
-    own_project = whole("requirements")
+    own_project = load_folder("requirements")
     assert not isinstance(own_project, Diagnostic)
     outcome = make(own_project, "build/evidence", lock="requirements/fretc.lock")
     report = json.loads(outcome.json or "")["requirements"]
@@ -533,7 +533,7 @@ def test_a_change_is_in_the_chains_of_what_is_made_of_it_and_of_nothing_else(
 
 def chained() -> tuple[set[str], set[str]]:
     """Requirements whose evidence is of something else, and those with a review to be renewed."""
-    project, evidence = whole("requirements"), source("build/evidence")
+    project, evidence = load_folder("requirements"), source("build/evidence")
     lock = read_lock("requirements/fretc.lock")
     assert not isinstance(project, Diagnostic)
     assert not isinstance(evidence, Diagnostic)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from compiler.files.records import plain
 from fretc.audit.evidence.courses import course, place
-from fretc.audit.evidence.reader import Evidence, read
+from fretc.audit.evidence.reader import EvidenceFile, read
 from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, Result, Way
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.declarations import Declarations
@@ -184,7 +184,7 @@ def audited(fretc: Fretc, name: str, bindings: str) -> tuple[list[Result], str]:
     put("requirements/bindings.toml", bindings)
     outcome = fretc("audit", "log.mcap", "-o", name)
     found = read(name)
-    assert isinstance(found, Evidence), found
+    assert isinstance(found, EvidenceFile), found
     return [*found.results], outcome.err
 
 

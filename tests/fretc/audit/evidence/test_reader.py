@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from fretc.audit.evidence.reader import Evidence, read
+from fretc.audit.evidence.reader import EvidenceFile, read
 from fretc.audit.evidence.schema import Moment
 from fretc.report.make import make
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
@@ -21,7 +21,7 @@ def test_what_the_audit_wrote_is_read(tmp_path: Path) -> None:
     one = result(own_project, "violated", violations=[violation(14, 20, 11)], open=[moment(90)])
     file.write_text(json.dumps(evidence(own_project, one)), encoding="utf-8")
     document = read(str(file))
-    assert isinstance(document, Evidence)
+    assert isinstance(document, EvidenceFile)
     (read_back,) = document.results
     assert read_back.verdict == "violated"
     assert read_back.triggers == (

@@ -3,7 +3,7 @@ from typing import Any
 
 import pytest
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from compiler.files.records import decoded
 from fretc.audit.evidence.samples import Samples, Surroundings, Window, window
 
@@ -54,6 +54,6 @@ def test_the_value_in_force_is_the_last_one_before() -> None:
     ],
 )
 def test_a_wrong_shape_is_told_with_its_place(changes: dict[str, Any], message: str) -> None:
-    with pytest.raises(MisshapenError) as error:
+    with pytest.raises(SchemaError) as error:
         changed(**changes)
     assert str(error.value).startswith(message)

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.files.edition import PACKAGE
-from compiler.formalization.formalized import Formalized
+from compiler.files.build_id import PACKAGE
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.audit.outputs.sarif import AllRuns, OneRun, sarif
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
@@ -43,7 +43,7 @@ ALL = [
 
 def read(
     results: Sequence[OneRun],
-    rules: Sequence[Formalized] = RULES,
+    rules: Sequence[FormalizedRequirement] = RULES,
     diagnostics: Sequence[Diagnostic] = (),
 ) -> Any:
     """The only run of the file, which fits the schema."""

@@ -14,7 +14,7 @@ from fretc.audit import many_logs as auditing
 from fretc.audit.many_logs import audited
 from fretc.audit.plan import Plan
 from fretc.audit.store import recordings
-from fretc.audit.store.recordings import Kept
+from fretc.audit.store.recordings import SampleCache
 from fretc.logs.reader import read
 from fretc.logs.signals.integrity import Integrity
 from fretc.logs.signals.samples import EXACT, Recording
@@ -48,8 +48,8 @@ def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 @pytest.fixture
-def kept(tmp_path: Path) -> Kept:
-    return Kept(tmp_path / "columns", KEY)
+def kept(tmp_path: Path) -> SampleCache:
+    return SampleCache(tmp_path / "columns", KEY)
 
 
 @pytest.fixture
@@ -71,7 +71,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 @pytest.mark.parametrize("name", [n for n in CHANGES if n in {*some(CHANGES, 3), *READ_AGAIN}])
 def test_a_log_is_read_again_only_where_something_else_of_it_is_read(
-    tmp_path: Path, log: str, kept: Kept, opened: list[str], name: str
+    tmp_path: Path, log: str, kept: SampleCache, opened: list[str], name: str
 ) -> None:
     before, now = plan(tmp_path / "before", PROJECT), plan(tmp_path / "now", CHANGES[name][0])
     audited(before, log, kept=kept)
@@ -81,7 +81,7 @@ def test_a_log_is_read_again_only_where_something_else_of_it_is_read(
     assert opened == ([log] if name in READ_AGAIN else [])
 
 
-def _kept(folder: Path, log: str, kept: Kept) -> tuple[Plan, Path]:
+def _kept(folder: Path, log: str, kept: SampleCache) -> tuple[Plan, Path]:
     made = plan(folder / "plan", PROJECT)
     audited(made, log, kept=kept)
     (path,) = kept.folder.iterdir()
@@ -89,7 +89,7 @@ def _kept(folder: Path, log: str, kept: Kept) -> tuple[Plan, Path]:
 
 
 def test_a_log_that_is_another_one_is_read_again(
-    tmp_path: Path, log: str, kept: Kept, opened: list[str]
+    tmp_path: Path, log: str, kept: SampleCache, opened: list[str]
 ) -> None:
     made, _ = _kept(tmp_path, log, kept)
     write(Path(log), [*sent(late=True)])
@@ -103,7 +103,7 @@ def test_a_log_that_is_another_one_is_read_again(
 
 
 def test_where_times_do_not_tell_the_log_is_hashed(
-    tmp_path: Path, log: str, kept: Kept, opened: list[str], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, log: str, kept: SampleCache, opened: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(text_files, "_COARSEST", 10**18)
     made, _ = _kept(tmp_path, log, kept)
@@ -115,16 +115,18 @@ def test_where_times_do_not_tell_the_log_is_hashed(
 
 
 def test_a_log_can_be_known_by_its_hash_alone(
-    tmp_path: Path, log: str, kept: Kept, opened: list[str]
+    tmp_path: Path, log: str, kept: SampleCache, opened: list[str]
 ) -> None:
     made, _ = _kept(tmp_path, log, kept)
     for rehash, by in ((False, "stamp"), (True, "sha256")):
         opened.clear()
-        assert audited(made, log, kept=Kept(kept.folder, KEY, rehash)).known_by == by
+        assert audited(made, log, kept=SampleCache(kept.folder, KEY, rehash)).known_by == by
         assert opened == [log] * rehash
 
 
-def test_a_log_that_is_gone_is_an_error_as_before(tmp_path: Path, log: str, kept: Kept) -> None:
+def test_a_log_that_is_gone_is_an_error_as_before(
+    tmp_path: Path, log: str, kept: SampleCache
+) -> None:
     made, _ = _kept(tmp_path, log, kept)
     Path(log).unlink()
     found = audited(made, log, kept=kept)
@@ -134,18 +136,18 @@ def test_a_log_that_is_gone_is_an_error_as_before(tmp_path: Path, log: str, kept
 
 
 def test_what_is_not_of_this_user_and_this_place_is_not_believed(
-    tmp_path: Path, log: str, kept: Kept, opened: list[str]
+    tmp_path: Path, log: str, kept: SampleCache, opened: list[str]
 ) -> None:
     made, path = _kept(tmp_path, log, kept)
     data = path.read_bytes()
 
-    def believed(some: Kept = kept) -> bool:
+    def believed(some: SampleCache = kept) -> bool:
         opened.clear()
         recordings_of = made.declarations, ("x", "y", "z"), Integrity.HASH
         return some.recording(log, *recordings_of) is not None
 
     assert believed()
-    assert not believed(Kept(kept.folder, b"K" * 32))
+    assert not believed(SampleCache(kept.folder, b"K" * 32))
     for at in range(0, len(data), max(1, len(data) // 50)):
         path.write_bytes(data[:at] + bytes([data[at] ^ 1]) + data[at + 1 :])
         assert not believed()
@@ -156,14 +158,14 @@ def test_what_is_not_of_this_user_and_this_place_is_not_believed(
     assert believed()
     moved = tmp_path / "moved"
     shutil.copytree(kept.folder, moved)
-    assert not believed(Kept(moved, KEY))
+    assert not believed(SampleCache(moved, KEY))
     path.rename(tmp_path / "elsewhere")
     path.symlink_to(tmp_path / "elsewhere")
     assert not believed()
 
 
 def test_of_a_file_that_does_not_stand_alone_nothing_is_kept(
-    tmp_path: Path, log: str, kept: Kept
+    tmp_path: Path, log: str, kept: SampleCache
 ) -> None:
     made = plan(tmp_path / "plan", PROJECT)
     other = Path(log).with_name("run.bin")
@@ -190,7 +192,7 @@ unit = "mm"
 
 
 def test_words_whole_numbers_and_small_floats_come_back_as_they_were(
-    tmp_path: Path, kept: Kept, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, kept: SampleCache, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(text_files, "_COARSEST", -1)
     declarations = declare(WORDS)

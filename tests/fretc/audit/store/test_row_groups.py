@@ -2,7 +2,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from fretc.audit.store import files
 
 COUNT = 2 * files.ROWS + 3
@@ -38,7 +38,7 @@ def test_rows_taken_from_an_encoded_table_are_those_of_the_table(seed: int) -> N
 def test_an_encoded_table_is_held_against_the_manifest() -> None:
     _, rows = encoded()
     other = files.Rows(rows.data, rows.file, pa.schema([("number", pa.int64())]))
-    with pytest.raises(MisshapenError, match="columns"):
+    with pytest.raises(SchemaError, match="columns"):
         other.take(pa.array([0]))
-    with pytest.raises(MisshapenError, match="damaged"):
+    with pytest.raises(SchemaError, match="damaged"):
         next(files.Rows(b"PAR1", rows.file, TYPES).groups())

@@ -10,7 +10,7 @@ import jsonschema  # type: ignore[import-untyped]
 import pytest
 
 from compiler.files.records import types
-from fretc.audit.evidence.reader import Evidence, read
+from fretc.audit.evidence.reader import EvidenceFile, read
 from fretc.audit.evidence.schema import Document, schema
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.anywhere import read as read_anywhere
@@ -138,7 +138,7 @@ def evidence(*changes: tuple[Place, int]) -> str:
 
 def accepted(content: str, path: Path) -> bool:
     path.write_text(content)
-    return isinstance(read(str(path)), Evidence)
+    return isinstance(read(str(path)), EvidenceFile)
 
 
 ALL = [(at, number) for at in numbers(json.loads(_empty())) for number in NUMBERS]
@@ -170,7 +170,7 @@ def test_every_number_that_is_read_comes_back_from_a_store(tmp_path: Path) -> No
     for group in (of_runs, *([each] for each in there if each[0][0] != "results")):
         assert accepted(evidence(*group), tmp_path / "e.json")
         before = read(str(tmp_path / "e.json"))
-        assert isinstance(before, Evidence)
+        assert isinstance(before, EvidenceFile)
         assert isinstance(write_document(tmp_path / "store", before.document, 0.95), str)
         after = read_anywhere(str(tmp_path / "store"))
         assert not isinstance(after, Diagnostic), after.message

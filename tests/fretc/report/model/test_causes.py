@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import Project
 from fretc.audit.evidence.declared_units import in_declared_units
 from fretc.audit.evidence.schema import Result
@@ -110,7 +110,7 @@ def recording(known: Project, of: dict[str, list[tuple[int, float]]], **changes:
     )
 
 
-def judged(known: Project, log: Recording) -> list[tuple[Formalized, Result, Trace]]:
+def judged(known: Project, log: Recording) -> list[tuple[FormalizedRequirement, Result, Trace]]:
     """Each requirement with its result in declared units, and what its monitor saw."""
     plan = planned(known)
     assert not isinstance(plan, tuple), plan
@@ -128,7 +128,9 @@ def judged(known: Project, log: Recording) -> list[tuple[Formalized, Result, Tra
     ]
 
 
-def kleene(tree: e.Expression, truths: Trace, tick: int, rule: Formalized) -> bool | None:
+def kleene(
+    tree: e.Expression, truths: Trace, tick: int, rule: FormalizedRequirement
+) -> bool | None:
     """The response at a tick, written down from the definition."""
     match tree:
         case e.Not(arg):

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from compiler.project.folder import whole
+from compiler.project.folder import load_folder
 from fretc.audit.evidence.briefs import Briefs
-from fretc.audit.evidence.reader import Evidence
+from fretc.audit.evidence.reader import EvidenceFile
 from fretc.audit.store.anywhere import read as read_evidence
 from fretc.report.traceability.chain import Node, chains
 from fretc.report.traceability.comparison import Difference, differences
@@ -180,7 +180,7 @@ def locked() -> Lock:
 
 
 @lru_cache(maxsize=4)
-def _evidence(files: tuple[tuple[str, bytes], ...]) -> Evidence | Diagnostic:
+def _evidence(files: tuple[tuple[str, bytes], ...]) -> EvidenceFile | Diagnostic:
     """What a store says; it is read once as long as its files stay the same."""
     return read_evidence(EVIDENCE)
 
@@ -191,7 +191,7 @@ def _bytes_of(folder: str) -> tuple[tuple[str, bytes], ...]:
 
 def compared(lock: Lock | None = None) -> dict[str, Difference]:
     """Each requirement that is not as it was."""
-    project, evidence = whole("requirements"), _evidence(_bytes_of(EVIDENCE))
+    project, evidence = load_folder("requirements"), _evidence(_bytes_of(EVIDENCE))
     assert not isinstance(project, Diagnostic)
     assert not isinstance(evidence, Diagnostic)
     base = lock or locked()
@@ -446,7 +446,7 @@ def test_texts_of_another_form_are_refused(
 
 @pytest.mark.parametrize("folder", ["requirements", "requirements/mission", "requirements/agv"])
 def test_the_texts_of_real_projects_give_their_fingerprints(folder: str) -> None:
-    project = whole(str(Path(__file__).parents[4] / folder))
+    project = load_folder(str(Path(__file__).parents[4] / folder))
     assert not isinstance(project, Diagnostic)
     for chain in chains(project, None):
         assert chain.texts is not None
@@ -511,7 +511,7 @@ def test_the_texts_of_any_requirement_give_its_fingerprints(
     write(str(tmp_path / "hazards.toml"), '[HAZ-1]\ntitle = "x"\n')
     if bindings is not None:
         write(str(tmp_path / "bindings.toml"), bindings)
-    project = whole(str(tmp_path))
+    project = load_folder(str(tmp_path))
     assert not isinstance(project, Diagnostic)
     for chain in chains(project, None):
         review = accepted(chain, "A", "b", "2026-01-02", "c")

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from compiler.files.records import replace
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.testing.assembly import suite
 from fretc.testing.exports import simulator
 from fretc.testing.exports.files import INDEX, Form, files
@@ -46,7 +46,7 @@ SHORT = (
 
 
 @cache
-def made(*sentences: str) -> tuple[Suite, tuple[Formalized, ...]]:
+def made(*sentences: str) -> tuple[Suite, tuple[FormalizedRequirement, ...]]:
     """A suite, each requirement by itself."""
     every = rules(*sentences)
     return suite(every, (), [batch(each, (), 60) for each in every]), every
@@ -54,7 +54,7 @@ def made(*sentences: str) -> tuple[Suite, tuple[Formalized, ...]]:
 
 def written(
     folder: Path, form: Form, *sentences: str, languages: Sequence[Language] = (Language.PYTHON,)
-) -> tuple[Suite, tuple[Formalized, ...]]:
+) -> tuple[Suite, tuple[FormalizedRequirement, ...]]:
     found, every = made(*sentences)
     artifacts, _ = files(found, every, form, languages)
     for artifact in artifacts:

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from compiler.files.records import decoded, plain
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.testing.assembly import suite
 from fretc.testing.exports.saved import WrongError, saved
 from fretc.testing.generation import batch
@@ -24,7 +24,7 @@ NUMBERS = "whenever battery < 20 the robot shall within 2 ticks satisfy docking"
 
 @dataclass(frozen=True)
 class Made:
-    rules: tuple[Formalized, ...]
+    rules: tuple[FormalizedRequirement, ...]
     document: Any
 
 

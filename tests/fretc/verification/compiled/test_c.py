@@ -7,7 +7,7 @@ import pytest
 from compiler.logic.claims import Result
 from fretc.verification.c import language as c
 from fretc.verification.c.build import compiler
-from fretc.verification.compiled.text import StrangeTextError
+from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.tools import ToolError, compiled
 from fretc.verification.compiled.verifying import verified
 from fretc.verification.engines.sandbox import Limits
@@ -32,7 +32,7 @@ def test_a_header_of_another_form_is_refused(edit: tuple[str, str]) -> None:
     one = rule(WITHIN)
     monitor = given_c(one)
     assert edit[0] in monitor.header
-    with pytest.raises(StrangeTextError):
+    with pytest.raises(UnexpectedLayoutError):
         c.checked(replace(monitor, header=monitor.header.replace(*edit)), [one])
 
 

@@ -9,11 +9,11 @@ from tempfile import mkdtemp
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Result
 from compiler.targets.python.monitor import text
 from fretc.verification.compiled.readings import PythonRail
-from fretc.verification.compiled.text import StrangeTextError
+from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.verifying import explored, verified
 from fretc.verification.engines.sandbox import Limits
 from monitors.kernel.verdicts import Truth
@@ -184,12 +184,12 @@ def test_what_keeps_a_number_of_ticks_is_as_fretc_writes_it(tongue: Tongue, edit
     assert [each for each in edits.kept if is_formed(tongue, one, each)] == []
 
 
-def is_formed(tongue: Tongue, one: Formalized, edit: Edit) -> bool:
+def is_formed(tongue: Tongue, one: FormalizedRequirement, edit: Edit) -> bool:
     """Whether the changed text has a form that is compiled or run."""
     monitor = edited(tongue.given(one), *edit)
     try:
         tongue.language.checked(monitor, [one])
-    except StrangeTextError:
+    except UnexpectedLayoutError:
         return False
     return True
 
@@ -205,7 +205,7 @@ def test_what_is_no_text_of_the_language_is_not_proved(
 def test_a_monitor_of_other_requirements_is_refused(tongue: Tongue) -> None:
     one, other = rule(WITHIN), rule(FOR, "R2")
     for rules, reason in (((), "R2"), ((other,), "other requirements")):
-        with pytest.raises(StrangeTextError, match=reason):
+        with pytest.raises(UnexpectedLayoutError, match=reason):
             tongue.language.checked(tongue.given(other), (one, *rules)).plan(one)
 
 
@@ -218,7 +218,9 @@ def test_what_a_requirement_does_not_speak_of_has_no_part_in_it(
         tongue.language.checked(monitor, rules).plan(each_)
     checked = tongue.language.checked(edited(monitor, edits.since, edits.foreign), rules)
     checked.plan(other)
-    with pytest.raises(StrangeTextError, match="R1 depends on what its sentence does not speak of"):
+    with pytest.raises(
+        UnexpectedLayoutError, match="R1 depends on what its sentence does not speak of"
+    ):
         checked.plan(one)
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from compiler.files.edition import __version__
-from compiler.formalization.formalized import Formalized
+from compiler.files.build_id import __version__
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import SCHEMA, Document, Layer, Outcome, Proof, Result, proof, proved
 from compiler.project.folder import load
 from fretc.reproduction.outcome import Finding
@@ -36,7 +36,7 @@ WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
 RING = "only in m upon c the sw shall after 40 ticks satisfy z"
 
 
-def asked(*rules: Formalized) -> Run:
+def asked(*rules: FormalizedRequirement) -> Run:
     own = given(*rules)
     return prepared(own, checked(own, rules))
 

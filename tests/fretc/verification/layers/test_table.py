@@ -8,7 +8,7 @@ from types import ModuleType
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import PROVERS, Layer, Proof, not_checked, proof
 from compiler.project.folder import Project, load
 from compiler.targets.python import monitor
@@ -51,7 +51,7 @@ def add(
 def _prove(
     method: Method,
     mistake: Diagnostic | None,
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     project: Project,
     request: Request,
 ) -> list[Proof] | Diagnostic:

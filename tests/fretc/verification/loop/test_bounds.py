@@ -8,8 +8,8 @@ from compiler.logic.claims import Result, not_checked, proved
 from fretc.verification.loop import abstraction as looptwin
 from fretc.verification.loop import bounds
 from fretc.verification.loop.abstraction import Numbers, Plain, Times, covered
+from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.bounds import Answer, Question, search
-from fretc.verification.loop.drive import Channel
 from fretc.verification.loop.model import Loop
 from fretc.verification.loop.search import Parts
 from monitors.interceptor import Options

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from fretc.verification.interceptor.machine import Event
-from fretc.verification.loop.drive import Channel, Wheels
+from fretc.verification.loop.actuation_model import ActuationState, Channel
 from fretc.verification.loop.model import Environment, Node
 from fretc.verification.loop.search import Case, Parts
 from monitors.interceptor import Options
@@ -139,7 +139,7 @@ def follows(known: Case, rows: list[Row]) -> None:
         assert nodes, (number, row)
 
 
-def _same(wheels: Wheels, row: Row) -> bool:
+def _same(wheels: ActuationState, row: Row) -> bool:
     fields = tuple(any(v) if isinstance(v, tuple) else v for v in row.fields)
     return wheels.interceptor == fields and (wheels.still < 0) == row.moving
 

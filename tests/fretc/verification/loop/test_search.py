@@ -6,7 +6,7 @@ import pytest
 
 from compiler.logic import formula as f
 from compiler.logic.claims import Outcome, Result, not_checked, vacuous
-from fretc.verification.loop.drive import Channel
+from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.search import is_safety, search
 from monitors.interceptor import Options
 from tests.loops import (

@@ -48,8 +48,8 @@ def test_classes_and_pairs_agree(left: Table, right: Table) -> None:
     left.state = right.state = 0
     result = rails.in_lock_step(left, right, LETTERS, 10**6, ("given",))
     if expected is None:
-        assert isinstance(result, rails.Same)
+        assert isinstance(result, rails.Equivalent)
         assert result.states <= len(left.rows) + len(right.rows)
     else:
-        assert isinstance(result, rails.Apart)
+        assert isinstance(result, rails.Distinguished)
         assert len(result.word) == expected

@@ -5,7 +5,7 @@ from functools import cache
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Outcome, Result
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor.verifying import verified
@@ -77,7 +77,7 @@ FAULTS = (
 
 
 @cache
-def made() -> tuple[Formalized, str]:
+def made() -> tuple[FormalizedRequirement, str]:
     right = rule(SENTENCE)
     return right, target.text(right)
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.files.checked_json import MisshapenError
+from compiler.files.checked_json import SchemaError
 from fretc.watch.sources.foxglove_protocol import (
     LARGEST_SCHEMA,
     Advertisement,
@@ -39,12 +39,12 @@ texts = st.text() | st.fixed_dictionaries(
 
 @given(texts | st.binary() | st.binary().map(lambda data: b"\x01" + data))
 def test_nothing_that_a_stranger_says_is_more_than_an_error(message: str | bytes) -> None:
-    with suppress(MisshapenError):
+    with suppress(SchemaError):
         read(message, {"/x"})
 
 
 def test_a_message_that_is_nested_without_end_is_an_error() -> None:
-    with pytest.raises(MisshapenError, match="nested"):
+    with pytest.raises(SchemaError, match="nested"):
         read('{"op":' + "[" * 100_000, {"/x"})
 
 
@@ -54,7 +54,7 @@ def test_data_is_read_as_the_specification_lays_it_out(
 ) -> None:
     head = b"\x01" + subscription.to_bytes(4, "little") + time.to_bytes(8, "little")
     assert read(head + payload, ()) == Data(subscription, time, payload)
-    with pytest.raises(MisshapenError):
+    with pytest.raises(SchemaError):
         read(head[:-1], ())
 
 

@@ -11,7 +11,7 @@ from compiler.formalization.obligation import Kind
 from compiler.formalization.reference import State, happening, step
 from compiler.logic import formula as f
 from compiler.logic.evaluation import evaluate
-from compiler.situations.facts import Facts, facts
+from compiler.situations.tick_predicates import TickPredicates, facts
 from fretish.syntax import ConditionKind
 from tests import meaning
 from tests.emitting import rule
@@ -54,7 +54,7 @@ def words(drawn: Template) -> Iterator[list[Row]]:
 class Run:
     """A word beside what the facts say of it."""
 
-    def __init__(self, known: Facts, rows: Sequence[Row]) -> None:
+    def __init__(self, known: TickPredicates, rows: Sequence[Row]) -> None:
         self.length = len(rows)
         self.columns = {
             name: sum(row[name] << tick for tick, row in enumerate(rows)) for name in LETTERS
@@ -133,7 +133,7 @@ def assert_asked(counted: reference.Template, run: Run, tick: Tick) -> None:
         assert not run.has(known.asks_for_answer, at)
 
 
-def distance(known: Facts, counted: reference.Template, back: int) -> f.Formula | None:
+def distance(known: TickPredicates, counted: reference.Template, back: int) -> f.Formula | None:
     """The trigger that counts lies so far back; None where the automaton does not tell."""
     if known.demand.kind in (Kind.WITHIN, Kind.AFTER):
         return known.oldest(back)

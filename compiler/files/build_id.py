@@ -17,7 +17,7 @@ _LIBRARIES = ("lz4", "mcap", "mcap-ros1-support", "mcap-ros2-support", "numpy", 
 
 
 @cache
-def edition() -> str:
+def build_id() -> str:
     """SHA-256 of the program's text, its version, and the versions of what reads logs for it.
 
     Of the text too: that of a checkout changes without its version.

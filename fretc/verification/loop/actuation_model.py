@@ -46,7 +46,7 @@ class Channel:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Wheels:
+class ActuationState:
     """A state of the drive. A drive has one object for each: equal ones are the same.
 
     Sets of millions of nodes compare and hash them, so neither looks inside.
@@ -60,43 +60,43 @@ class Wheels:
 
 Word = tuple[Event | None, "Word | None"]
 """The last event, and all events before it; None: a cell ends."""
-_Layer = dict[tuple[Wheels, bool], Word]
+_Layer = dict[tuple[ActuationState, bool], Word]
 """What can be reached; and whether enough commands have come, where each tick brings some."""
 
 
-class Drive:
+class ActuationModel:
     """Channel, interceptor and wheels, moved by messages, the timer and time."""
 
     def __init__(self, interceptor: InterceptorMachine, channel: Channel) -> None:
         self.interceptor, self.channel = interceptor, channel
         self._inputs = [Event.MOVE, Event.STAND, *([Event.SCAN] if channel.scans else [])]
-        self._known: dict[tuple[State, int, Queue], Wheels] = {}
-        self._heard: dict[Wheels, tuple[tuple[Event, bool, Wheels], ...]] = {}
-        self._rung: dict[Wheels, Wheels] = {}
-        self._later: dict[Wheels, Wheels | None] = {}
-        self._passages: dict[Wheels, Mapping[Wheels, Word]] = {}
+        self._known: dict[tuple[State, int, Queue], ActuationState] = {}
+        self._heard: dict[ActuationState, tuple[tuple[Event, bool, ActuationState], ...]] = {}
+        self._rung: dict[ActuationState, ActuationState] = {}
+        self._later: dict[ActuationState, ActuationState | None] = {}
+        self._passages: dict[ActuationState, Mapping[ActuationState, Word]] = {}
         self.initial = self.wheels(interceptor.initial, channel.stands, ())
 
-    def wheels(self, interceptor: State, still: int, queue: Queue) -> Wheels:
+    def wheels(self, interceptor: State, still: int, queue: Queue) -> ActuationState:
         """The one object for a state."""
         key = interceptor, still, queue
         wheels = self._known.get(key)
         if wheels is None:
-            wheels = self._known[key] = Wheels(*key)
+            wheels = self._known[key] = ActuationState(*key)
         return wheels
 
-    def begun(self, wheels: Wheels, still: int, sent: Queue) -> Wheels:
+    def begun(self, wheels: ActuationState, still: int, sent: Queue) -> ActuationState:
         """The wheels as a tick begins: sampled so, and with a message more in flight, if any."""
         return self.wheels(wheels.interceptor, still, wheels.queue + sent)
 
-    def passages(self, wheels: Wheels) -> Mapping[Wheels, Word]:
+    def passages(self, wheels: ActuationState) -> Mapping[ActuationState, Word]:
         """The states of the wheels at the next tick, each with a word of events on the way."""
         passages = self._passages.get(wheels)
         if passages is None:
             passages = self._passages[wheels] = self._passing(wheels)
         return passages
 
-    def _passing(self, wheels: Wheels) -> Mapping[Wheels, Word]:
+    def _passing(self, wheels: ActuationState) -> Mapping[ActuationState, Word]:
         layer: _Layer = {}
         word: Word = (None, None)
         if self.channel.latency == 0:
@@ -111,7 +111,7 @@ class Drive:
             layer = self._older(self._closed(layer))
         return {wheels: word for (wheels, enough), word in layer.items() if enough}
 
-    def _at_once(self, wheels: Wheels, word: Word) -> tuple[Wheels, Word]:
+    def _at_once(self, wheels: ActuationState, word: Word) -> tuple[ActuationState, Word]:
         """Without latency a message arrives at the very instant of the tick."""
         while wheels.queue:
             event = _message(wheels.queue)
@@ -135,7 +135,7 @@ class Drive:
                     waiting.append(after)
         return closure
 
-    def _hearing(self, wheels: Wheels) -> tuple[tuple[Event, bool, Wheels], ...]:
+    def _hearing(self, wheels: ActuationState) -> tuple[tuple[Event, bool, ActuationState], ...]:
         """Every message that may come next, whether it is a command, and the wheels after it."""
         queued = [_message(wheels.queue)] if wheels.queue else []
         heard = self._heard[wheels] = tuple(
@@ -144,14 +144,14 @@ class Drive:
         )
         return heard
 
-    def _ringing(self, wheels: Wheels) -> Wheels:
+    def _ringing(self, wheels: ActuationState) -> ActuationState:
         """The wheels after the timer has rung."""
         rung = self._rung.get(wheels)
         if rung is None:
             rung = self._rung[wheels] = self._take(wheels, Event.RING)
         return rung
 
-    def _take(self, wheels: Wheels, event: Event) -> Wheels:
+    def _take(self, wheels: ActuationState, event: Event) -> ActuationState:
         interceptor, output = self.interceptor.step(wheels.interceptor, event)
         queue = wheels.queue[1:] if event in (Event.STOP, Event.RELEASE) else wheels.queue
         if output is None:
@@ -169,7 +169,7 @@ class Drive:
                 result.setdefault((later, enough), (None, word))
         return result
 
-    def _aged(self, wheels: Wheels) -> Wheels | None:
+    def _aged(self, wheels: ActuationState) -> ActuationState | None:
         """The wheels a cell later; None: a message would have been in flight for too long."""
         still, queue = wheels.still, wheels.queue
         if queue and queue[0][1] + 1 >= self.channel.latency:

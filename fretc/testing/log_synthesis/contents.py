@@ -17,7 +17,7 @@ import numpy as np
 
 from fretc.logs.signals.signals import clearance, sample
 from fretc.logs.signals.words import word
-from fretc.testing.staging.messages import Content, Field, message
+from fretc.testing.log_synthesis.messages import Content, Field, message
 from fretish import expressions as e
 from fretish.bindings.declarations import Reading, Reduce, Signal
 from fretish.units import unit

@@ -1,6 +1,6 @@
 """The drive computes each passage once, also for loops that share it."""
 
-from fretc.verification.loop.drive import Channel
+from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.search import Parts, new_drive, reach
 from tests.loops import EVENTUALLY, WITHIN, case, interceptor_options
 

@@ -10,8 +10,8 @@ from random import Random
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fretc.testing.staging.scenarios import text
-from fretc.testing.staging.variation import varied
+from fretc.testing.log_synthesis.scenarios import text
+from fretc.testing.log_synthesis.variation import varied
 from fretc.testing.suite import Polarity
 from simulation.mission import possible
 from simulation.world.scenario import Expectations, Scenario, load

@@ -6,19 +6,19 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from random import Random
 
-from compiler.files.edition import __version__
-from compiler.formalization.formalized import Formalized
+from compiler.files.build_id import __version__
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.evaluation import evaluate
 from compiler.logic.formula import Formula
 from compiler.targets.python import monitor as emitted
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about, by_variables
 from fretc.testing.conformance.driving import Driver, Start
-from fretc.testing.conformance.field import Aim, Field, Plan
 from fretc.testing.conformance.findings import SCHEMA, Conformance, Failure, Outcome, Situated
-from fretc.testing.conformance.referee import Referee, Run, Tick, reason
+from fretc.testing.conformance.oracle import Oracle, Run, Tick, reason
+from fretc.testing.conformance.requirement_groups import Plan, RequirementGroup, TargetState
 from fretc.testing.conformance.shrinking import Shrinking
 from fretc.testing.suite import Polarity, Repeat
 from fretish.printer import sentence as printed
@@ -31,13 +31,13 @@ _PATIENCE, _EXTRA = 2, 8
 """A run may be so many times as long as the shortest way to its aim, and so many ticks longer."""
 
 
-class Campaign:
+class ConformanceRun:
     """All runs of one program, and what was seen so far."""
 
     def __init__(
         self,
-        rules: Sequence[Formalized],
-        assumptions: Sequence[Formalized],
+        rules: Sequence[FormalizedRequirement],
+        assumptions: Sequence[FormalizedRequirement],
         roles: Roles,
         seconds: float,
     ) -> None:
@@ -50,7 +50,7 @@ class Campaign:
             seconds: of a processor, for the strategy towards each situation.
 
         Raises:
-            BeyondError: the program cannot be given inputs.
+            UnsupportedError: the program cannot be given inputs.
             OutOfTimeError: the assumptions take too long.
         """
         refused = {rule.id: emitted.refuse(rule) for rule in rules}
@@ -59,14 +59,14 @@ class Campaign:
         self._seconds = seconds
         judged = [*self._rules.values()]
         if not judged:
-            raise BeyondError("no requirement has a monitor")
-        self.referee = Referee(judged, assumptions, roles)
+            raise UnsupportedError("no requirement has a monitor")
+        self.referee = Oracle(judged, assumptions, roles)
         self._fields = [
-            Field(group, about(group, assumptions, roles), roles, Budget(seconds))
+            RequirementGroup(group, about(group, assumptions, roles), roles, Budget(seconds))
             for group in by_variables(judged, assumptions, roles)
         ]
         self._failures: dict[str, Failure] = {}
-        self._outcomes: dict[Aim, tuple[Outcome, str]] = {}
+        self._outcomes: dict[TargetState, tuple[Outcome, str]] = {}
         self._triggered: set[str] = set()
         self._runs = self._ticks = self._longest = 0
         self._is_whole = False
@@ -79,7 +79,7 @@ class Campaign:
             progress: is called with each aim before it is gone for.
 
         Raises:
-            BeyondError: no value is known for an input.
+            UnsupportedError: no value is known for an input.
             ProgramError: the program does not keep to the protocol.
         """
         driver = Driver(self._fields, self.referee, start)
@@ -94,7 +94,7 @@ class Campaign:
         finally:
             self._runs, self._ticks = driver.runs, driver.ticks
 
-    def _go_for(self, aim: Aim, field: Field, driver: Driver) -> None:
+    def _go_for(self, aim: TargetState, field: RequirementGroup, driver: Driver) -> None:
         """Without any needless change of an input, and with any inputs."""
         try:
             plan = field.plan(aim, Budget(self._seconds))
@@ -125,14 +125,19 @@ class Campaign:
                 run = driver.anywhere(Random(number), change, ticks)
                 self._look(run, None, driver)
 
-    def _choices(self, aim: Aim) -> Iterator[Random | None]:
+    def _choices(self, aim: TargetState) -> Iterator[Random | None]:
         """By which inputs are chosen that do not matter, run by run."""
         if aim.polarity is Polarity.KEPT:
             yield None
         yield Random(aim.name)
 
     def _try(
-        self, aim: Aim, field: Field, plan: Plan, choose: Random | None, driver: Driver
+        self,
+        aim: TargetState,
+        field: RequirementGroup,
+        plan: Plan,
+        choose: Random | None,
+        driver: Driver,
     ) -> Run:
         ticks, _ = plan.distance(field.transition.start) or (0, False)
         self._longest = max(self._longest, ticks)
@@ -142,7 +147,7 @@ class Campaign:
             self._outcomes[aim] = Outcome.REACHED, ""
         return run
 
-    def _look(self, run: Run, aim: Aim | None, driver: Driver) -> None:
+    def _look(self, run: Run, aim: TargetState | None, driver: Driver) -> None:
         """What a run shows of all requirements."""
         self._triggered |= run.triggered
         for id in run.broken:
@@ -153,7 +158,9 @@ class Campaign:
                 if _shows(run, other, other.shown[0]):
                     self._outcomes[other] = Outcome.REACHED, ""
 
-    def _failure(self, aim: Aim | None, rule: Formalized, run: Run, driver: Driver) -> Failure:
+    def _failure(
+        self, aim: TargetState | None, rule: FormalizedRequirement, run: Run, driver: Driver
+    ) -> Failure:
         shrinking = Shrinking(rule.id, self.referee.inputs, driver.again, run)
         again = shrinking.again()
         best = shrinking.shrink() if again else run
@@ -196,7 +203,7 @@ class Campaign:
                 yield Situated(id, "all", words or "all", Outcome.NOT_SEARCHED, why)
 
 
-def _shows(run: Run, aim: Aim, shown: Formula) -> bool:
+def _shows(run: Run, aim: TargetState, shown: Formula) -> bool:
     """Whether a run that keeps a requirement shows a situation of it."""
     if aim.polarity is not Polarity.KEPT or aim.rule.id in run.broken or not run.is_known:
         return False

@@ -55,7 +55,7 @@ def _unknown(requirement: Requirement, message: str, fix: str) -> Diagnostic:
     return Diagnostic(Code.UNKNOWN_PARENT, message, place, fix, Severity.WARNING)
 
 
-def circles(requirements: Sequence[Requirement]) -> Iterator[Diagnostic]:
+def cycles(requirements: Sequence[Requirement]) -> Iterator[Diagnostic]:
     """F526 for each circle of parents, once, at its first requirement."""
     by_id = {requirement.id: requirement for requirement in requirements}
     earlier: set[frozenset[str]] = set()

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from compiler.explanation.reasons import why
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python.monitor import text
-from fretc.analysis.arena.alphabet import BeyondError
+from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.roles import Roles
 from fretc.testing.exports.tables import Cell
 from fretc.testing.words import Word, letters
@@ -25,16 +25,19 @@ Truths = Mapping[str, bool | None]
 """Of atoms, at one tick."""
 
 
-class Referee:
+class Oracle:
     """The monitor of requirements and assumptions, tick by tick."""
 
     def __init__(
-        self, rules: Sequence[Formalized], assumptions: Sequence[Formalized], roles: Roles
+        self,
+        rules: Sequence[FormalizedRequirement],
+        assumptions: Sequence[FormalizedRequirement],
+        roles: Roles,
     ) -> None:
         """Before the first tick.
 
         Raises:
-            BeyondError: a column belongs neither to the inputs nor to the outputs.
+            UnsupportedError: a column belongs neither to the inputs nor to the outputs.
         """
         self._rules = [*rules, *assumptions]
         self._assumed = {each.id for each in assumptions}
@@ -48,7 +51,7 @@ class Referee:
         )
         for name in columns:
             if name not in roles:
-                raise BeyondError(f"`{name}` is no value that a program is given, or gives")
+                raise UnsupportedError(f"`{name}` is no value that a program is given, or gives")
         self._names = tuple(columns)
         self.inputs = tuple(name for name in columns if roles[name] is Role.INPUT)
         self.outputs = {name: own for name, own in columns.items() if roles[name] is Role.OUTPUT}
@@ -112,7 +115,7 @@ class Run:
         return all(truth is not None for truths in self.truths for truth in truths.values())
 
 
-def reason(rule: Formalized, run: Run) -> str:
+def reason(rule: FormalizedRequirement, run: Run) -> str:
     """Why the run violates the rule, in words."""
     if not run.is_known:
         return "whatever the unknown values are"

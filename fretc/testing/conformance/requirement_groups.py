@@ -14,12 +14,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
 from compiler.situations.situations import Situation, situations
-from fretc.analysis.arena.alphabet import BeyondError, Tick, numbers
+from fretc.analysis.arena.alphabet import Tick, UnsupportedError, numbers
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.counters import Counter, counter
 from fretc.analysis.arena.memory import Bit, Memory, Past
@@ -27,7 +27,7 @@ from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.transition import State, Transition
 from fretc.analysis.games.game import upheld
-from fretc.analysis.stage import alphabet_of
+from fretc.analysis.realizability_problem import alphabet_of
 from fretc.testing.bench import demands
 from fretc.testing.search import Letter, nearest
 from fretc.testing.suite import Polarity
@@ -35,10 +35,10 @@ from fretish.bindings.declarations import Role
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Aim:
+class TargetState:
     """What a run is to lead to."""
 
-    rule: Formalized
+    rule: FormalizedRequirement
     situation: Situation
     polarity: Polarity
     shown: tuple[f.Formula, ...]
@@ -53,20 +53,20 @@ class Aim:
         return f"{self.rule.id} {self.situation.key} {self.polarity}"
 
 
-class Field:
+class RequirementGroup:
     """Requirements whose variables hang together, and the assumptions about them."""
 
     def __init__(
         self,
-        rules: Sequence[Formalized],
-        assumptions: Sequence[Formalized],
+        rules: Sequence[FormalizedRequirement],
+        assumptions: Sequence[FormalizedRequirement],
         roles: Roles,
         budget: Budget,
     ) -> None:
         """The field.
 
         Raises:
-            BeyondError: an assumption has no counter, or no values are known for an input.
+            UnsupportedError: an assumption has no counter, or no values are known for an input.
             OutOfTimeError: the assumptions take too long.
         """
         every = [*rules, *assumptions]
@@ -79,7 +79,7 @@ class Field:
         for each in near_each_other(every):
             try:
                 found[each.id] = counter(each, alphabet, fresh, shared)
-            except BeyondError as error:
+            except UnsupportedError as error:
                 if each in assumptions:
                     raise
                 self.beyond[each.id] = str(error)
@@ -113,7 +113,7 @@ class Field:
         """The inputs that keep the assumptions, whatever a program does that keeps its own."""
         return self.alphabet.legal & bdd.every_implied(self._safe, self._kept, self._outputs)
 
-    def _aims(self, rule: Formalized) -> Iterator[Aim]:
+    def _aims(self, rule: FormalizedRequirement) -> Iterator[TargetState]:
         if rule.id not in self._counters:
             return
         for situation in situations(rule):
@@ -122,10 +122,10 @@ class Field:
             try:
                 yield self._kept_aim(rule, situation)
                 yield self._broken_aim(rule, situation)
-            except BeyondError as error:
+            except UnsupportedError as error:
                 self.beyond[f"{rule.id}: {situation.words}"] = str(error)
 
-    def _kept_aim(self, rule: Formalized, situation: Situation) -> Aim:
+    def _kept_aim(self, rule: FormalizedRequirement, situation: Situation) -> TargetState:
         """The situation, and then, where it can be, a tick at which nothing is open any more."""
         if situation.at_end:
             return self._aim(rule, situation, Polarity.KEPT, situation.formula)
@@ -133,26 +133,26 @@ class Field:
         done = f.and_(seen, f.not_(rule.watch.owed))
         return self._aim(rule, situation, Polarity.KEPT, done, seen)
 
-    def _broken_aim(self, rule: Formalized, situation: Situation) -> Aim:
+    def _broken_aim(self, rule: FormalizedRequirement, situation: Situation) -> TargetState:
         """The situation, and a tick at which the requirement is broken."""
         return self._aim(rule, situation, Polarity.BROKEN, f.once(situation.formula))
 
     def _aim(
         self,
-        rule: Formalized,
+        rule: FormalizedRequirement,
         situation: Situation,
         polarity: Polarity,
         *shown: f.Formula,
-    ) -> Aim:
+    ) -> TargetState:
         own = self._counters[rule.id].safe
         goals = tuple(self._past.value(formula) for formula in shown)
         if polarity is Polarity.BROKEN:
             goals = tuple(goal - own for goal in goals)
-        return Aim(rule, situation, polarity, shown, goals)
+        return TargetState(rule, situation, polarity, shown, goals)
 
     # Plans
 
-    def plan(self, aim: Aim, budget: Budget) -> Plan | None:
+    def plan(self, aim: TargetState, budget: Budget) -> Plan | None:
         """How to go for an aim; None: no run that keeps the assumptions comes to it.
 
         Raises:
@@ -171,7 +171,7 @@ class Field:
                 return found
         return None
 
-    def _reached(self, aim: Aim) -> Function:
+    def _reached(self, aim: TargetState) -> Function:
         """The ticks at which a goal counts: those that break nothing else."""
         if aim.polarity is not Polarity.BROKEN:
             return self._safe

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from fretc.testing.staging.messages import NoStageError
+from fretc.testing.log_synthesis.messages import NoStageError
 from fretc.testing.suite import Test
 from fretish import expressions as e
 from fretish.bindings.declarations import Proposition

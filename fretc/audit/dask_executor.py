@@ -17,9 +17,9 @@ from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from compiler.files.edition import edition
+from compiler.files.build_id import build_id
 from compiler.files.processes import shield
-from fretc.audit.many_logs import EVALUATIONS, Engine, LogAudit, LogAudits, audited, given_up
+from fretc.audit.many_logs import EVALUATIONS, Engine, LogAudits, LogResult, audited, given_up
 from fretc.audit.plan import Plan, packed, unpacked
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import unless_installed
@@ -186,7 +186,7 @@ def _tasks(client: Client, plan: Plan, logs: Sequence[str]) -> LogAudits:
 
 def _results(
     client: Client, plan: Future, logs: Sequence[str]
-) -> Generator[tuple[str, LogAudit | None], None, None]:
+) -> Generator[tuple[str, LogResult | None], None, None]:
     """Logs as they are done; None for one whose workers died.
 
     Raises:
@@ -196,7 +196,7 @@ def _results(
 
     batch = f"fretc-audit-{secrets.token_hex(8)}"  # results of another audit are not for us
     waiting = {
-        client.submit(_work, plan, log, os.getcwd(), edition(), key=f"{batch}-{number}"): log
+        client.submit(_work, plan, log, os.getcwd(), build_id(), key=f"{batch}-{number}"): log
         for number, log in enumerate(logs)
     }
     try:
@@ -207,12 +207,12 @@ def _results(
             client.cancel(list(waiting), force=True)
 
 
-def _result(future: Future) -> LogAudit | None:
+def _result(future: Future) -> LogResult | None:
     from distributed import KilledWorker
 
     if future.status == "finished":
         result = future.result()
-        if isinstance(result, LogAudit):
+        if isinstance(result, LogResult):
             return result
         raise _FleetError(_other_edition(f"the worker {result} has another fretc than this one"))
     if future.status in ("lost", "pending"):  # its worker died before the result was fetched
@@ -232,11 +232,11 @@ _ALONE = threading.Lock()
 """A worker may have many threads; a monitor has a state, and the present folder is of all."""
 
 
-def _work(plan: bytes, log: str, folder: str, client_edition: str) -> LogAudit | str:
+def _work(plan: bytes, log: str, folder: str, client_edition: str) -> LogResult | str:
     """Audit a log, in a worker; the worker's address, where its edition is another one."""
     from distributed import get_worker
 
-    if edition() != client_edition:
+    if build_id() != client_edition:
         return str(get_worker().address)
     with _ALONE, _in(folder):
         return audited(_plan(plan), log)

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain, repeat
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons
 from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Alphabet, BeyondError, Numbers, Tick, numbers
+from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, UnsupportedError, numbers
 from fretc.analysis.arena.budget import ENDLESS, Budget
 from fretc.analysis.arena.counters import Counter, counter
 from fretc.analysis.arena.memory import side_by_side
@@ -20,7 +20,7 @@ from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.components import about
 from fretc.analysis.games.game import Game, upheld
-from fretc.analysis.games.plays import Run
+from fretc.analysis.games.game_traces import Run
 from fretc.analysis.games.replay import remembering
 from fretc.analysis.games.runs import Runs
 from fretish.bindings.declarations import Role
@@ -32,11 +32,11 @@ _LONG = 10
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class RealizabilityProblem:
     """Some requirements, the assumptions that bear upon them, and the arena of both."""
 
-    rules: tuple[Formalized, ...]
-    assumptions: tuple[Formalized, ...]
+    rules: tuple[FormalizedRequirement, ...]
+    assumptions: tuple[FormalizedRequirement, ...]
     arena: Arena
     roles: Roles
     as_fret: bool
@@ -47,7 +47,9 @@ class Stage:
     """How many ticks before a bound of a number it is remembered whether that is within reach."""
     fresh: Numbers = field(default_factory=numbers, compare=False, repr=False)
     """Variables that nothing of the stage has."""
-    _close: dict[frozenset[str], Stage] = field(default_factory=dict, compare=False, repr=False)
+    _close: dict[frozenset[str], RealizabilityProblem] = field(
+        default_factory=dict, compare=False, repr=False
+    )
     _upheld: list[Function] = field(default_factory=list, compare=False, repr=False)
     """What each game of the stage needs of the assumptions, once it has been computed."""
 
@@ -56,7 +58,7 @@ class Stage:
         wanted = set(ids)
         return tuple(each for each in self.arena.counters if each.id in wanted)
 
-    def close(self, ids: Iterable[str], budget: Budget) -> Stage:
+    def close(self, ids: Iterable[str], budget: Budget) -> RealizabilityProblem:
         """Where some of the requirements are best looked at: by themselves, if they count far.
 
         What is remembered of numbers depends on all requirements; there it is the stage itself.
@@ -74,11 +76,11 @@ class Stage:
             self._close[wanted] = self._apart(wanted, budget)
         return self._close[wanted]
 
-    def _apart(self, ids: frozenset[str], budget: Budget) -> Stage:
+    def _apart(self, ids: frozenset[str], budget: Budget) -> RealizabilityProblem:
         """Some of the requirements by themselves; the stage itself, if less is known of them so."""
         try:
             found = interleaved(self, ids, budget)
-        except BeyondError:
+        except UnsupportedError:
             return self
         counted = [{each.id for each in there.counters(ids)} for there in (self, found)]
         mine, its = self.arena.alphabet, found.arena.alphabet
@@ -100,7 +102,7 @@ class Stage:
         memory = self.arena.alphabet.memory()
         return () if memory is None else (memory,)
 
-    def generous(self, budget: Budget) -> Stage:
+    def generous(self, budget: Budget) -> RealizabilityProblem:
         """The same where the system is favoured: what cannot be kept even so cannot be kept."""
         if self.arena.alphabet.open is None:
             return self
@@ -115,11 +117,11 @@ class Stage:
             steps=self.steps,
         )
 
-    def assuming(self, more: Sequence[Formalized]) -> Stage:
+    def assuming(self, more: Sequence[FormalizedRequirement]) -> RealizabilityProblem:
         """The same under further assumptions, whose bits come last in the order.
 
         Raises:
-            BeyondError: they say something that the stage has no letters for.
+            UnsupportedError: they say something that the stage has no letters for.
         """
         alphabet, found = self.arena.alphabet, list(self.arena.assumptions)
         for rule in more:
@@ -127,14 +129,14 @@ class Stage:
             known = {*alphabet.inputs, *alphabet.outputs, *(bit.now for bit in made.bits)}
             read = (bdd.support(each) for each in (made.safe, made.triggered, *made.steps))
             if not known.issuperset(chain.from_iterable(read)):
-                raise BeyondError(f"{rule.id} is about other atoms")
+                raise UnsupportedError(f"{rule.id} is about other atoms")
             found.append(made)
         arena = replace(self.arena, assumptions=tuple(found))
         return replace(
             self, assumptions=(*self.assumptions, *more), arena=arena, _close={}, _upheld=[]
         )
 
-    def finer(self, budget: Budget) -> Stage | None:
+    def finer(self, budget: Budget) -> RealizabilityProblem | None:
         """The same with twice as much remembered of numbers; None: that tells nothing more."""
         if not self.arena.alphabet.is_refinable or self.steps >= _MOST_STEPS:
             return None
@@ -208,29 +210,31 @@ class Stage:
         return "; ".join(f"{id}: {why}" for id, why in self.arena.beyond.items()) or None
 
 
-def _atoms(rule: Formalized) -> frozenset[str]:
+def _atoms(rule: FormalizedRequirement) -> frozenset[str]:
     return frozenset(name for name, _ in candidates(rule.sentence))
 
 
 def stage(
-    rules: Sequence[Formalized],
-    assumptions: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
+    assumptions: Sequence[FormalizedRequirement],
     roles: Roles,
     *,
     as_fret: bool = False,
     budget: Budget = ENDLESS,
-) -> Stage:
+) -> RealizabilityProblem:
     """The stage of some requirements.
 
     Raises:
-        BeyondError: an assumption has no counter.
+        UnsupportedError: an assumption has no counter.
         OutOfTimeError: it takes longer than the budget to sort out their comparisons.
     """
     near = about(rules, assumptions, roles)
     return _built(rules, near, roles, numbers(), budget, as_fret=as_fret)
 
 
-def interleaved(setting: Stage, ids: Iterable[str], budget: Budget) -> Stage:
+def interleaved(
+    setting: RealizabilityProblem, ids: Iterable[str], budget: Budget
+) -> RealizabilityProblem:
     """The stage of a few of the requirements, with bits of the same weight side by side.
 
     So one count stays easy to compare with another one; counters one after the other need as many
@@ -240,7 +244,7 @@ def interleaved(setting: Stage, ids: Iterable[str], budget: Budget) -> Stage:
     rules = [rule for rule in setting.rules if rule.id in wanted]
     near = about(rules, setting.assumptions, setting.roles)
 
-    def built(fresh: Numbers) -> Stage:
+    def built(fresh: Numbers) -> RealizabilityProblem:
         return _built(
             rules,
             near,
@@ -260,8 +264,8 @@ def interleaved(setting: Stage, ids: Iterable[str], budget: Budget) -> Stage:
 
 
 def _built(
-    rules: Sequence[Formalized],
-    near: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
+    near: Sequence[FormalizedRequirement],
     roles: Roles,
     fresh: Numbers,
     budget: Budget,
@@ -269,13 +273,15 @@ def _built(
     as_fret: bool,
     favoured: Role = Role.INPUT,
     steps: int = 0,
-) -> Stage:
+) -> RealizabilityProblem:
     alphabet = alphabet_of([*rules, *near], roles, fresh, favoured, budget, steps)
     built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
-    return Stage(tuple(rules), tuple(near), built, roles, as_fret, favoured, steps, fresh)
+    return RealizabilityProblem(
+        tuple(rules), tuple(near), built, roles, as_fret, favoured, steps, fresh
+    )
 
 
-def _has_numbers(rule: Formalized) -> bool:
+def _has_numbers(rule: FormalizedRequirement) -> bool:
     """Whether it compares any, as far as its letters tell."""
     declared = rule.declarations
     if declared is None:
@@ -288,7 +294,7 @@ _MOST_STEPS = 8
 
 
 def alphabet_of(
-    rules: Sequence[Formalized],
+    rules: Sequence[FormalizedRequirement],
     roles: Roles,
     fresh: Numbers,
     favoured: Role,

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import MOST_ATOMS, atoms_of, meanings, temporal_predicate
 from compiler.formalization.reference import (
     BROKEN,
@@ -21,7 +21,7 @@ _MOST_STATES = 2_000
 
 
 @dataclass(frozen=True, slots=True)
-class Ticks:
+class RepeatedTick:
     """Equal ticks, one after the other, after each of which the verdicts are the same."""
 
     count: int
@@ -31,14 +31,14 @@ class Ticks:
 
 
 @dataclass(frozen=True, slots=True)
-class Word:
+class WitnessTrace:
     """A run to a verdict."""
 
     name: str
-    ticks: tuple[Ticks, ...]
+    ticks: tuple[RepeatedTick, ...]
 
 
-def words(rule: Formalized) -> tuple[Word, ...]:
+def words(rule: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
     """The shortest run to each verdict that there is, and to the state that is the last to reach.
 
     There is none where the reference does not know the sentence, or is too large.
@@ -54,7 +54,9 @@ def words(rule: Formalized) -> tuple[Word, ...]:
         return ()
     valuations = [letters[each] for each in counted.letters]
     return tuple(
-        Word(name, tuple(_ticks(counted, [(valuations[place], place) for place in run], atoms)))
+        WitnessTrace(
+            name, tuple(_ticks(counted, [(valuations[place], place) for place in run], atoms))
+        )
         for name, run in _runs(counted)
     )
 
@@ -85,7 +87,7 @@ def _runs(counted: Automaton) -> Iterator[tuple[str, tuple[int, ...]]]:
 
 def _ticks(
     counted: Automaton, run: Sequence[tuple[tuple[bool, ...], int]], atoms: Sequence[str]
-) -> Iterator[Ticks]:
+) -> Iterator[RepeatedTick]:
     """The run with the verdicts after each of its ticks."""
     state, told = 0, list[tuple[tuple[bool, ...], str, bool]]()
     for values, place in run:
@@ -97,4 +99,4 @@ def _ticks(
             told.append((values, counted.verdicts[state], finite))
     for (values, verdict, finite), some in groupby(told):
         named = dict(zip(atoms, values, strict=True))
-        yield Ticks(len([*some]), named, verdict, finite)
+        yield RepeatedTick(len([*some]), named, verdict, finite)

@@ -2,11 +2,11 @@
 
 import pytest
 
+from fretish.ambiguities import ambiguity_warnings
 from fretish.diagnostics.diagnostic import Severity
 from fretish.diagnostics.rendering import render_all
 from fretish.diagnostics.source import Source
 from fretish.parser import parse
-from fretish.pitfalls import surprises
 from fretish.syntax import Sentence
 from tests.each import each
 from tests.meaning import COUNTING, TIMINGS
@@ -15,7 +15,7 @@ from tests.meaning import COUNTING, TIMINGS
 def codes(text: str) -> list[str]:
     sentence = parse(Source("r.fret", text).span())
     assert isinstance(sentence, Sentence), sentence
-    found = list(surprises(sentence))
+    found = list(ambiguity_warnings(sentence))
     assert {diagnostic.severity for diagnostic in found} <= {Severity.WARNING}
     return [diagnostic.code.number for diagnostic in found]
 
@@ -23,7 +23,7 @@ def codes(text: str) -> list[str]:
 def warnings_of(text: str) -> str:
     sentence = parse(Source("r.fret", text).span())
     assert isinstance(sentence, Sentence), sentence
-    return render_all(list(surprises(sentence)))
+    return render_all(list(ambiguity_warnings(sentence)))
 
 
 # Whole texts ----------------------------------------------------------------------------------

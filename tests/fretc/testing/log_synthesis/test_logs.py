@@ -9,7 +9,7 @@ import pytest
 from compiler.project.folder import Project, load
 from fretc.analysis.assumptions import assumptions
 from fretc.testing.assembly import jobs, suite
-from fretc.testing.staging.logs import StagedTest, logs
+from fretc.testing.log_synthesis.logs import StagedTest, logs
 
 BINDINGS = """
 [clock]

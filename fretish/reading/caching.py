@@ -18,7 +18,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def remembered(function: Callable[P, R]) -> Callable[P, R]:
+def cache_by_identity(function: Callable[P, R]) -> Callable[P, R]:
     """The function, called once for the same arguments; they are frozen and given by position."""
     known: dict[tuple[int, ...], tuple[tuple[object, ...], R]] = {}
 

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from fretc.logs.signals.measures import Scope
 from fretc.logs.signals.propositions import FALSE, TRUE, UNKNOWN, truth
-from fretc.testing.staging.contents import Choice, choices
-from fretc.testing.staging.messages import Content, Field, NoStageError, field, message
-from fretc.testing.staging.ticks import Course, Part, course, part
+from fretc.testing.log_synthesis.contents import Choice, choices
+from fretc.testing.log_synthesis.messages import Content, Field, NoStageError, field, message
+from fretc.testing.log_synthesis.ticks import Course, Part, course, part
 from fretc.testing.suite import Test
 from fretish.bindings.declarations import Declarations, Path, Signal
 from monitors.kernel import Monitor
@@ -27,7 +27,7 @@ _STATES = {False: FALSE, None: UNKNOWN, True: TRUE}
 
 
 @dataclass(frozen=True, slots=True)
-class Spoken:
+class SyntheticMessage:
     """One message."""
 
     topic: str
@@ -37,15 +37,15 @@ class Spoken:
 
 
 @dataclass(frozen=True, slots=True)
-class Staged:
+class SyntheticLog:
     """All messages of a log, by their times."""
 
     lead: int
     """Ticks before those of the test."""
-    messages: tuple[Spoken, ...]
+    messages: tuple[SyntheticMessage, ...]
 
 
-def staged(test: Test, declarations: Declarations, monitor: Monitor) -> Staged:
+def staged(test: Test, declarations: Declarations, monitor: Monitor) -> SyntheticLog:
     """The messages of a test.
 
     Args:
@@ -70,7 +70,7 @@ def staged(test: Test, declarations: Declarations, monitor: Monitor) -> Staged:
     stage = _Stage(parts, signals, {each.name: field(each) for each in signals})
     found = course(test, parts, monitor)
     contents = stage.contents(test, found)
-    return Staged(found.lead, tuple(_spoken(stage, contents, clock.period, declarations)))
+    return SyntheticLog(found.lead, tuple(_spoken(stage, contents, clock.period, declarations)))
 
 
 class _Stage:
@@ -180,7 +180,7 @@ class _Stage:
 
 def _spoken(
     stage: _Stage, contents: Sequence[Sequence[Choice]], period: int, declarations: Declarations
-) -> Iterator[Spoken]:
+) -> Iterator[SyntheticMessage]:
     """All topics, tick by tick; what is unknown by silence has none before it for long enough."""
     topics = dict.fromkeys(signal.path.topic for signal in stage.signals)
     ticks = {topic: _speaking(stage, topic, contents, period) for topic in topics}
@@ -222,7 +222,7 @@ def _speaking(
 
 def _of_tick(
     stage: _Stage, topic: str, chosen: Sequence[Choice], tick: int, period: int
-) -> Iterator[Spoken]:
+) -> Iterator[SyntheticMessage]:
     """The message of a tick, before it as often as its age asks for."""
     own = {
         signal: choice
@@ -238,13 +238,13 @@ def _of_tick(
         contents[signal.path] = choice.content
     for number in reversed(range(times)):
         time = EPOCH + tick * period - number * period // times
-        yield Spoken(topic, name, time, message(name, time, contents))
+        yield SyntheticMessage(topic, name, time, message(name, time, contents))
 
 
-def _pulse(declarations: Declarations, topics: Mapping[str, None], time: int) -> Spoken:
+def _pulse(declarations: Declarations, topics: Mapping[str, None], time: int) -> SyntheticMessage:
     """A message of another topic, so that the log lasts where nothing else is said."""
     for signal in declarations.signals.values():
         if signal.path.topic not in topics and signal.type is not None:
             name = field(signal).message
-            return Spoken(signal.path.topic, name, time, message(name, time, {}))
+            return SyntheticMessage(signal.path.topic, name, time, message(name, time, {}))
     raise NoStageError("nothing is said at its first or last tick, so no log would have that tick")

@@ -26,9 +26,9 @@ from compiler.project.folder import Project
 from fretc.audit.evidence.schema import Result
 from fretc.audit.many_logs import audited
 from fretc.audit.plan import Plan, monitored_requirements, planned
-from fretc.audit.pool import Killed, each
+from fretc.audit.pool import WorkerDied, each
 from fretc.campaigns.campaign import recorded
-from fretc.testing.staging.variation import varied
+from fretc.testing.log_synthesis.variation import varied
 from fretc.testing.suite import Met, Obligation, Polarity, Suite
 from simulation.recording import TOPICS
 from simulation.world.scenario import Expectations, Scenario, load, names
@@ -125,7 +125,7 @@ def search(
             ]
             with closing(each(function, batch, jobs)) as done:
                 for place, one in done:
-                    if isinstance(one, Killed):
+                    if isinstance(one, WorkerDied):
                         raise RuntimeError(f"the process of a mission was killed: {one}")
                     known.append((batch[place], one))
                     _note(found, aims, batch[place], one)

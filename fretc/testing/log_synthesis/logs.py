@@ -14,8 +14,8 @@ from compiler.project.folder import Project
 from compiler.targets.python import monitor as monitors
 from fretc.audit.many_logs import audited
 from fretc.audit.plan import Plan, planned
-from fretc.testing.staging.messages import NoStageError
-from fretc.testing.staging.stage import EPOCH, Staged, staged
+from fretc.testing.log_synthesis.messages import NoStageError
+from fretc.testing.log_synthesis.synthetic_log import EPOCH, SyntheticLog, staged
 from fretc.testing.suite import Test
 from fretish.diagnostics.diagnostic import Diagnostic
 from monitors.kernel import Monitor
@@ -98,7 +98,7 @@ def _expected(test: Test, plan: Plan) -> str:
     return str(end if test.verdict == INCONCLUSIVE else test.verdict)
 
 
-def _write(stage: Staged, test: Test, path: Path) -> None:
+def _write(stage: SyntheticLog, test: Test, path: Path) -> None:
     topics = {each.topic: Topic(each.topic, each.type) for each in stage.messages}
     about = {
         "test": test.name,

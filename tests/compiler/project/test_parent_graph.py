@@ -6,7 +6,7 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.project.ancestry import circles, unknown_parents, without_hazard
+from compiler.project.parent_graph import cycles, unknown_parents, without_hazard
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 
@@ -20,7 +20,7 @@ def written(parents: Mapping[str, str]) -> list[Requirement]:
 
 
 def messages(parents: Mapping[str, str]) -> list[str]:
-    return [diagnostic.message for diagnostic in circles(written(parents))]
+    return [diagnostic.message for diagnostic in cycles(written(parents))]
 
 
 def test_a_circle_is_shown_once_and_whole() -> None:

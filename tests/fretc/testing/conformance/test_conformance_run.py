@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from fretc.testing.conformance.findings import Failure
 from fretc.testing.suite import Repeat
 from fretc.testing.words import Word, defined, letters
@@ -15,7 +15,7 @@ from tests.effort import some
 from tests.fretc.testing.controllers import ASSUMED, FAULTS, RULES, program, seen_of
 
 
-def is_broken(rule: Formalized, rows: tuple[Repeat, ...]) -> list[bool]:
+def is_broken(rule: FormalizedRequirement, rows: tuple[Repeat, ...]) -> list[bool]:
     """Whether some demand is broken at each tick or before it, by the definition."""
     ticks = [row.values for row in rows for _ in range(row.count)]
     columns = {

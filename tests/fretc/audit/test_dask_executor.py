@@ -19,9 +19,9 @@ from typing import Any
 import pytest
 
 from compiler.project.folder import load
-from compiler.project.paths import beside, requirement_files
-from fretc.audit import fleet
-from fretc.audit.many_logs import Audit, Engine, LogAudit, audit_logs
+from compiler.project.paths import requirement_files, sibling_path
+from fretc.audit import dask_executor
+from fretc.audit.many_logs import Audit, Engine, LogResult, audit_logs
 from fretc.audit.plan import Plan, packed, planned, unpacked
 from fretish.diagnostics import extras
 from fretish.diagnostics.diagnostic import Diagnostic
@@ -48,7 +48,7 @@ def local_cluster(**options: Any) -> Any:
 @pytest.fixture(autouse=True)
 def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
     """On a busy machine a worker takes long to begin, and so does the one after a killed one."""
-    monkeypatch.setattr(fleet, "PATIENCE", LONG)
+    monkeypatch.setattr(dask_executor, "PATIENCE", LONG)
 
 
 @pytest.fixture(scope="module")
@@ -81,13 +81,13 @@ def tables() -> dict[Path, bytes]:
 def plan() -> Plan:
     files = requirement_files("requirements")
     assert not isinstance(files, Diagnostic)
-    result = planned(load(files, beside("requirements", "bindings.toml")))
+    result = planned(load(files, sibling_path("requirements", "bindings.toml")))
     assert isinstance(result, Plan)
     return result
 
 
 def engine(cluster: Any) -> Engine:
-    result = fleet.engine(cluster.scheduler_address.replace("tcp", "dask"), 2)
+    result = dask_executor.engine(cluster.scheduler_address.replace("tcp", "dask"), 2)
     assert not isinstance(result, Diagnostic)
     return result
 
@@ -97,11 +97,11 @@ def kill(cluster: Any) -> None:
     os.kill(next(iter(cluster.workers.values())).pid, signal.SIGKILL)
 
 
-def deadly(plan: bytes, log: str, folder: str, edition: str) -> LogAudit | str:
+def deadly(plan: bytes, log: str, folder: str, edition: str) -> LogResult | str:
     """What a worker does, which knows of no patch: one log kills it."""
     if log == LOGS[3]:
         os.kill(os.getpid(), signal.SIGKILL)
-    return fleet._work(plan, log, folder, edition)
+    return dask_executor._work(plan, log, folder, edition)
 
 
 def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
@@ -112,7 +112,7 @@ def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
 
 @pytest.mark.parametrize("status", ["lost", "pending"])
 def test_a_result_that_dies_with_its_worker_is_made_again(status: str) -> None:
-    assert fleet._result(SimpleNamespace(status=status)) is None
+    assert dask_executor._result(SimpleNamespace(status=status)) is None
 
 
 def test_a_worker_whose_own_folder_is_gone_finds_the_logs(tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_a_worker_whose_own_folder_is_gone_finds_the_logs(tmp_path: Path) -> Non
     with contextlib.chdir(tmp_path):
         os.chdir(gone)
         gone.rmdir()
-        with fleet._in(str(folder)):
+        with dask_executor._in(str(folder)):
             assert Path.cwd() == folder
 
 
@@ -145,7 +145,7 @@ def test_a_worker_that_is_killed_loses_nothing_and_counts_nothing_twice(
     here = audit_logs(plan(), LOGS)
     names: list[str] = []
 
-    def tell(log: str, audited: LogAudit) -> None:
+    def tell(log: str, audited: LogResult) -> None:
         if not names:
             kill(cluster)
         names.append(log)
@@ -160,7 +160,7 @@ def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
     fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     here = audit_logs(plan(), LOGS[:5])
-    monkeypatch.setattr(fleet, "_work", deadly)
+    monkeypatch.setattr(dask_executor, "_work", deadly)
     monkeypatch.setattr(cluster.scheduler, "allowed_failures", 1)
     there = audit_logs(plan(), LOGS[:5], engine(cluster))
     assert isinstance(here, Audit)
@@ -182,7 +182,7 @@ def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
 def test_a_worker_with_another_fretc_is_refused(
     fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(fleet, "edition", lambda: "another")
+    monkeypatch.setattr(dask_executor, "build_id", lambda: "another")
     diagnostic = audit_logs(plan(), LOGS[:2], engine(cluster))
     assert isinstance(diagnostic, Diagnostic)
     assert diagnostic.code.number == "F911"
@@ -195,7 +195,7 @@ def test_a_worker_without_fretc_is_refused(
     def work(*_: object) -> None:
         raise ModuleNotFoundError("No module named 'compiler'")
 
-    monkeypatch.setattr(fleet, "_work", work)
+    monkeypatch.setattr(dask_executor, "_work", work)
     diagnostic = audit_logs(plan(), LOGS[:2], engine(cluster))
     assert isinstance(diagnostic, Diagnostic)
     assert (diagnostic.code.number, diagnostic.message) == (
@@ -207,7 +207,7 @@ def test_a_worker_without_fretc_is_refused(
 def test_a_scheduler_that_is_not_there_is_told(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(fleet, "PATIENCE", 1)
+    monkeypatch.setattr(dask_executor, "PATIENCE", 1)
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         address = f"dask://127.0.0.1:{free.getsockname()[1]}"
@@ -220,7 +220,7 @@ def test_a_scheduler_that_is_not_there_is_told(
 
 
 def test_a_scheduler_without_workers_is_told(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fleet, "PATIENCE", 1)
+    monkeypatch.setattr(dask_executor, "PATIENCE", 1)
     with local_cluster(n_workers=0, dashboard_address="127.0.0.1:0", silence_logs=60) as empty:
         run = fretc(
             "audit", *LOGS, "--engine", empty.scheduler_address.replace("tcp", "dask")
@@ -292,7 +292,7 @@ def test_nobody_else_on_the_machine_is_let_into_a_cluster_of_its_own() -> None:
     """Who can connect can execute code as the one who audits."""
     from distributed import Client, Security
 
-    with fleet._own_cluster(1) as client:
+    with dask_executor._own_cluster(1) as client:
         address = client.scheduler.address
         assert address.startswith("tls://127.0.0.1:")
         plain = address.replace("tls", "tcp")
@@ -311,7 +311,7 @@ def test_nobody_else_on_the_machine_is_let_into_a_cluster_of_its_own() -> None:
 
 @pytest.mark.slow
 def test_a_cluster_of_its_own_has_no_pages() -> None:
-    with fleet._own_cluster(1) as client:
+    with dask_executor._own_cluster(1) as client:
         port = client.scheduler_info()["services"].get("dashboard")
         for path in ("/info/main/workers.html", "/json/counts.json", "/metrics", "/health"):
             with pytest.raises(OSError, match="404"):

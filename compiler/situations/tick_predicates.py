@@ -19,16 +19,16 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import assert_never
 
-from compiler.formalization.formalized import Formalized
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import TRAITS, Demand, Kind, Obligation, Trait, obligation
-from compiler.formalization.past import Stage, staged
+from compiler.formalization.past import ScopeFormulas, scope_formulas
 from compiler.formalization.predicates import Past
 from compiler.logic import formula as f
 from fretish.syntax import ConditionKind, ScopeKind
 
 
 @dataclass(frozen=True)
-class Facts:
+class TickPredicates:
     """Facts of a tick, over the atoms of the sentence."""
 
     whole: Obligation
@@ -36,9 +36,9 @@ class Facts:
     """Whether distances are exact after a missed deadline, too; see above."""
 
     @cached_property
-    def stage(self) -> Stage:
+    def stage(self) -> ScopeFormulas:
         """Where the sentence is enforced, and where its demands begin."""
-        return staged(self.whole)
+        return scope_formulas(self.whole)
 
     @property
     def demand(self) -> Demand:
@@ -262,6 +262,6 @@ class Facts:
         return self.waiting if Trait.STOPS in TRAITS[self.demand.kind] else f.FALSE
 
 
-def facts(rule: Formalized, *, exact: bool = False) -> Facts:
+def facts(rule: FormalizedRequirement, *, exact: bool = False) -> TickPredicates:
     """Of a rule, its temporal predicates read as formulas of the past."""
-    return Facts(obligation(rule.sentence, rule.ticks or 0, Past()), exact)
+    return TickPredicates(obligation(rule.sentence, rule.ticks or 0, Past()), exact)

@@ -18,7 +18,7 @@ Run = tuple[Letter, int]
 
 
 @dataclass(frozen=True, slots=True)
-class Play:
+class GameTrace:
     """Letters, tick by tick."""
 
     runs: tuple[Run, ...]
@@ -71,7 +71,7 @@ class Counterstrategy:
         self._game, self._traps, self._budget = game, solution.traps, budget
         self._course = game.alphabet.course(budget)
 
-    def play(self) -> Play:
+    def play(self) -> GameTrace:
         """From the initial state to a breach, or round and round without what must come.
 
         Raises:
@@ -87,7 +87,7 @@ class Counterstrategy:
             self._budget.check()
             key = (promise, *state.values(), *(self._course.last if self._course else ()))
             if key in seen:
-                return Play(runs.all, seen[key], before, self._numbers)
+                return GameTrace(runs.all, seen[key], before, self._numbers)
             seen[key] = runs.ticks
             if self._course is not None and runs.ticks > _MOST_NUMBERS:
                 raise NoPlayError(
@@ -98,7 +98,7 @@ class Counterstrategy:
             options = self._options(state, inputs)
             if options == bdd.false():
                 runs.add(self._followed(inputs | self._breach(state, inputs)))
-                return Play(runs.all, None, state, self._numbers)
+                return GameTrace(runs.all, None, state, self._numbers)
             letter = self._followed(inputs | self._resistance(options, state, inputs, trap))
             before, state = state, self._game.transition.next(bdd.point({**state, **letter}))
             stays = runs.add(letter) > _LONG and self._traps[trap].inputs is not None

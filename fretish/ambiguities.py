@@ -17,7 +17,7 @@ _ENDS = (
 """Scopes whose intervals end before the run does, and that do not negate the timing."""
 
 
-def surprises(sentence: s.Sentence) -> Iterator[Diagnostic]:
+def ambiguity_warnings(sentence: s.Sentence) -> Iterator[Diagnostic]:
     """F204-F208, each with what is meant and how to say the other thing."""
     yield from _edge(sentence.condition)
     if s.timing_key(sentence) == "null":

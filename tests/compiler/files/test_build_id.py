@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from compiler.files import edition as module
-from compiler.files.edition import edition
+from compiler.files import build_id as module
+from compiler.files.build_id import build_id
 
 ROOT = Path(__file__).parents[3]
 
@@ -29,11 +29,11 @@ def copy(copied: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def edition_now() -> str:
-    return edition.__wrapped__()
+    return build_id.__wrapped__()
 
 
 def test_a_copy_is_the_same_edition(copy: Path) -> None:
-    assert edition_now() == edition()
+    assert edition_now() == build_id()
 
 
 @pytest.mark.parametrize(
@@ -42,14 +42,14 @@ def test_a_copy_is_the_same_edition(copy: Path) -> None:
 def test_a_changed_text_is_another_edition(copy: Path, name: str) -> None:
     text = (copy / name).read_bytes()
     (copy / name).write_bytes(text + b"\n")
-    assert edition_now() != edition()
+    assert edition_now() != build_id()
     (copy / name).write_bytes(text)
-    assert edition_now() == edition()
+    assert edition_now() == build_id()
 
 
 def test_a_file_more_is_another_edition(copy: Path) -> None:
     (copy / "monitors/more.py").touch()
-    assert edition_now() != edition()
+    assert edition_now() != build_id()
     (copy / "monitors/more.py").unlink()
 
 

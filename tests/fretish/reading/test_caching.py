@@ -1,7 +1,7 @@
 from dataclasses import dataclass
 
-from fretish.reading import memory
-from fretish.reading.memory import remembered
+from fretish.reading import caching
+from fretish.reading.caching import cache_by_identity
 
 
 @dataclass(frozen=True)
@@ -12,7 +12,7 @@ class Thing:
 def test_a_value_is_computed_once_for_the_very_same_things() -> None:
     calls: list[tuple[Thing, int]] = []
 
-    @remembered
+    @cache_by_identity
     def value(thing: Thing, number: int) -> str:
         calls.append((thing, number))
         return thing.name
@@ -23,9 +23,9 @@ def test_a_value_is_computed_once_for_the_very_same_things() -> None:
 
 
 def test_things_that_are_gone_are_not_taken_for_others() -> None:
-    @remembered
+    @cache_by_identity
     def name(thing: Thing) -> str:
         return thing.name
 
-    names = [name(Thing(str(i))) for i in range(2 * memory._MOST)]
-    assert names == [str(i) for i in range(2 * memory._MOST)]
+    names = [name(Thing(str(i))) for i in range(2 * caching._MOST)]
+    assert names == [str(i) for i in range(2 * caching._MOST)]
