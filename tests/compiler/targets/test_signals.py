@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import settings
 
 from fretc.logs.signals.propositions import Steps, truth_values
 from fretc.logs.signals.samples import EXACT, Values
@@ -26,12 +25,13 @@ from fretish.clock import Clock
 from fretish.diagnostics.source import Source
 from fretish.units import ONE
 from monitors.kernel.verdicts import Truth
+from tests.effort import FULL
 from tests.emitting import rule
 from tests.signal_policies import Case, audited_truth, collected, edge_cases, numbered
 from tests.signal_programs import LANGUAGES, Language, c, packed
 
 TRUTHS: tuple[Truth, ...] = (False, True, None)
-MANY = 20 * max(1, settings().max_examples // 500)
+MANY = 80 if FULL else 10
 
 
 @cache

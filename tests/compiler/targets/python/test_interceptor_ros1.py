@@ -11,6 +11,7 @@ import pytest
 from compiler.files.text_files import write as deliver
 from compiler.targets.python.interceptor import text
 from fretish.bindings.declarations import Form, Interception
+from tests.effort import FULL
 from tests.programs import DEBIANS_PATH
 from tests.ros1 import Ended, Ros, World, ended, ros, ros1_or_skip, until
 
@@ -62,7 +63,7 @@ def test_a_signal_ends_the_node_and_the_last_that_the_wheels_hear_is_zero(
     path = file(tmp_path, node)
     here.master()
     world = here.world("world")
-    for _ in range(5):
+    for _ in range(5 if FULL else 2):
         started = here.node(path)
         moving(world)
         assert ended(started, number) == Ended(0, "")

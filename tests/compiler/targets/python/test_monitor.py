@@ -29,6 +29,7 @@ from monitors.kernel.verdicts import Truth, Verdict
 from monitors.loading import load
 from tests import fret_notation as fret
 from tests import meaning
+from tests.effort import FULL, some
 from tests.monitoring import emitted, monitor, over, rule, steps
 from tests.strategies import Template, templates, three_valued
 
@@ -52,8 +53,9 @@ def drawn(names: Sequence[str], length: int, count: int, seed: str) -> list[Colu
 
 def some_traces(template: Template) -> Iterator[Columns]:
     names = template.columns
-    yield from fret.all_traces(names, 9 // len(names) if len(names) < 4 else 2)
-    yield from drawn(names, 8, 25, repr(template))
+    every = fret.all_traces(names, 9 // len(names) if len(names) < 4 else 2)
+    yield from some(every, 5)  # no power of two: each value at each tick
+    yield from drawn(names, 8, 25 if FULL else 12, repr(template))
 
 
 def cut(columns: Columns, length: int) -> Columns:
