@@ -60,11 +60,15 @@ class Printer(Statements):
         yield f"{at} = ({at} == {ring.length - 1}u) ? 0u : ({at} + 1u);"
 
     def left(self, deadline: Deadline | None, is_open: Value) -> str:
-        """The ticks to a deadline; -1: there is none ahead."""
+        """The ticks to a deadline; -1: there is none ahead.
+
+        A counter that requirements share goes on behind the deadlines of some of them.
+        """
         if deadline is None:
             return "-1"
-        conditions = f"{self.grouped(is_open)} & (rail->{deadline.counter} >= 0)"
-        return f"({conditions}) ? ({deadline.horizon} - rail->{deadline.counter}) : -1"
+        counter, horizon = f"rail->{deadline.counter}", deadline.horizon
+        ahead = f"({counter} >= 0) & ({counter} <= {horizon})"
+        return f"({self.grouped(is_open)} & {ahead}) ? ({horizon} - {counter}) : -1"
 
 
 def _members(cell: Cell) -> Iterable[Member]:

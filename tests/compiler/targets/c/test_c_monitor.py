@@ -115,6 +115,17 @@ def test_every_template_tells_the_same_at_each_tick(scope: str, tmp_path: Path) 
     hold(machine, program, *(rows(choose, width, choose.choice([6, 12, 60])) for _ in range(24)))
 
 
+def test_a_counter_that_requirements_share_tells_each_its_own_deadline(tmp_path: Path) -> None:
+    """It goes on behind the earlier deadline: there `left` is -1, as where nothing is open."""
+    within, after = (f"upon p the sw shall {t} 2 ticks satisfy q" for t in ("within", "after"))
+    rules = [rule(within, "R1"), rule(after, "R2")]
+    program = compiled(tmp_path, "gcc", Source.of(*rules))
+    trace = [(False, False), (True, False), *[(True, False)] * 4]
+    told = program.run((0, trace))[1][0]
+    assert [one.certain.left for one, _ in told] == [-1, 2, 1, 0, -1, -1]
+    hold(monitors(rules), program, trace)
+
+
 _EXPRESSIONS = (
     "p", "!q", "(p & s)", "(m xor q)", "(p <-> s)", "preBool(true, q)", "persisted({hi}, q)",
     "occurred({hi}, (p | m))", "persisted({lo}, {hi}, p)", "occurred({lo}, {hi}, s)",
