@@ -101,20 +101,17 @@ LIKE_OTHERS = () if FULL else ("a table of many parts", "ros1, an array of 10^9 
 """Read as others are, and as long."""
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", [kind for kind in TEXTS if kind not in LIKE_OTHERS])
 def test_a_text_is_read_or_refused_within_the_limits(hold: Hold, kind: str) -> None:
     hold(TEXTS[kind], next(iter(TEXTS[kind])))
 
 
-@pytest.mark.slow
 def test_a_chain_of_xor_that_ajpf_would_have_to_write_out_is_too_large(hold: Hold) -> None:
     chain = " xor ".join(f"p{i}" for i in range(24))
     text = hold({"r.fret": FRET.replace("q", chain)}, "r.fret", "--emit", "ajpf")
     assert "F670 the property of r has more than 100000 operators" in text
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("timing", ["within", "for", "after"])
 def test_a_duration_without_end_is_not_drawn(hold: Hold, timing: str) -> None:
     sentence = f"whenever p the sw shall {timing} 999999999999999 ticks satisfy q"
@@ -205,7 +202,6 @@ ENDLESS = (
 )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("statements", "message"),
     [
@@ -257,7 +253,6 @@ FOLDERS = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("text", FOLDERS.values(), ids=FOLDERS)
 def test_the_description_of_a_run_is_read_or_refused_within_the_limits(
     hold: Hold, text: str

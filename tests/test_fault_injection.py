@@ -122,6 +122,7 @@ def test_what_is_drawn_of_the_product() -> None:
         assert is_whole(fault, text), fault
 
 
+@pytest.mark.slow
 def test_each_wrong_answer_that_was_there_is_one_of_today() -> None:
     faults = list(known(ROOT))
     assert 30 <= len(faults) <= 100

@@ -235,13 +235,11 @@ def test_the_kernel_needs_nothing_of_ours_but_itself() -> None:
         assert imported(module) <= {"monitors.kernel"}, module
 
 
-@pytest.mark.slow
 def test_the_interceptor_needs_the_standard_library_only() -> None:
     """Its text is copied into every emitted one."""
     assert libraries(ROOT / "monitors/interceptor.py") <= {*sys.stdlib_module_names}
 
 
-@pytest.mark.slow
 def test_the_ticks_need_the_standard_library_only() -> None:
     """Their text is copied into every emitted node."""
     assert libraries(ROOT / "monitors/ticking.py") <= {*sys.stdlib_module_names}

@@ -31,6 +31,7 @@ def texts(*folders: str) -> Iterator[tuple[str, str]]:
                 yield name, path.read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_nothing_else_looks_for_a_program_or_skips_a_test() -> None:
     found = [
         name
@@ -40,6 +41,7 @@ def test_nothing_else_looks_for_a_program_or_skips_a_test() -> None:
     assert found == []
 
 
+@pytest.mark.slow
 def test_no_test_starts_a_program_that_may_be_missing_by_its_name() -> None:
     """`installed(NAME)` starts it, and skips the test where it is missing."""
     found = [

@@ -25,6 +25,7 @@ SCHEMAS |= {"watch": json_lines.schema()}
 SCHEMAS |= {"conformance": conformance.schema()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "made"), SCHEMAS.items())
 def test_a_schema_is_that_of_its_types(
     name: str, made: dict[str, Any], request: pytest.FixtureRequest

@@ -141,6 +141,7 @@ def tables(module: ast.Module, names: Names) -> Iterator[str]:
                     yield ast.unparse(target)
 
 
+@pytest.mark.slow
 @each("path", SOURCES)
 def test_nobody_asks_for_some_timings_alone(path: Path) -> None:
     text, here = path.read_text(encoding="utf-8"), path.relative_to(ROOT).as_posix()

@@ -264,6 +264,7 @@ READERS: Mapping[str, Callable[[str, Table], object]] = {
 }
 
 
+@pytest.mark.slow
 @each("row", ROWS)
 def test_an_example_is_read_and_a_default_is_what_is_meant_without_it(
     row: tuple[str, str, str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -27,6 +27,7 @@ def requests(topic: str, stops: range, *, delay: int = 0, until: int = SECONDS *
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("other", "status", "python", "cpp"),
     [

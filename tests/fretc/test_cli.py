@@ -501,6 +501,7 @@ def test_requirements_come_as_people_count(fretc: Fretc) -> None:
     assert [r.id for r in load("monitors.py", text).REQUIREMENTS] == ["R1", "R2", "R10"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", [*cli.commands, ""])
 def test_h_is_help_everywhere(fretc: Fretc, command: str) -> None:
     name = [] if not command else ["x.fret"] if command == DEFAULT else [command]

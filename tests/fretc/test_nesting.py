@@ -68,6 +68,7 @@ def test_twice_the_size_costs_twice_as_much(fretc: Fretc, shape: str, command: s
     assert large - small < 2.5 * (small - least)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "shape"), some(product(["check", "explain"], ["and, or", "xor", "arithmetic"]), 2)
 )

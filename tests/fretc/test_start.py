@@ -24,6 +24,7 @@ main()
 """Ctrl-C while the module of this number is imported."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [1, 2, 60, 200])
 def test_an_interruption_while_modules_are_imported(number: int, tmp_path: Path) -> None:
     sentence = tmp_path / "r1.fret"

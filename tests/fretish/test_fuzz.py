@@ -33,6 +33,7 @@ def test_a_thousand_levels_of_operators_are_formalized_or_told_to_be_too_deep() 
     assert rule is not None or [d.code for d in diagnostics] == [Code.TOO_DEEP]
 
 
+@pytest.mark.slow
 def test_more_levels_than_any_pass_has_room_for_are_told() -> None:
     diagnostic = read("!(" * 5_000 + "p" + ")" * 5_000)
     assert isinstance(diagnostic, Diagnostic)

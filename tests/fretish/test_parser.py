@@ -129,6 +129,7 @@ def test_a_published_requirement_has_its_keys(row: dict[str, Any]) -> None:
     assert keys(read(row["fretish"])) == (row["scope"], row["condition"], row["timing"])
 
 
+@pytest.mark.slow
 @each("row", TEMPLATES)
 def test_a_sentence_of_the_template_table_has_its_keys(row: dict[str, Any]) -> None:
     assert keys(read(row["fretish"])) == (row["scope"], row["condition"], row["timing"])
@@ -429,6 +430,7 @@ def test_every_operator_under_every_operator_is_read_back() -> None:
                 assert response(expression(outer)) == outer
 
 
+@pytest.mark.slow
 def test_every_arithmetic_operator_under_every_other_is_read_back() -> None:
     operators: list[e.ArithmeticOperator] = ["+", "-", "*", "/", "mod", "^"]
     inner: list[e.Expression] = [e.Negation(x), e.Call("f", (x, y))]

@@ -81,6 +81,7 @@ def test_of_a_very_long_text_the_first_is_told() -> None:
     assert len(all_of("the sw shall satisfy p" + " and p" * 3_000)) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_mistakes_of_any_text_have_a_place_an_order_and_fixes_that_lead_on(seed: int) -> None:
     """Each safe fix takes away its own mistake, and brings no other one."""
@@ -103,6 +104,7 @@ def test_mistakes_of_any_text_have_a_place_an_order_and_fixes_that_lead_on(seed:
             )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_a_fix_gives_back_the_sentence_that_was_meant(seed: int) -> None:
     """Real sentences, as somebody would write them who is used to other languages.

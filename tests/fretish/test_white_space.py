@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -50,6 +51,7 @@ def tree(text: str) -> Sentence:
     return found
 
 
+@pytest.mark.slow
 @given(SENTENCES, st.data())
 def test_any_white_space_stands_for_any_other(text: str, data: st.DataObject) -> None:
     parts = re.split(r'("[^"]*")', text)  # a name in quotes stays as it is

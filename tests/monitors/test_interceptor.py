@@ -159,6 +159,7 @@ def test_each_function_states_what_it_promises(name: str) -> None:
     assert lines(getattr(interceptor, name), "post")
 
 
+@pytest.mark.slow
 @given(options, st.lists(events, max_size=20))
 @example(LATCHING, [STOP, GO])
 @example(Options(2, 0, 0, 0), [CommandHeard(FAST), STOP, GO, RING, RING, RING])

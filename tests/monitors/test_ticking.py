@@ -100,6 +100,7 @@ def pairs() -> tuple[list[Monitor], list[Monitor]]:
     return monitors(), monitors()
 
 
+@pytest.mark.slow
 @given(
     rows=rows,
     changes=st.lists(

@@ -54,6 +54,7 @@ def test_the_project_passes_its_check(fretc: Fretc) -> None:
     assert ran.err.endswith("\n10 requirements: 0 mistakes, 0 warnings\n")
 
 
+@pytest.mark.slow
 def test_the_good_drive_satisfies_all(audit: Audit) -> None:
     found = of_log(audit, "good")
     assert {id: r["verdict"] for id, r in found.items()} == dict.fromkeys(IDS, "satisfied")
@@ -106,6 +107,7 @@ def field(message: Any, path: str) -> Any:
     return int(message) if isinstance(message, bool) else message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["good", "planted"])
 def test_a_monitor_says_of_the_numbers_what_the_audit_says_of_the_log(
     name: str, logs: Mapping[str, Path], audit: Audit, tmp_path: Path, capsys: Any
@@ -139,6 +141,7 @@ def test_the_monitors_are_proved(file: str) -> None:
     assert [str(proof.result) for proof in proofs] == ["proved"]
 
 
+@pytest.mark.slow
 def test_the_report_shows_what_only_sentences_state(audit: Audit, tmp_path: Path) -> None:
     evidence = tmp_path / "evidence.json"
     evidence.write_text(audit.evidence, "utf-8")

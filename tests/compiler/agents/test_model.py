@@ -263,6 +263,7 @@ def test_a_belief_of_two_sources_may_outlive_one_of_them_or_not() -> None:
     assert outcomes(model, owned) == {(near, ()), (near, ("+near",))}
 
 
+@pytest.mark.slow
 def test_an_agent_with_too_much_to_do_has_too_many_states() -> None:
     """At each of its two actions comes another event: they are never all handled."""
     plans = "+near : {True} <- one, two; -near : {True} <- one, two;"

@@ -72,6 +72,7 @@ def test_the_windows_are_the_ticks_at_which_the_response_matters(
             assert drawn_for(picture, window) == mattering(drawn, picture, window), drawn
 
 
+@pytest.mark.slow
 def test_the_triggers_and_the_scope_are_those_of_the_definition() -> None:
     for drawn in templates((2,)):
         picture = diagram(rule(drawn.sentence))
@@ -119,6 +120,7 @@ def test_templates_that_share_a_picture_mean_the_same() -> None:
             assert {timing, dual} == {"never", "eventually"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [0, 1, 7, 100, 10_000])
 def test_any_bound_gives_a_picture_of_few_columns(n: int) -> None:
     for scope, timing in product(("", "in m mode"), ("within", "for", "after")):

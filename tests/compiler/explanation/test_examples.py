@@ -100,6 +100,7 @@ def test_a_monitor_decides_at_the_same_tick(scope: str) -> None:
                 assert decided == example.decided, (drawn, example)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", ["null", "in", "after", "onlyBefore"])
 def test_spot_judges_endless_traces_alike(scope: str) -> None:
     for drawn in every(scope, (1,)):
@@ -222,6 +223,7 @@ def test_a_reason_says_never_of_an_endless_run() -> None:
     assert why(made, prefix, loop) == ("triggered at tick 0, `q` is never true from that tick on")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_a_reason_can_be_given_for_every_short_trace(scope: str) -> None:
     for drawn in every(scope, (1,)):

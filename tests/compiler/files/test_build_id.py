@@ -32,10 +32,12 @@ def edition_now() -> str:
     return build_id.__wrapped__()
 
 
+@pytest.mark.slow
 def test_a_copy_is_the_same_edition(copy: Path) -> None:
     assert edition_now() == build_id()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["fretish/grammar.lark", "monitors/kernel/columns.py", "fretc/audit/many_logs.py"]
 )

@@ -68,6 +68,7 @@ def test_another_jinja_compiles_anew(root: Path, monkeypatch: pytest.MonkeyPatch
     assert compiles(monkeypatch)
 
 
+@pytest.mark.slow
 def test_a_file_that_ends_early_is_none(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rendered()
     whole = kept(root).read_bytes()

@@ -64,6 +64,7 @@ def test_what_a_shell_reads_is_the_name_and_no_option(names: list[str]) -> None:
     assert read == [f"./{name}" if name.startswith("-") else name for name in names]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", HOSTILE)
 def test_the_hashes_of_files_of_any_name_are_checked_and_nothing_else_happens(
     tmp_path: Path, name: str

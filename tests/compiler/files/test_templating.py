@@ -43,6 +43,7 @@ def by_definition(value: Any, indent: str = "") -> str:
     return opening + f"\n{inner}" + f",\n{inner}".join(parts) + f"\n{indent}" + closing
 
 
+@pytest.mark.slow
 @given(VALUES)
 @example(["x" * 96])
 @example(["x" * 97])

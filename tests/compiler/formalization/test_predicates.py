@@ -82,6 +82,7 @@ def test_the_formula_of_infinite_traces_says_what_that_of_fret_says(row: dict[st
     assert same_language(printing.future(rule(row["fretish"]).ft_infinite), row["ft_inf"])
 
 
+@pytest.mark.slow
 @each("row", [row for row in with_a("ft_fin") if not has_no_end(row)])
 def test_the_formula_of_finite_traces_says_what_that_of_fret_says(row: dict[str, Any]) -> None:
     ours = fret.parse(printing.future(rule(row["fretish"]).ft_finite))
@@ -313,6 +314,7 @@ def test_a_predicate_that_looks_ahead_means_what_it_says(case: tuple[str, str, s
         assert verdict == meant(trace, scope, place, AHEAD[text]), (sentence, trace)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", PLACES)
 def test_the_meaning_tells_traces_apart(place: str) -> None:
     """Neither verdict is rare: the comparisons above compare something."""

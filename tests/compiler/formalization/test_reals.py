@@ -111,6 +111,7 @@ def several(least: int, most: int) -> st.SearchStrategy[list[Linear]]:
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(several(1, 4))
 def test_a_valuation_is_possible_where_elimination_says_so(some: list[Linear]) -> None:
@@ -131,6 +132,7 @@ def test_a_valuation_is_possible_where_elimination_says_so(some: list[Linear]) -
             assert all(map(is_satisfiable, combinations(core, len(core) - 1)))
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(st.lists(linear(2, least=1), min_size=1, max_size=3, unique_by=lambda e: e.text))
 @example([Linear((2, 2), "=", Fraction(1))])
@@ -187,6 +189,7 @@ SENTENCES = (
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=12)
 @given(several(3, 3), st.sampled_from(SENTENCES))
 def test_numbers_make_every_trace_of_an_explanation(some: list[Linear], sentence: str) -> None:
@@ -242,6 +245,7 @@ class Shown:
     word: tuple[tuple[bool, ...], ...]
 
 
+@pytest.mark.slow
 @settings(max_examples=12)
 @given(several(2, 3), st.data())
 def test_another_counterexample_is_shown_where_numbers_make_one_and_none_is_lost(
@@ -266,6 +270,7 @@ def test_another_counterexample_is_shown_where_numbers_make_one_and_none_is_lost
     assert by_numbers(made, atoms, Shown, lambda _: None) == (None, "")
 
 
+@pytest.mark.slow
 def test_numbers_make_every_test_of_a_requirement() -> None:
     made = batch(rule(SENTENCES[0].format("2 * x > 6", "x < 2")), (), 60)
     assert made.tests

@@ -363,6 +363,7 @@ def states_with(verdict: Verdict, automaton: Automaton) -> list[State]:
     return [state for state, found in pairs if found == verdict]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", SMALL)
 def test_only_a_second_trigger_of_after_is_a_violation_before_a_demand_is_broken(n: int) -> None:
     """It forbids the response where the first demands it, and the scope must not end before."""
@@ -374,6 +375,7 @@ def test_only_a_second_trigger_of_after_is_a_violation_before_a_demand_is_broken
         assert lost == {-seen for seen in range(nearest + 1, n + 2)}, kind
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", SMALL)
 def test_nothing_is_broken_where_the_end_decides_and_there_is_none(n: int) -> None:
     unbreakable = {
@@ -388,6 +390,7 @@ def test_nothing_is_broken_where_the_end_decides_and_there_is_none(n: int) -> No
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", SMALL)
 def test_satisfied_is_said_where_no_trigger_can_come_any_more(n: int) -> None:
     """With a condition: only of a scope that is over, and of `finally` where nothing ends."""

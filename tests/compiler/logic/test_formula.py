@@ -151,6 +151,7 @@ def test_a_constructor_of_two_means_its_operator(name: str) -> None:
 INTERVALS = [f.Interval(lo, hi) for lo in range(4) for hi in (*range(lo, lo + 3), None)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ago", INTERVALS, ids=str)
 def test_a_constructor_of_the_past_means_its_operator_in_every_window(ago: f.Interval) -> None:
     for left in SMALL:
@@ -165,6 +166,7 @@ def test_a_constructor_of_the_past_means_its_operator_in_every_window(ago: f.Int
 FUTURE: Sequence[f.Formula] = (f.TRUE, f.FALSE, a, f.Not(a), b)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ahead", INTERVALS, ids=str)
 @pytest.mark.parametrize("loop", [0, 6, 10])
 def test_a_constructor_of_the_future_means_its_operator(ahead: f.Interval, loop: int) -> None:
@@ -221,6 +223,7 @@ def test_a_constructor_folds_what_is_free(built: f.Formula, expected: f.Formula)
     assert built == expected
 
 
+@pytest.mark.slow
 @given(st.lists(logic_formulas, min_size=2, max_size=40))
 def test_of_many_operands_each_stays_once_and_in_its_order(operands: list[f.Formula]) -> None:
     parts = [part for arg in operands for part in (arg.args if isinstance(arg, f.And) else (arg,))]

@@ -60,6 +60,7 @@ def value(text: str, numbers: Mapping[str, float]) -> bool:
     return bool(_COMPARE[op](a, b))
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(several)
 def test_a_valuation_is_possible_where_numbers_make_it_and_nowhere_else(some: list[str]) -> None:
@@ -73,6 +74,7 @@ def test_a_valuation_is_possible_where_numbers_make_it_and_nowhere_else(some: li
     assert valuations(some) == made
 
 
+@pytest.mark.slow
 @given(several)
 def test_each_exclusion_is_a_least_one(some: list[str]) -> None:
     for exclusion in exclusions({text: read(text) for text in some}, {}):
@@ -166,6 +168,7 @@ def as_bound(tree: e.Expression) -> e.Expression:
             return tree
 
 
+@pytest.mark.slow
 @example(["x >= 0.30000000000000000001", "x <= 0.3"], np.float64, np.float64)
 @example(["x <= 0.3", "y > 0.3", "y <= x"], np.float32, np.float64)
 @example(["x <= 16777217", "x >= 16777218"], np.float32, np.float32)
@@ -189,6 +192,7 @@ def test_no_sample_of_an_audit_makes_what_is_excluded(
         assert not holds.any(), exclusion
 
 
+@pytest.mark.slow
 def test_a_cut_search_excludes_less_and_nothing_wrong() -> None:
     some = [f"x{i} < x{i + 1}" for i in range(14)]
     assert not of(*some)
@@ -220,6 +224,7 @@ SHAPES: Mapping[str, Callable[[int], Sequence[str]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", SHAPES)
 def test_more_thresholds_cost_in_proportion(shape: str) -> None:
     def cost(size: int) -> int:

@@ -68,7 +68,6 @@ def test_the_last_tick_is_free_on_infinite_traces() -> None:
     assert not equivalent(f.LAST, f.FALSE)
 
 
-@pytest.mark.slow
 @examples(10)
 @given(st.lists(quoted_texts, min_size=2, max_size=2, unique=True))
 def test_an_atom_of_any_text_is_an_atom(texts: list[str]) -> None:
@@ -126,6 +125,7 @@ def test_a_formula_becomes_shorter(formula: f.Formula, text: str) -> None:
 # Bounds ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 @pytest.mark.parametrize("timing", ["within", "for", "after"])
 def test_a_long_bound_stays_one_operator(scope: str, timing: str) -> None:

@@ -3,6 +3,8 @@
 import random
 from dataclasses import replace
 
+import pytest
+
 from compiler.program.clocks import clocks, lengthened
 from compiler.program.instructions import Advance, Choose, Count
 from compiler.program.interpreter import initial, step
@@ -14,6 +16,7 @@ from tests.strategies import templates
 WITHIN = "whenever p the sw shall within 3 ticks satisfy q"
 
 
+@pytest.mark.slow
 def test_a_clock_is_as_old_as_the_open_demand() -> None:
     choose, found = random.Random(0), 0
     for template in templates((0, 1, 2, 3)):

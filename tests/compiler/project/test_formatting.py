@@ -163,6 +163,7 @@ def test_free_text_beside_a_sentence_keeps_no_file_from_being_written(fretc: Fre
 # The words of the writer ----------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("written", "canonical"),
     [
@@ -241,6 +242,7 @@ def test_a_formatted_sentence_says_the_same_in_stable_words() -> None:
         assert "\n" not in once, text
 
 
+@pytest.mark.slow
 @given(SENTENCES, st.integers(1, 100), st.sampled_from(["\n", "\r\n"]))
 def test_what_is_broken_anywhere_is_read_back_and_stays(text: str, length: int, end: str) -> None:
     long = text.replace("sw shall", f"sw{'w' * length} shall")

@@ -714,6 +714,7 @@ def test_half_of_a_character_is_no_internal_error(fretc: Fretc, place: str) -> N
     assert run.status in (0, 2)
 
 
+@pytest.mark.slow
 def test_a_long_sentence_is_read_whole(fretc: Fretc) -> None:
     sentence = f"the sw shall always satisfy {' & '.join(f'p{n}' for n in range(1500))}"
     assert len(sentence) > 10_000

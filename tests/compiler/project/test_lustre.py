@@ -131,6 +131,7 @@ def streams(inner: st.SearchStrategy[Stream]) -> st.SearchStrategy[Stream]:
     return delays | joins | negations
 
 
+@pytest.mark.slow
 @given(st.recursive(st.sampled_from([*RUN.items()]), streams, max_leaves=4))
 def test_a_delay_means_what_it_means_in_lustre(stream: Stream) -> None:
     text, values = stream

@@ -297,6 +297,7 @@ def test_outside_of_a_repository_settings_above_the_present_folder_do_not_hold(
     assert settings("../../a") == Settings(Path.cwd().parent)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["../outside.json", "link.json", "way", "{}/outside.json"])
 @pytest.mark.parametrize("option", ["--parents {}", "--parents={}", ""])
 def test_parents_leave_the_project_only_where_the_command_line_says_so(

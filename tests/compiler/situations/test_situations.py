@@ -131,7 +131,6 @@ def test_each_situation_is_come_by_or_cannot_be(scope: str) -> None:
         assert missing == impossible(drawn), drawn
 
 
-@pytest.mark.slow
 def test_no_key_is_given_twice() -> None:
     for drawn in templates((0, 2)):
         keys = [key for key, _ in of_demand(facts(rule(drawn.sentence)))]
@@ -160,6 +159,7 @@ def test_a_predicate_that_looks_back_is_read_as_it_is() -> None:
     assert evaluate(listed["unknown:response:q"], {"p": 0b1111, "q": 0}, 4) == 0b1100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("condition", ["", "upon p", "whenever p"])
 @pytest.mark.parametrize("timing", ["within", "for", "after"])
 @pytest.mark.parametrize("scope", ["", "in m mode", "only in m mode"])

@@ -413,6 +413,7 @@ def test_each_variable_comes_back_with_its_requirements(fretc: Fretc) -> None:
     assert sorted(found, key=str) == sorted(expected, key=str)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("field", "value"),
     [

@@ -16,6 +16,7 @@ SHARED |= {f"monitors{part}.{kind}" for part in ("", "_signals") for kind in ("c
 R1 = Path(__file__).parent.parent.parent.parent / "requirements"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", TARGETS)
 def test_the_papers_requirement(
     target: str, golden: Callable[[str, str], None], monkeypatch: pytest.MonkeyPatch

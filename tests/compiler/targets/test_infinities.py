@@ -125,6 +125,7 @@ bounds = st.builds(
 )
 
 
+@pytest.mark.slow
 @example(Bound(), [math.inf])
 @example(Bound(reduce="mean"), [HUGE, HUGE])
 @example(Bound(reduce="mean"), [1, HUGE, -HUGE])
@@ -176,6 +177,7 @@ def test_a_number_that_no_float_holds_is_unknown_where_nothing_says_what_it_mean
         assert monitor_of(Bound()).truths(*row) == (None,) * 4
 
 
+@pytest.mark.slow
 @needs_node
 def test_in_javascript_they_mean_the_same(tmp_path: Path) -> None:
     bounds_ = [

@@ -168,7 +168,6 @@ def test_node_runs_it(chunk: tuple[str, ...], tmp_path: Path) -> None:
     assert [row[0]["certain"]["breach"] for row in told] == [False] * len(chunk) + [True]
 
 
-@pytest.mark.slow
 @every_name
 def test_storm_reads_it(chunk: tuple[str, ...], tmp_path: Path) -> None:
     stormpy = package("stormpy")
@@ -289,6 +288,7 @@ IDS = "class int CON sem mtx T fretc Variable monitor_r1 pthread_mutex 1 self ma
 _ABOUT_P = "whenever p the sw shall within 3 ticks satisfy q"
 
 
+@pytest.mark.slow
 def test_an_id_is_no_name_of_the_run_time_in_python() -> None:
     for id in IDS:
         (text,) = emitted("monitor", _ABOUT_P, id).values()

@@ -106,6 +106,7 @@ def of_words() -> Declarations:
     return Declarations(Source("bindings.toml", ""), Clock(10**8), signals, named)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", LANGUAGES, ids=str)
 def test_words_durations_and_the_instants_of_a_tick(language: Language, tmp_path: Path) -> None:
     declarations = of_words()

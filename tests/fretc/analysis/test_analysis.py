@@ -56,6 +56,7 @@ def published(
     return sorted(found, key=lambda each: each.id)
 
 
+@pytest.mark.slow
 def test_the_finite_state_machine_has_three_components_and_five_conflicts() -> None:
     named = roles(FSM_INPUTS, ("pullup", "STATE", "SENSTATE"))
     found = analyze(published("FSM", FSM_CONSTANTS), named)
@@ -153,6 +154,7 @@ def _renamed(sentence: str, other: dict[str, str]) -> str:
     )
 
 
+@pytest.mark.slow
 def test_a_further_requirement_never_helps() -> None:
     for seed in range(60):
         (more, *rest) = drawn(("more", seed), most=4)
@@ -160,6 +162,7 @@ def test_a_further_requirement_never_helps() -> None:
             assert analyzed(*rest, more).verdict is UNREALIZABLE
 
 
+@pytest.mark.slow
 def test_a_conjunction_may_be_split() -> None:
     for seed in range(20):
         rest = drawn(("split", seed), most=2)
@@ -341,6 +344,7 @@ def test_the_environment_keeps_its_promises_while_it_wins() -> None:
     }
 
 
+@pytest.mark.slow
 def test_what_takes_too_long_comes_with_a_clue(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(IterativeSquaring, "is_due", lambda self: False)
     setting = staged(

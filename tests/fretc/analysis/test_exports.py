@@ -131,7 +131,6 @@ def test_a_published_set_has_its_published_answer(
     assert all(each["play"] for each in found["conflicts"])
 
 
-@pytest.mark.slow
 @full_only("seconds each")
 @pytest.mark.parametrize(
     ("without", "delayed", "answer"),

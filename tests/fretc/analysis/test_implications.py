@@ -186,6 +186,7 @@ def test_a_scope_that_never_is_is_told_with_what_excludes_it() -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_leaps_over_many_ticks_change_no_finding(monkeypatch: pytest.MonkeyPatch) -> None:
     for seed in range(SETS):
         sentences = (terse if seed % 2 else drawn)(("leaps", seed), most=3)

@@ -49,6 +49,7 @@ def test_what_is_open_since_when_and_until_when(sentences: tuple[str, ...], beca
     assert conflict.because == because
 
 
+@pytest.mark.slow
 def test_each_requirement_of_a_conflict_has_its_part() -> None:
     fought = 0
     for seed in range(40):

@@ -43,6 +43,7 @@ def test_the_weakest_assumption_of_each_family_is_suggested() -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("within", "hold"), [(0, 0), (0, 3), (1, 1), (2, 9), (5, 6)])
 def test_the_least_change_of_each_bound_is_suggested(within: int, hold: int) -> None:
     soon = "upon a the sw shall within {} satisfy x".format
@@ -56,6 +57,7 @@ def test_the_least_change_of_each_bound_is_suggested(within: int, hold: int) -> 
         assert synthesized(*changed(sentences, repair)), repair
 
 
+@pytest.mark.slow
 def test_long_bounds_are_repaired_as_short_ones_are() -> None:
     bound = 4000 if FULL else 100
     assert suggested(

@@ -54,6 +54,7 @@ CALLS: dict[str, tuple[Code, Callable[[fretc.Project], object]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CALLS)
 def test_it_is_refused_with_its_code(
     name: str,

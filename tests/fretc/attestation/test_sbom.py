@@ -36,6 +36,7 @@ def test_the_bill_has_its_schema_its_libraries_and_the_same_bytes_each_time(
     assert by_name["markupsafe"] in listed[by_name["jinja2"]]
 
 
+@pytest.mark.slow
 def test_the_closure_is_closed_and_reached_from_the_root() -> None:
     needs = closure()
     assert all(set(needed) <= needs.keys() for needed in needs.values())

@@ -119,6 +119,7 @@ def test_who_is_trusted_is_a_public_key_or_a_list(tmp_path: Path) -> None:
     assert diagnostic.code is Code.BAD_KEY
 
 
+@pytest.mark.slow
 def test_a_costly_list_is_read_soon(tmp_path: Path) -> None:
     """Stars and quotes, each of which a naive matcher would try everywhere."""
     star = "*a" * 20000

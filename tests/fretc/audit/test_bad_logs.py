@@ -49,6 +49,7 @@ def audited(fretc: Fretc, data: bytes) -> tuple[int, list[dict[str, Any]]]:
     return run.status, json.loads(run.out)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", SOUND, ids=lambda case: case.name)
 def test_a_whole_log_shows_what_it_shows_in_whatever_form(fretc: Fretc, case: Broken) -> None:
     status, results = audited(fretc, case.make(sound()))

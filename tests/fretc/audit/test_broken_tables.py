@@ -309,6 +309,7 @@ def test_a_number_in_params_is_not_missed_in_a_broken_table(fretc: Fretc) -> Non
     )
 
 
+@pytest.mark.slow
 def test_a_signal_with_a_mistake_is_still_that_signal(fretc: Fretc) -> None:
     """`ay` of the sentence is the signal `ay`, whatever its table lacks, and never `ax`."""
     for text in (BINDINGS, broken([("signal", "ay", "F302")])):

@@ -54,6 +54,7 @@ def stored(own: Plan, folder: str) -> None:
         one.run(engine, lambda _: None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["a threshold", "a new requirement", "a topic less"])
 def test_after_a_change_the_store_is_the_one_made_from_nothing(
     tmp_path: Path, judged: list[tuple[str, str]], name: str
@@ -68,6 +69,7 @@ def test_after_a_change_the_store_is_the_one_made_from_nothing(
     assert {*judged} == {(log, id) for log in LOGS for id in expected if id in texts}
 
 
+@pytest.mark.slow
 def test_a_new_log_is_judged_by_all_and_an_old_one_by_what_has_changed(
     tmp_path: Path, judged: list[tuple[str, str]]
 ) -> None:
@@ -86,6 +88,7 @@ def test_a_new_log_is_judged_by_all_and_an_old_one_by_what_has_changed(
     assert tables(Path("store")) == tables(Path("nothing"))
 
 
+@pytest.mark.slow
 def test_of_a_store_that_somebody_else_vouches_for_nothing_is_taken_over(
     tmp_path: Path, judged: list[tuple[str, str]]
 ) -> None:

@@ -104,12 +104,14 @@ def deadly(plan: bytes, log: str, folder: str, edition: str) -> LogResult | str:
     return dask_executor._work(plan, log, folder, edition)
 
 
+@pytest.mark.slow
 def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
     there = unpacked(packed(plan()))
     assert there == plan()
     assert there.declarations == plan().declarations
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("status", ["lost", "pending"])
 def test_a_result_that_dies_with_its_worker_is_made_again(status: str) -> None:
     assert dask_executor._result(SimpleNamespace(status=status)) is None
@@ -179,6 +181,7 @@ def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
     )
 
 
+@pytest.mark.slow
 def test_a_worker_with_another_fretc_is_refused(
     fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -219,6 +222,7 @@ def test_a_scheduler_that_is_not_there_is_told(
     assert not Path("build").exists()
 
 
+@pytest.mark.slow
 def test_a_scheduler_without_workers_is_told(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(dask_executor, "PATIENCE", 1)
     with local_cluster(n_workers=0, dashboard_address="127.0.0.1:0", silence_logs=60) as empty:
@@ -229,6 +233,7 @@ def test_a_scheduler_without_workers_is_told(fretc: Fretc, monkeypatch: pytest.M
     assert run.err.splitlines()[0].endswith("cannot be reached: the scheduler has no worker")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["", "ray", "dask:", "dask://", "dask://host", "dask://h:x", "D"])
 def test_an_engine_that_is_none_is_told(fretc: Fretc, name: str) -> None:
     run = fretc("audit", *LOGS, "--engine", name)
@@ -238,13 +243,11 @@ def test_an_engine_that_is_none_is_told(fretc: Fretc, name: str) -> None:
     )
 
 
-@pytest.mark.slow
 def test_the_former_meaning_of_engine_is_told_its_new_name(fretc: Fretc) -> None:
     run = fretc("audit", *LOGS, "--engine", "online")
     assert run.err == "F907 `online` is no engine\nhelp: write `--evaluation online`\n"
 
 
-@pytest.mark.slow
 def test_without_the_extra_the_line_that_installs_it_is_told(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:

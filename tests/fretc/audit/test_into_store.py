@@ -178,6 +178,7 @@ def test_labels_of_the_command_are_those_of_the_last_one(fretc: Fretc) -> None:
     assert {str(one.labels) for one in found.source.runs()} == {"{'version': '2'}"}
 
 
+@pytest.mark.slow
 def test_the_command_says_what_is_known_and_shows_all(fretc: Fretc) -> None:
     whole = fretc("audit", *LOGS)
     again = fretc("audit", *LOGS)
@@ -202,6 +203,7 @@ def test_a_log_is_known_by_its_stamp_or_its_bytes(fretc: Fretc) -> None:
     assert known() == {"a.mcap": "sha256"}
 
 
+@pytest.mark.slow
 def test_a_log_that_had_just_been_written_is_known_by_its_bytes_only(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -256,6 +258,7 @@ def test_another_requirement_or_binding_makes_all_of_it_new(
     )
 
 
+@pytest.mark.slow
 def test_another_fretc_or_evaluation_makes_all_of_it_new(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -281,6 +284,7 @@ def test_an_audit_that_goes_on_gives_the_store_of_one_that_was_not_stopped(fretc
     assert sorted(os.listdir(STORE)) == sorted(os.listdir("whole"))
 
 
+@pytest.mark.slow
 def test_only_what_is_written_counts_as_kept(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> None:
     wrong = Diagnostic(Code.NOT_WRITTEN, "the disk is full")
     monkeypatch.setattr("fretc.audit.into_store.write_part", lambda *_: wrong)
@@ -382,6 +386,7 @@ def test_a_store_that_another_user_has_written_is_not_used_and_that_is_said(
     assert known() == dict.fromkeys(LOGS, "stamp")
 
 
+@pytest.mark.slow
 def test_a_store_is_believed_in_its_place_only(fretc: Fretc) -> None:
     stored()
     shutil.move(STORE, "elsewhere")
@@ -406,6 +411,7 @@ def test_a_store_with_another_byte_is_not_believed(fretc: Fretc) -> None:
     assert known() == dict.fromkeys(LOGS, "stamp")
 
 
+@pytest.mark.slow
 def test_what_vouches_for_another_manifest_or_plan_does_not_count(fretc: Fretc) -> None:
     stored()
     reuse = STORE / "reuse.json"
@@ -466,6 +472,7 @@ def test_one_log_is_a_file_and_several_are_a_store_and_the_other_one_goes(fretc:
     assert fretc("report", "--evidence", "one").status in (0, 3)
 
 
+@pytest.mark.slow
 def test_nothing_of_the_user_s_is_replaced_or_removed(fretc: Fretc) -> None:
     Path("build").mkdir()
     Path("build/evidence.json").write_text("{}")
@@ -486,6 +493,7 @@ def test_nothing_of_the_user_s_is_replaced_or_removed(fretc: Fretc) -> None:
     assert Path("mine/results/own.parquet").read_text() == "precious"
 
 
+@pytest.mark.slow
 def test_a_mistyped_name_does_not_cost_the_evidence_of_the_last_audit(fretc: Fretc) -> None:
     stored()
     before = {**tables(), "": (STORE / "manifest.json").read_bytes()}

@@ -64,6 +64,7 @@ def test_the_recorded_mission_shows_r1_with_the_stops_that_a_person_sees_in_it(
     assert not [t for t in triggers if 9.5 < t < 21.0]
 
 
+@pytest.mark.slow
 def test_the_evidence_fits_its_schema_and_is_the_same_again(fretc: Fretc) -> None:
     fretc("audit", "run.mcap")
     first = Path("build/evidence.json").read_bytes()
@@ -88,6 +89,7 @@ def test_a_bound_makes_the_slow_answer_a_violation(fretc: Fretc) -> None:
     assert set(first["values"]) == {"clearance", "vx", "wz"}
 
 
+@pytest.mark.slow
 def test_one_changed_byte_in_the_middle_changes_the_hash_and_is_no_pass(fretc: Fretc) -> None:
     fretc("audit", "run.mcap")
     before = evidence()["results"][0]["hashes"]["log"]
@@ -118,6 +120,7 @@ def test_a_log_that_ends_in_the_middle_shows_what_is_whole_and_satisfies_nothing
         validate("evidence.schema.json", evidence())
 
 
+@pytest.mark.slow
 def test_a_violation_in_a_log_that_ends_in_the_middle_is_a_violation(fretc: Fretc) -> None:
     change("requirements/r1.fret", "eventually", "within 1 ticks")
     data = Path("run.mcap").read_bytes()
@@ -145,6 +148,7 @@ def test_an_unreadable_log_keeps_the_evidence_of_the_last_audit(fretc: Fretc) ->
     assert Path("build/evidence.json").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_bad_log_beside_a_good_one_is_in_the_evidence_and_in_the_status(fretc: Fretc) -> None:
     Path("bad.mcap").write_bytes(b"no log")
     run = fretc("audit", "run.mcap", "bad.mcap")
@@ -225,6 +229,7 @@ def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fre
     ]
 
 
+@pytest.mark.slow
 def test_stepping_shows_the_same_as_columns(fretc: Fretc) -> None:
     fretc("audit", "run.mcap")
     before = Path("build/evidence.json").read_bytes()
@@ -232,6 +237,7 @@ def test_stepping_shows_the_same_as_columns(fretc: Fretc) -> None:
     assert Path("build/evidence.json").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_results_can_be_read_by_other_tools(fretc: Fretc) -> None:
     junit = fretc("audit", "run.mcap", "--format", "junit")
     assert (junit.status, junit.out.startswith('<?xml version="1.0"')) == (0, True)
@@ -279,6 +285,7 @@ def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audit
     assert hashes[1] == hashes[0]
 
 
+@pytest.mark.slow
 def test_a_table_is_written_beside_the_evidence(fretc: Fretc) -> None:
     run = fretc("audit", "run.mcap", "--parquet", "build/runs.parquet")
     assert run.err == "wrote build/evidence.json\nwrote build/runs.parquet\n"

@@ -179,6 +179,7 @@ def test_the_signals_of_propositions_are_named_once_in_order() -> None:
     assert signals_of(declared(), ["still", "near", "still"]) == ("v", "d")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("cm", "where"),
     [

@@ -13,6 +13,7 @@ import pytest
 from fretc.audit.pool import Limits, TimedOut, WorkerDied, each
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2, 5])
 def test_each_thing_has_its_result_once(jobs: int) -> None:
     results = list(each(lambda thing: thing * thing, range(40), jobs))
@@ -20,6 +21,7 @@ def test_each_thing_has_its_result_once(jobs: int) -> None:
     assert not active_children()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_a_mistake_in_the_work_is_raised(jobs: int) -> None:
     with pytest.raises(ZeroDivisionError):
@@ -46,6 +48,7 @@ def test_a_result_comes_when_it_is_done() -> None:
     assert [place for place, _ in each(wait, [0.5, 0.0], 2)] == [1, 0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2, 3])
 def test_a_thing_that_kills_its_process_twice_is_told_and_the_others_are_done(jobs: int) -> None:
     def work(thing: int) -> int:
@@ -70,6 +73,7 @@ def test_a_thing_whose_process_is_killed_once_is_done_the_second_time(tmp_path: 
     assert dict(each(work, range(3), 2)) == {i: f"done {i}" for i in range(3)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_a_thing_that_takes_too_long_is_late_and_the_others_are_done(jobs: int) -> None:
     work = lambda thing: time.sleep(60 if thing % 3 == 1 else 0)  # noqa: E731
@@ -88,6 +92,7 @@ def test_when_the_time_of_all_is_over_each_that_is_not_done_is_late() -> None:
     assert not active_children()
 
 
+@pytest.mark.slow
 def test_a_thing_is_late_however_the_process_is_busy() -> None:
     def work(thing: int) -> None:
         signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM, signal.SIGALRM])
@@ -101,6 +106,7 @@ def test_how_a_process_ended_is_told_in_words() -> None:
     assert (str(WorkerDied(-9)), str(WorkerDied(7))) == ("signal 9", "exit status 7")
 
 
+@pytest.mark.slow
 def test_a_result_that_is_larger_than_a_pipe_comes_whole() -> None:
     assert dict(each(lambda thing: bytes(10**7 + thing), [0, 1], 2)) == {
         0: bytes(10**7),

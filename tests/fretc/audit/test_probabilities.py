@@ -171,6 +171,7 @@ def test_so_few_logs_cannot_support_it_however_many_triggers_they_have(fretc: Fr
     assert fretc("audit", "runs").status == 0
 
 
+@pytest.mark.slow
 def test_the_counts_are_those_of_the_truth_columns(fretc: Fretc) -> None:
     """Naively: an answer within two ticks, none in two ticks, or the log ends before."""
     chance, expected = random.Random(7), [0, 0, 0]
@@ -220,6 +221,7 @@ def test_no_sentence_with_a_probability_ends_an_audit_and_each_is_counted(fretc:
         assert triggers[id] == numbers, id
 
 
+@pytest.mark.slow
 def test_what_no_run_can_meet_is_failed_at_each_trigger(fretc: Fretc) -> None:
     require("whenever c the robot shall with probability >= 0.9 finally satisfy false")
     logs(3, "1010", "0000")
@@ -292,6 +294,7 @@ def test_a_log_that_was_written_again_counts_once(fretc: Fretc, integrity: str) 
     assert suspicions(fretc) == []
 
 
+@pytest.mark.slow
 def test_runs_that_differ_in_a_value_or_a_time_are_no_copies(fretc: Fretc) -> None:
     log("runs/a.mcap", "1000", "0100")
     log("runs/b.mcap", "1000", "0010")
@@ -323,6 +326,7 @@ def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:
         assert estimate() == first
 
 
+@pytest.mark.slow
 def test_a_log_that_is_written_anew_counts_anew(fretc: Fretc) -> None:
     logs(3, "1000", "0100")
     fretc("audit", "runs")
@@ -333,6 +337,7 @@ def test_a_log_that_is_written_anew_counts_anew(fretc: Fretc) -> None:
     assert counts() == (2, 1, 0)
 
 
+@pytest.mark.slow
 def test_without_a_trigger_nothing_is_known(fretc: Fretc) -> None:
     logs(2, "0000", "0100")
     run = fretc("audit", "runs", "-v")
@@ -401,6 +406,7 @@ def test_the_monitor_of_one_run_is_refused_still(fretc: Fretc) -> None:
 # Other forms -----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_json_has_runs_and_probabilities_by_name(fretc: Fretc) -> None:
     logs(2, "1000", "0100")
     content = json.loads(fretc("audit", "runs", "--format", "json").out)

@@ -170,6 +170,7 @@ def test_audit_finds_the_blind_sensor_and_the_stop_that_is_never_released(robot:
     )
 
 
+@pytest.mark.slow
 def test_verify_finds_that_no_agent_believes_an_action(robot: Fretc) -> None:
     files = ("--agent", "agent.gwen", "--properties", "agent.psl")
     run = robot(
@@ -189,6 +190,7 @@ def test_verify_finds_that_no_agent_believes_an_action(robot: Fretc) -> None:
     assert "`stop_moving` is an action, and actions are not believed" in line
 
 
+@pytest.mark.slow
 def test_verify_finds_that_the_published_environment_triggers_nothing(robot: Fretc) -> None:
     files = ("--agent", "agent.gwen", "--properties", "agent.psl")
     run = robot(
@@ -208,6 +210,7 @@ def test_verify_finds_that_the_loop_does_not_stop_and_never_starts_again(robot: 
     assert "the stop is released" in released
 
 
+@pytest.mark.slow
 def test_the_report_shows_all_of_it(robot: Fretc) -> None:
     assert robot("audit", "run.mcap").status == 1
     assert robot("report", "--json", "report.json").status == 0

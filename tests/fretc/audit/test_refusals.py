@@ -132,6 +132,7 @@ def test_no_form_of_the_audit_and_of_the_report_loses_it(fretc: Fretc, kind: str
         assert "R2" in Path(name).read_text("utf-8")
 
 
+@pytest.mark.slow
 def test_a_run_that_cannot_be_read_has_a_row_for_it_too(fretc: Fretc) -> None:
     project("the sw shall always satisfy nowhere", "", "")
     log("l.mcap", [1])

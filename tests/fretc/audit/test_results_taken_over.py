@@ -125,6 +125,7 @@ def judged(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return ids
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CHANGES)
 def test_after_each_change_only_what_it_changes_is_judged_and_all_is_as_from_nothing(
     tmp_path: Path, log: str, judged: list[str], name: str
@@ -170,6 +171,7 @@ def test_a_result_of_a_log_that_is_damaged_by_now_is_not_taken_over(
     assert audited(made, log, wrong) == audited(made, log)
 
 
+@pytest.mark.slow
 def test_another_evaluation_or_a_closer_look_is_another_key(tmp_path: Path) -> None:
     files = [plan(tmp_path / "a", PROJECT), plan(tmp_path / "b", PROJECT, "online")]
     one, other = map(keys, files)

@@ -155,6 +155,7 @@ def test_a_warning_that_is_accepted_for_another_hazard_stays_open(fretc: Fretc) 
     assert (fretc("check").status, codes(fretc("check"), "accepted:")) == (0, ["F522"])
 
 
+@pytest.mark.slow
 def test_a_requirement_that_waits_for_its_review_is_accepted_until_then(fretc: Fretc) -> None:
     project({})
     assert fretc("lock", *BY).status == 0
@@ -197,6 +198,7 @@ def test_what_is_wrong_with_an_acceptance_is_an_error_and_the_warning_stays(fret
         assert codes(run, "accepted:") == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -273,6 +275,7 @@ def test_other_commands_count_what_is_accepted(fretc: Fretc) -> None:
     assert (run.status, run.err) == (0, "1 warning is accepted: `fretc check` lists the reasons\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("emit", [(), ("--emit", "monitor"), ("--emit", "json")])
 def test_a_file_whose_header_accepts_its_warning_is_shown_without_it(
     fretc: Fretc, emit: tuple[str, ...]
@@ -323,6 +326,7 @@ SLOW = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_an_acceptance_is_a_change_since_the_review_and_leaves_the_evidence_current(
     fretc: Fretc,
 ) -> None:

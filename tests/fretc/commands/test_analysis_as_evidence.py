@@ -47,6 +47,7 @@ def together(fretc: Fretc) -> tuple[int, str]:
     return run.status, run.out.partition("all together\n")[2]
 
 
+@pytest.mark.slow
 def test_an_analysis_that_nobody_touched_stands(analyzed: Fretc) -> None:
     status, said = together(analyzed)
     assert status == 0, said
@@ -63,6 +64,7 @@ def realizable(found: dict[str, Any]) -> None:
         each["verdict"] = "realizable"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "said"),
     [
@@ -101,6 +103,7 @@ def test_an_analysis_that_was_changed_by_hand_is_found(
     assert said in found
 
 
+@pytest.mark.slow
 def test_an_analysis_of_other_requirements_differs(analyzed: Fretc) -> None:
     write("requirements/r2.fret", "the sw shall immediately satisfy p")
     write("requirements/r4.fret", "the sw shall never satisfy !p")
@@ -110,6 +113,7 @@ def test_an_analysis_of_other_requirements_differs(analyzed: Fretc) -> None:
     assert "? r4  not checked: it was no part of the set\n" in found
 
 
+@pytest.mark.slow
 def test_what_is_not_asked_again_is_not_checked(analyzed: Fretc) -> None:
     run = analyzed("verify-evidence", "--no-analysis")
     assert (run.status, "?     not checked: nothing was analyzed again" in run.out) == (3, True)
@@ -120,6 +124,7 @@ def test_what_is_not_asked_again_is_not_checked(analyzed: Fretc) -> None:
     assert (run.status, "not checked: it answers FRET's question" in run.out) == (3, True)
 
 
+@pytest.mark.slow
 def test_what_was_not_checked_is_not_checked(analyzed: Fretc) -> None:
     def unknown(found: dict[str, Any]) -> None:
         found["verdict"], found["conflicts"], found["complete"] = "not checked", [], False
@@ -133,6 +138,7 @@ def test_what_was_not_checked_is_not_checked(analyzed: Fretc) -> None:
     assert "?     not checked: conflict of r1, r2, r3: it is left out\n" in found
 
 
+@pytest.mark.slow
 def test_an_analysis_is_signed_and_a_signature_is_demanded(analyzed: Fretc) -> None:
     for name in ("ada", "bob"):
         keys.written(name)

@@ -35,6 +35,7 @@ def written(
     return folder
 
 
+@pytest.mark.slow
 def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
     run = fretc("analyze", str(folder))
     assert run.status == 1
@@ -49,6 +50,7 @@ def test_a_conflict_is_shown_tick_by_tick(fretc: Fretc, folder: Path) -> None:
     assert "    run (output)   0  0  1\n" in run.out
 
 
+@pytest.mark.slow
 def test_a_conflict_of_propositions_about_one_number_has_their_lanes(
     fretc: Fretc, tmp_path: Path
 ) -> None:
@@ -68,6 +70,7 @@ def test_a_conflict_of_propositions_about_one_number_has_their_lanes(
     assert fretc("report", "--requirements", str(tmp_path), "-o", "r.html").status == 0
 
 
+@pytest.mark.slow
 def test_what_would_settle_a_conflict_is_suggested(fretc: Fretc, tmp_path: Path) -> None:
     fight = (
         "upon start the line shall immediately satisfy run",
@@ -82,6 +85,7 @@ def test_what_would_settle_a_conflict_is_suggested(fretc: Fretc, tmp_path: Path)
     assert fretc("analyze", str(written(tmp_path, fight, more=more))).status == 0
 
 
+@pytest.mark.slow
 def test_json_is_as_its_schema_says(fretc: Fretc, folder: Path) -> None:
     run = fretc("analyze", str(folder), "--format", "json")
     assert run.status == 1
@@ -163,6 +167,7 @@ def test_a_retired_requirement_is_no_part_of_the_set(fretc: Fretc, folder: Path)
     assert fretc("analyze", str(folder)).status == 0
 
 
+@pytest.mark.slow
 def test_as_fret_eventually_means_at_once(fretc: Fretc, tmp_path: Path) -> None:
     sentences = (
         "whenever start the line shall eventually satisfy run",
@@ -179,6 +184,7 @@ KEPT = (
 )
 
 
+@pytest.mark.slow
 def test_a_strategy_is_a_program_that_runs(fretc: Fretc, tmp_path: Path) -> None:
     folder, out = written(tmp_path, KEPT), tmp_path / "out"
     run = fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(out))
@@ -195,6 +201,7 @@ def test_a_strategy_is_a_program_that_runs(fretc: Fretc, tmp_path: Path) -> None
     assert wrong.stderr == "line 1: the input start is to be true or false at each tick\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("form", "begin"), [("hoa", "HOA: v1\n"), ("dot", "digraph ")])
 def test_a_strategy_is_an_automaton_for_each_component(
     fretc: Fretc, tmp_path: Path, form: str, begin: str
@@ -210,6 +217,7 @@ def test_a_strategy_is_an_automaton_for_each_component(
     assert printed.out == "".join(texts)
 
 
+@pytest.mark.slow
 def test_no_strategy_is_written_where_there_is_none(fretc: Fretc, folder: Path) -> None:
     run = fretc("analyze", str(folder), "--emit", "python", "--emit-to", str(folder / "out"))
     assert run.status == 1
@@ -217,6 +225,7 @@ def test_no_strategy_is_written_where_there_is_none(fretc: Fretc, folder: Path) 
     assert not (folder / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_strategy_that_is_too_large_is_refused(fretc: Fretc, tmp_path: Path) -> None:
     folder = written(tmp_path, ["upon start the line shall for 5000 ticks satisfy run"])
     run = fretc("analyze", str(folder), "--emit", "hoa", "--emit-to", str(tmp_path / "out"))
@@ -262,6 +271,7 @@ def test_an_export_of_fret_is_analyzed_straight(fretc: Fretc, tmp_path: Path) ->
     assert [each["requirements"] for each in found["conflicts"]] == [["R1", "R2"]]
 
 
+@pytest.mark.slow
 def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) -> None:
     """What is an output of one component is an input of the other one, which has to bear it."""
     sentences = {
@@ -287,12 +297,14 @@ def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) ->
 # `fretc check --analyze` -----------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_check_names_each_conflict(fretc: Fretc, folder: Path) -> None:
     run = fretc("check", str(folder), "--analyze")
     assert "F561 warning: R1 and R2 cannot be kept together: at tick 2 R1 demands `run`" in run.err
     assert "F561" not in fretc("check", str(folder)).err
 
 
+@pytest.mark.slow
 def test_check_takes_an_answer_only_while_it_is_about_these(fretc: Fretc, tmp_path: Path) -> None:
     """The answer in the file was changed by hand, so that it shows where it is taken."""
     good = (FIGHT[0], "upon stop the line shall within 3 ticks satisfy !run")
@@ -334,6 +346,7 @@ def test_the_mission_cannot_be_kept_without_scans(fretc: Fretc, tmp_path: Path) 
     assert [n for n, tick in enumerate(play) if tick["moving"]] in ([], [len(play) - 1])
 
 
+@pytest.mark.slow
 def test_an_answer_says_without_which_requirements_it_is(fretc: Fretc) -> None:
     """That others can be kept is no claim about all; a component is named in the other's file."""
     write("requirements/bindings.toml", '[variable.p]\nrole = "output"\n')

@@ -50,6 +50,7 @@ def test_each_result_has_its_mark(results: list[Result], columns: int) -> None:
     assert marks(shown(results, columns)) == expected
 
 
+@pytest.mark.slow
 @given(
     st.lists(st.text(max_size=60), min_size=2, max_size=30, unique=True),
     st.lists(st.text(min_size=1, max_size=60), min_size=1, max_size=3, unique=True),
@@ -83,6 +84,7 @@ def many(runs: int, requirements: int) -> list[Result]:
     ]
 
 
+@pytest.mark.slow
 def test_what_does_not_fit_is_counted_and_is_never_the_worst() -> None:
     lines = shown(many(MOST_RUNS + 30, MOST_REQUIREMENTS + 3))
     kept = marks(lines)
@@ -151,6 +153,7 @@ def test_the_worst_is_named_with_title_value_limit_times_and_commands(robot: Fre
     )
 
 
+@pytest.mark.slow
 def test_many_runs_are_a_table_and_verbose_lists_them(robot: Fretc) -> None:
     shutil.copy("run.mcap", "same.mcap")
     run = robot("audit", "run.mcap", "same.mcap")

@@ -54,6 +54,7 @@ def runs() -> list[str]:
     return [one["run"] for one in evidence()["results"]]  # type: ignore[attr-defined]
 
 
+@pytest.mark.slow
 def test_since_takes_the_later_logs_and_evidence_says_so(robot: Fretc) -> None:
     run = robot("audit", "runs", "--since", "2026-11-20")
     assert run.status == 0
@@ -79,6 +80,7 @@ def test_where_no_log_is_left_nothing_is_shown_and_evidence_stays(robot: Fretc) 
     assert Path("build/evidence/manifest.json").read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_sample_is_reported_as_one(robot: Fretc) -> None:
     run = robot("audit", "runs", "--sample", "2", "--seed", "5")
     assert "2 of 3 logs: a sample of 3 by chance, seed 5" in run.err
@@ -93,6 +95,7 @@ def test_a_sample_is_reported_as_one(robot: Fretc) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_log_for_which_there_is_no_time_is_no_data(
     robot: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -104,6 +107,7 @@ def test_a_log_for_which_there_is_no_time_is_no_data(
     assert not Path("build/evidence").exists()  # no log was read: that of before would stay
 
 
+@pytest.mark.slow
 def test_a_log_for_which_there_was_no_time_is_audited_when_there_is(
     robot: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -133,6 +137,7 @@ def test_what_the_time_of_an_audit_does_not_reach_is_no_data(robot: Fretc) -> No
     assert codes == {"F441"}
 
 
+@pytest.mark.slow
 def test_limits_that_are_not_reached_change_nothing(robot: Fretc) -> None:
     whole = robot("audit", "runs", "--time", "1h", "--log-time", "1h")
     assert whole.status == 1
@@ -172,6 +177,7 @@ def hook(name: str, text: str) -> str:
     return str(path.absolute())
 
 
+@pytest.mark.slow
 def test_a_command_gets_the_summary_and_no_shell_sees_it(robot: Fretc) -> None:
     keep = hook("keep", "open(sys.argv[1], 'w').write(sys.stdin.read())")
     run = robot("audit", "runs", "--notify", f"{keep} 'a b;touch $HOME'")
@@ -192,6 +198,7 @@ def test_a_command_gets_the_summary_and_no_shell_sees_it(robot: Fretc) -> None:
     }
 
 
+@pytest.mark.slow
 def test_the_store_is_free_when_the_command_reads_it(robot: Fretc) -> None:
     lock = hook(
         "lock",
@@ -202,6 +209,7 @@ def test_the_store_is_free_when_the_command_reads_it(robot: Fretc) -> None:
     assert "notified by" in robot("audit", "runs", "--notify", lock).err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("command", "how"),
     [

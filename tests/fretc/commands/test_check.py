@@ -40,6 +40,7 @@ SHIPPED = sorted(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", SHIPPED)
 def test_every_shipped_project_is_free_of_findings(
     folder: str, fretc: Fretc, monkeypatch: pytest.MonkeyPatch

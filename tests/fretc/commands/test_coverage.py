@@ -49,6 +49,7 @@ def situations(text: str) -> dict[str, str]:
     return {each["key"]: each["standing"] for each in one["situations"]}
 
 
+@pytest.mark.slow
 def test_logs_and_their_evidence_show_the_same(robot: Fretc) -> None:
     run = robot("coverage", "idle.mcap", "late.mcap", "--format", "json")
     assert run.status == 3
@@ -79,6 +80,7 @@ def test_an_audit_says_how_much_was_seen_and_how_to_see_more(robot: Fretc) -> No
     assert "fretc coverage" not in robot("audit", "late.mcap", "-o", "-").out
 
 
+@pytest.mark.slow
 def test_tests_say_how_a_run_comes_by_what_was_not_seen(robot: Fretc) -> None:
     assert robot("test").status == 0
     run = robot("coverage", "idle.mcap")
@@ -92,6 +94,7 @@ def test_tests_say_how_a_run_comes_by_what_was_not_seen(robot: Fretc) -> None:
     assert "the tests are of other sentences of R1: `fretc test` makes them" in run.err
 
 
+@pytest.mark.slow
 def test_what_is_not_measured_is_not_seen(robot: Fretc) -> None:
     write("cut.mcap", "no log")
     assert robot("mutate", "--against", "late.mcap", "--against", "cut.mcap").status == 2
@@ -111,6 +114,7 @@ def test_what_is_not_measured_is_not_seen(robot: Fretc) -> None:
     assert run.out.startswith("? R1: situations not measured\n")
 
 
+@pytest.mark.slow
 def test_a_mutant_that_no_run_notices_is_listed_with_its_sentence(robot: Fretc) -> None:
     run = robot("mutate", "--against", "idle.mcap")
     assert run.status == 3
@@ -131,6 +135,7 @@ def test_a_mutant_that_no_run_notices_is_listed_with_its_sentence(robot: Fretc) 
     assert found["runs"] == ["idle.mcap", "late.mcap", "worse.mcap"]
 
 
+@pytest.mark.slow
 def test_bad_use_and_bad_input_are_told_from_what_is_not_seen(robot: Fretc) -> None:
     assert robot("coverage").err.startswith("F901 ")
     assert robot("coverage", "late.mcap", "--evidence", "x.json").status == 2
@@ -150,6 +155,7 @@ def test_bad_use_and_bad_input_are_told_from_what_is_not_seen(robot: Fretc) -> N
     assert robot("mutate", "--against", "late.mcap").status == 2
 
 
+@pytest.mark.slow
 def test_the_first_run_that_notices_is_named_whatever_else_could_not_be_read(robot: Fretc) -> None:
     write("cut.mcap", "no log")
     logs_in_order = [f"--against={name}" for name in ("cut.mcap", "idle.mcap", "late.mcap")]

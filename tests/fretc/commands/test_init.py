@@ -67,6 +67,7 @@ def test_a_project_without_a_log_has_no_mistake(fretc: Fretc) -> None:
     assert (run.status, run.err) == (0, "1 requirement: 0 mistakes, 0 warnings\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["plain", "typed", "both", "strange"])
 def test_a_project_from_a_log_has_no_mistake_and_judges_that_log(fretc: Fretc, kind: str) -> None:
     sent = {

@@ -120,6 +120,7 @@ def test_a_command_about_one_log_takes_any_name(
         assert "\\udc" not in run.out + run.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["audit {}", "info {}", "init new --from {}", "watch {}"])
 @pytest.mark.parametrize("name", [b"no\xff.mcap", b"no\n.mcap", b"folder\xff"])
 def test_a_log_that_is_not_there_is_named_as_any_other(

@@ -24,6 +24,7 @@ def test_the_page_is_made_where_nothing_is_named(project: Fretc) -> None:
     assert (run.status, run.out, run.err) == (0, "", "wrote build/report.html\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", [name for name, form in FORMS.items() if form.missing() is None])
 def test_a_form_is_the_same_by_its_own_option_and_by_format(project: Fretc, form: str) -> None:
     assert project("report", f"--{form}", "own").status == 0

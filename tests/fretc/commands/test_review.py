@@ -111,6 +111,7 @@ def test_a_requirement_that_was_deleted_and_one_that_is_new_are_told(
     assert "R1  not there any more; there is the review of 2026-11-22 by A. Meier\n" in run.out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
@@ -258,6 +259,7 @@ def test_a_violation_is_accepted_by_name_only(fretc: Fretc, folder: Path) -> Non
     assert run.err.endswith("accepted 1 requirement: 1 violated, 0 not shown\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("verdicts", "violated", "not_shown"),
     [

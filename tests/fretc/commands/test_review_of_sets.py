@@ -57,6 +57,7 @@ def suspect(fretc: Fretc) -> dict[str, list[str]]:
     }
 
 
+@pytest.mark.slow
 def test_a_conflict_is_accepted_by_its_name_only_and_stays_red(fretc: Fretc) -> None:
     project()
     assert fretc("analyze", "requirements").status == 1
@@ -77,6 +78,7 @@ def test_a_conflict_is_accepted_by_its_name_only_and_stays_red(fretc: Fretc) -> 
     assert overall["mark"]["word"] == "cannot be kept together"
 
 
+@pytest.mark.slow
 def test_an_accepted_question_without_an_answer_is_visible(fretc: Fretc) -> None:
     project("", R3="whenever start the line shall immediately satisfy persists(2, lamp)")
     fretc("analyze", "requirements")
@@ -124,6 +126,7 @@ def test_a_requirement_that_went_makes_the_analysis_suspect(locked: Fretc) -> No
     assert suspect(locked) == {"R1": ["member:R2"]}
 
 
+@pytest.mark.slow
 def test_another_answer_has_a_before_and_an_after(locked: Fretc) -> None:
     project(R2="upon stop the line shall for 0 ticks satisfy !run", assumed="")
     assert locked("analyze", "requirements").status == 0
@@ -140,6 +143,7 @@ def test_an_analysis_that_is_gone_is_told(locked: Fretc) -> None:
     assert "analysis: unrealizable → none\n" in run.out
 
 
+@pytest.mark.slow
 def test_the_answer_to_another_question_is_another_answer(locked: Fretc) -> None:
     assert locked("analyze", "requirements", "--as-fret").status == 1
     run = locked("diff")

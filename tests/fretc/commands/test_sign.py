@@ -224,6 +224,7 @@ def test_a_report_and_proofs_that_are_named_must_be_signed_too(project: Fretc) -
     assert (run.status, "✔ report  the same, byte for byte" in run.out) == (0, True)
 
 
+@pytest.mark.slow
 def test_signatures_of_others_stay_and_ones_own_is_replaced(project: Fretc) -> None:
     for key in ("ada", "bob", "ada"):
         assert project("sign", EVIDENCE, "--key", key).status == 0
@@ -240,6 +241,7 @@ def test_signatures_of_others_stay_and_ones_own_is_replaced(project: Fretc) -> N
 # Reviews and waivers ---------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_reviewer_signs_with_the_lock(project: Fretc) -> None:
     trust("ada", "bob")
     assert project("lock", "r1", "--reviewer", "Ada", *BY, "--key", "ada").status == 0
@@ -284,6 +286,7 @@ def test_what_was_signed_by_another_than_its_reviewer_is_unauthenticated_and_tol
     assert status == 0
 
 
+@pytest.mark.slow
 def test_a_key_that_is_not_listed_authenticates_nobody(project: Fretc) -> None:
     assert project("lock", "--reviewer", "Ada", *BY, "--key", "ada").status == 0
     assert "and no list of signers" in signed(report(project)[1])["review r1, by Ada"][1]
@@ -293,6 +296,7 @@ def test_a_key_that_is_not_listed_authenticates_nobody(project: Fretc) -> None:
     assert why.startswith("there is a signature with a key that is not among the signers (SHA256:")
 
 
+@pytest.mark.slow
 def test_a_later_review_of_another_requirement_leaves_a_signature_in_force(
     project: Fretc,
 ) -> None:
@@ -363,6 +367,7 @@ def forge(path: str) -> None:
     write(f"{path}.intoto.jsonl", json.dumps(envelope) + "\n")
 
 
+@pytest.mark.slow
 def test_a_signature_that_does_not_verify_is_red_everywhere(project: Fretc) -> None:
     assert project("audit", "logs/good.mcap").status == 0
     trust("ada")

@@ -65,6 +65,7 @@ def test_folders_are_made_and_a_mission_can_be_a_log_of_ros_1(tmp_path: Path) ->
         assert make_reader(stream).get_header().profile == "ros1"
 
 
+@pytest.mark.slow
 def test_the_scenarios_are_named(tmp_path: Path) -> None:
     ran = simulate(tmp_path, "--list")
     assert ran.returncode == 0

@@ -32,6 +32,7 @@ def written(folder: Path, sentences: Sequence[str]) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_a_row_tells_of_each_requirement(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder))
     assert run.status == 0
@@ -44,6 +45,7 @@ def test_a_row_tells_of_each_requirement(fretc: Fretc, folder: Path) -> None:
     assert (folder / "build/tests/suite.json").is_file()
 
 
+@pytest.mark.slow
 def test_the_suite_is_as_its_schema_says_and_is_read_back(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder), "-o", "-")
     found = json.loads(run.out)
@@ -53,6 +55,7 @@ def test_the_suite_is_as_its_schema_says_and_is_read_back(fretc: Fretc, folder: 
     assert not (folder / "build").exists()
 
 
+@pytest.mark.slow
 def test_tests_of_one_requirement_are_drawn(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder), "--show", "R1")
     assert run.status == 0
@@ -76,6 +79,7 @@ def test_a_requirement_that_there_is_not_is_a_mistake(fretc: Fretc, folder: Path
     assert not (folder / "build").exists()
 
 
+@pytest.mark.slow
 def test_what_was_not_searched_is_told(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder), "--time", "0.000001")
     assert run.status == 3
@@ -83,6 +87,7 @@ def test_what_was_not_searched_is_told(fretc: Fretc, folder: Path) -> None:
     assert "nothing was searched: not answered within 1e-06 s of a processor" in run.out
 
 
+@pytest.mark.slow
 def test_what_others_exclude_is_told(fretc: Fretc, tmp_path: Path) -> None:
     folder = written(tmp_path, (SENTENCES[0], "the line shall never satisfy start"))
     run = fretc("test", str(folder), "-o", str(tmp_path / "suite.json"))
@@ -97,6 +102,7 @@ def test_a_sentence_that_cannot_be_read_is_a_mistake(fretc: Fretc, tmp_path: Pat
     assert "Traceback" not in run.err
 
 
+@pytest.mark.slow
 def test_a_run_that_only_its_end_makes_wrong_is_not_called_broken(
     fretc: Fretc, tmp_path: Path
 ) -> None:
@@ -107,6 +113,7 @@ def test_a_run_that_only_its_end_makes_wrong_is_not_called_broken(
     assert all(words.endswith("; the run ends while R1 is not met") for words in ends)
 
 
+@pytest.mark.slow
 def test_nothing_is_said_line_by_line_where_nothing_was_searched(
     fretc: Fretc, tmp_path: Path
 ) -> None:
@@ -127,6 +134,7 @@ def test_a_time_that_is_no_number_is_a_mistake(fretc: Fretc, folder: Path, comma
     assert "nan is not a number of seconds" in run.err
 
 
+@pytest.mark.slow
 def test_tests_for_pytest_are_of_the_languages_that_are_named(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder), "--emit", "pytest", "--language", "js", "--language", "c")
     assert run.status == 0
@@ -145,6 +153,7 @@ def test_a_language_without_tests_for_pytest_is_a_mistake(
     assert not (folder / "build").exists()
 
 
+@pytest.mark.slow
 def test_the_self_test_stands_beside_the_monitors(fretc: Fretc, folder: Path) -> None:
     run = fretc("test", str(folder), "--emit", "c")
     assert run.status == 0
@@ -153,6 +162,7 @@ def test_the_self_test_stands_beside_the_monitors(fretc: Fretc, folder: Path) ->
     assert names == monitors | {"fretc_self_test.c"}
 
 
+@pytest.mark.slow
 def test_tests_of_a_file_are_written_again_as_they_are(fretc: Fretc, folder: Path) -> None:
     assert fretc("test", str(folder), "--emit", "csv").status == 0
     made = {path.name: path.read_text() for path in Path("build/tests/csv").iterdir()}
@@ -171,6 +181,7 @@ def test_tests_of_a_file_are_written_again_as_they_are(fretc: Fretc, folder: Pat
     assert "expects what the monitor does not say: violated" in wrong.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("option", [(), ("--show", "R1")])
 def test_texts_of_a_file_are_not_for_the_terminal(
     fretc: Fretc, folder: Path, option: tuple[str, ...]

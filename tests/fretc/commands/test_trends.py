@@ -6,6 +6,8 @@ import json
 import shutil
 from pathlib import Path
 
+import pytest
+
 from fretc.audit.store.writer import write_document
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, Run
@@ -99,6 +101,7 @@ def test_a_store_says_what_a_file_says_and_a_broken_one_says_nothing(fretc: Fret
     assert not Path("broken.html").exists()
 
 
+@pytest.mark.slow
 def test_many_changes_fit_one_screen_and_what_is_left_out_is_counted(fretc: Fretc) -> None:
     names = [f"{i}.mcap" for i in range(300)]
     evidence(Path("1.json"), *(judged(name, scenario=name) for name in names))
@@ -136,6 +139,7 @@ def test_evidence_with_a_label_that_no_audit_writes_is_refused(fretc: Fretc) -> 
         assert run.err.startswith("F503 ")
 
 
+@pytest.mark.slow
 def test_labels_go_from_the_command_and_the_path_into_the_evidence(fretc: Fretc) -> None:
     shutil.copytree(ROOT / "requirements", "requirements")
     with Path("requirements/bindings.toml").open("a", encoding="utf-8") as file:

@@ -367,6 +367,7 @@ def test_a_heartbeat_is_an_assumption(fretc: Fretc, loop: Callable[..., str]) ->
     assert lines[-1] == "`heartbeat` of 250 ms counts as 300 ms, whole ticks of the clock"
 
 
+@pytest.mark.slow
 def test_a_loop_that_does_not_shows_a_run(fretc: Fretc, loop: Callable[..., str]) -> None:
     run = fretc("verify", "--layer", "loop", loop(200, ("lost = 1\n", "")))
     first, *table = run.out.splitlines()[:5]
@@ -386,6 +387,7 @@ def test_a_loop_that_does_not_shows_a_run(fretc: Fretc, loop: Callable[..., str]
     ]
 
 
+@pytest.mark.slow
 def test_a_run_is_replayed_by_the_monitor_itself(fretc: Fretc, loop: Callable[..., str]) -> None:
     path = loop(200)
     assert fretc(path, "--emit", "monitor", "-o", ".").status == 0
@@ -414,6 +416,7 @@ def test_the_least_bound_is_told(fretc: Fretc, loop: Callable[..., str]) -> None
     assert run.status == 0
 
 
+@pytest.mark.slow
 def test_bounds_are_of_the_monitor_that_fretc_writes(
     fretc: Fretc, loop: Callable[..., str]
 ) -> None:
@@ -426,6 +429,7 @@ def test_bounds_are_of_the_monitor_that_fretc_writes(
     assert run.out.count("the monitor is not the one that fretc writes for it") == 2
 
 
+@pytest.mark.slow
 def test_a_stop_that_stays_is_no_violation(fretc: Fretc, loop: Callable[..., str]) -> None:
     path = loop(400, ("[assume]", "latching = true\n\n[assume]"))
     run = fretc("verify", "--layer", "loop", path)
@@ -477,6 +481,7 @@ def test_without_bindings_there_is_no_loop(fretc: Fretc, r1: str) -> None:
     assert [line.endswith(f"; {reason}") for line in run.out.splitlines()[2:]] == [True] * 4
 
 
+@pytest.mark.slow
 def test_an_interceptor_of_other_bindings_is_not_checked(
     fretc: Fretc, loop: Callable[..., str]
 ) -> None:
@@ -542,6 +547,7 @@ def test_all_five_layers_have_a_line(fretc: Fretc, loop: Callable[..., str]) -> 
 SHARED = {"interceptor": "interceptor"}
 
 
+@pytest.mark.slow
 @each("layer", ["interceptor", "loop", "bounds", "agent"])
 @each("planned", [False, True])
 @each("named", [False, True])
@@ -621,6 +627,7 @@ def test_crosshair_is_given_the_core_and_the_limit(
     assert list(found[0]["artefacts"]) == ["interceptor.py"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "reason"),
     [

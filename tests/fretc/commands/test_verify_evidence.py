@@ -186,7 +186,6 @@ def test_what_the_file_says_before_its_results_is_compared(
     assert told in run.out
 
 
-@pytest.mark.slow
 def test_a_result_that_was_taken_out_is_found(audited: Fretc) -> None:
     write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
     assert audited("audit", "logs", "-o", "build/evidence.json").status == 1
@@ -253,7 +252,6 @@ def test_a_report_is_made_again_and_compared(audited: Fretc) -> None:
     assert json.loads(run.out)["report_is_the_same"] is False
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
@@ -298,7 +296,6 @@ def test_a_place_that_evidence_names_is_opened_below_the_present_folder_only(
     assert f"{place}\n  ? r1  not checked: its log is not found\n" in run.out
 
 
-@pytest.mark.slow
 def test_what_the_user_names_is_opened(
     audited: Fretc, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
@@ -334,7 +331,6 @@ def without(run: str) -> None:
     changed(results=[one for one in results if one["run"] != run])
 
 
-@pytest.mark.slow
 def test_a_requirement_that_is_nowhere_in_the_evidence_is_missed(audited: Fretc) -> None:
     write("requirements/r2.fret", "whenever p the sw shall within 3 ticks satisfy q")
     run = audited("verify-evidence", "--format", "json")
@@ -357,7 +353,6 @@ def test_a_run_that_was_reviewed_is_missed(audited: Fretc) -> None:
     assert f"logs/bad.mcap\n  {told}" in run.out
 
 
-@pytest.mark.slow
 def test_a_log_in_place_of_the_one_that_was_reviewed_is_found(audited: Fretc) -> None:
     assert audited("lock", *BY).status == 0
     log("logs/bad.mcap", 0, 1.5, 3, 0, 0, 0.5)
@@ -435,7 +430,6 @@ def test_a_manifest_is_read_as_sha256sum_reads_it(
     assert told in run.out + run.err
 
 
-@pytest.mark.slow
 def test_names_that_sha256sum_escapes_are_read(audited: Fretc) -> None:
     Path("logs/bad.mcap").rename("logs/a\\b\n.mcap")
     assert audited("audit", "logs", "-o", "build/evidence.json").status == 1
@@ -495,7 +489,6 @@ def test_proofs_of_a_monitor_in_another_language_are_made_again(audited: Fretc, 
     assert f"it is about `{made.artefacts[0]}`, which is not made here" in run.out
 
 
-@pytest.mark.slow
 def test_a_proof_that_is_planned_and_is_not_there_is_missed(audited: Fretc) -> None:
     write("requirements/r1.fret", f'+++\nid = "r1"\nverify = ["audit", "loop", "desk"]\n+++\n{R1}')
     assert audited("audit", "logs", "-o", "build/evidence.json").status == 1

@@ -131,6 +131,7 @@ def test_a_text_of_another_kind_is_not_run(fretc: Fretc, made: Made) -> None:
     assert run.err.endswith(f"help: name a file that `--emit {made.emit}` wrote\n")
 
 
+@pytest.mark.slow
 @needs("gcc")
 def test_a_monitor_in_c_needs_its_header(fretc: Fretc) -> None:
     write("r1.fret", R1)

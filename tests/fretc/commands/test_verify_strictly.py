@@ -32,6 +32,7 @@ def complete(project: Fretc) -> Fretc:
     return project
 
 
+@pytest.mark.slow
 def test_what_is_signed_reviewed_and_listed_stands(complete: Fretc) -> None:
     run = complete(*STRICTLY)
     assert (run.status, run.err) == (0, "")

@@ -108,6 +108,7 @@ def test_a_clock_by_stamps_asks_for_a_lateness(fretc: Fretc) -> None:
     assert "bindings.toml:2:1" in run.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "code"),
     [
@@ -265,6 +266,7 @@ def test_a_watch_that_is_stopped_leaves_a_whole_recording_and_its_evidence(numbe
     assert recording.intact
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("columns", [40, 60, 120])
 def test_no_row_is_wider_than_the_screen(columns: int) -> None:
     session = Session(plan_of(Setting()))

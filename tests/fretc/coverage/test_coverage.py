@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import jsonschema  # type: ignore[import-untyped]
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -73,6 +74,7 @@ def test_the_least_runs_show_all_that_is_seen(shown: list[Shown]) -> None:
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(st.lists(SHOWN, min_size=1, max_size=3))
 def test_its_json_is_of_its_schema(shown: list[Shown]) -> None:

@@ -93,6 +93,7 @@ def test_all_mutants_in_one_monitor_are_judged_as_each_by_its_own(sentence: str)
             assert seen(other) == seen(by_itself(watching, trace, intact=intact)), mutant.words
 
 
+@pytest.mark.slow
 @each("template", [*templates((2,))][::30])
 def test_a_difference_is_there_whatever_the_unknown_values_were(template: Template) -> None:
     of = suspects(rule(template.sentence))
@@ -115,6 +116,7 @@ def test_a_difference_is_there_whatever_the_unknown_values_were(template: Templa
                 assert all(difference(one[0], one[number]) is not None for one in filled)
 
 
+@pytest.mark.slow
 def test_known_runs_differ_where_verdicts_or_violated_ticks_do() -> None:
     of = suspects(rule(SENTENCES[0]))
     noticed = set[str]()

@@ -126,6 +126,7 @@ def text(value: bytes, x: float) -> bytes:
 # Whole logs, both ways
 
 
+@pytest.mark.slow
 def test_many_messages_of_one_layout_are_read_without_being_decoded(ways: Ways, log: Log) -> None:
     sent = [number(i / 7, i * MS) for i in range(9000)]  # more than are read at once, twice
     recording = ways.same(log(sent), X)

@@ -101,6 +101,7 @@ def test_custom_data_of_a_bag_s_folder_counts(tmp_path: Path, parts: Any) -> Non
     assert described(path, text) == {"custom_data.robot": ("r7",)}
 
 
+@pytest.mark.slow
 def test_a_hostile_record_gives_no_label_and_costs_no_verdict(tmp_path: Path) -> None:
     large = [("build", {"version": "x" * (2**20 + 1)})]
     path = write(tmp_path / "a.mcap", TWELVE, metadata=large, per_chunk=3)

@@ -65,6 +65,7 @@ def written(path: Path, some: list[Row], metadata: Mapping[str, dict[str, str]] 
     return write(path / "log.mcap", messages, metadata=list(metadata.items()))
 
 
+@pytest.mark.slow
 @given(some=rows, lateness=st.sampled_from([0, 5, 20]), unknown=st.sampled_from(["", "true"]))
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_a_proposition_is_unknown_where_a_message_was_late_and_else_what_it_is(

@@ -196,6 +196,7 @@ def test_a_project_without_a_requirement_shows_nothing(tmp_path: Path) -> None:
 # What is suspect, what has errors --------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_one_reason_for_many_requirements_is_one_message(tmp_path: Path) -> None:
     sentence = "whenever near the robot shall within 300 milliseconds satisfy stopped"
     ids = [f"R{number}" for number in range(1, 11)]
@@ -665,6 +666,7 @@ def _args(case: tuple[Any, Sequence[dict[str, Any]]], folder: Path) -> tuple[Any
     return (known, folder, *results)
 
 
+@pytest.mark.slow
 def test_a_report_names_no_place_of_this_machine(tmp_path: Path) -> None:
     report = report_of(*_args(everything(tmp_path / "a"), tmp_path / "a"))
     assert report.html is not None
@@ -694,6 +696,7 @@ def test_a_report_that_says_less_does_not_fit_the_schema(tmp_path: Path) -> None
         validate("report.schema.json", content)
 
 
+@pytest.mark.slow
 def test_evidence_made_by_hand_fits_its_schema(tmp_path: Path) -> None:
     known, results = everything(tmp_path)
     validate("evidence.schema.json", evidence(known, *results))

@@ -77,6 +77,7 @@ def whole(build: ReportBuild) -> tuple[Any, Details]:
 # One law of every source -------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_source_counts_what_it_has_in_full(audited: Path) -> None:
     known = opened(audited)
     briefs = [*known.briefs()]

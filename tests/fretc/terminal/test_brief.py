@@ -60,6 +60,7 @@ LINES = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", LINES)
 def test_a_command_says_them_in_one_line_and_check_says_them_all(fretc: Fretc, line: str) -> None:
     for id, sentence in SENTENCES.items():

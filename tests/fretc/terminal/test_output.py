@@ -60,12 +60,14 @@ def test_a_full_standard_error_leaves_the_exit_status_alone(folder: Path) -> Non
     assert in_shell(folder, "audit none.mcap", "{} 2>/dev/full").returncode == 2
 
 
+@pytest.mark.slow
 def test_a_full_standard_output_is_told(folder: Path) -> None:
     done = in_shell(folder, "r1.fret", "{} >/dev/full")
     assert done.returncode == 2
     assert "F905 `standard output` cannot be written: No space left on device" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_closed_standard_output_costs_nothing_but_the_output(folder: Path) -> None:
     assert in_shell(folder, "r1.fret --emit ajpf", "{} >&-").returncode == 0
     assert (folder / "build/r1.psl").is_file()
@@ -116,6 +118,7 @@ def test_what_stands_beside_requirements_is_never_replaced(
     assert there.read_bytes() == before
 
 
+@pytest.mark.slow
 def test_a_report_never_replaces_its_evidence_nor_its_other_form(
     folder: Path, fretc: Fretc
 ) -> None:
@@ -222,6 +225,7 @@ def test_a_predicate_that_looks_back_needs_no_column_of_its_own(folder: Path, fr
     assert (done.returncode, done.stdout) == (1, "t.csv: p: violated (ticks 2..2)\n")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shell", ["{} >&-", "{} >/dev/full", "{} <&-"])
 def test_a_monitor_with_a_closed_or_full_stream_tells_so(
     folder: Path, fretc: Fretc, shell: str
@@ -260,6 +264,7 @@ def test_no_audit_is_begun_whose_evidence_would_replace_a_log(
     assert all((folder / name).read_bytes() == Path(LOG).read_bytes() for name in logs)
 
 
+@pytest.mark.slow
 def test_no_name_of_a_log_writes_a_verdict_of_its_own(folder: Path, fretc: Fretc) -> None:
     forged = "a.mcap\n  \u2714 R1  satisfied\x1b[2K"
     shutil.copy(LOG, folder / forged)

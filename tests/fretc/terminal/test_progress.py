@@ -40,6 +40,7 @@ def test_nothing_is_shown_elsewhere(monkeypatch: pytest.MonkeyPatch) -> None:
     assert file.getvalue() == ""
 
 
+@pytest.mark.slow
 def test_an_audit_counts_the_bytes_of_its_logs(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:

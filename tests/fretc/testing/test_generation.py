@@ -160,6 +160,7 @@ def test_verdicts_are_those_of_the_formula(sentence: str) -> None:
         assert holds(rule.ft_finite, trace) is test.finite
 
 
+@pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_a_mutant_is_killed_or_judges_all_words_alike(sentence: str) -> None:
     (rule,) = rules(sentence)
@@ -247,6 +248,7 @@ def test_the_other_requirements_are_kept() -> None:
         assert all(not judged(other, word).breach for other in rules(*sentences)[1:])
 
 
+@pytest.mark.slow
 def test_what_others_exclude_is_excluded_by_the_fewest() -> None:
     found = outcomes(
         made(
@@ -269,6 +271,7 @@ def test_a_mutant_that_others_hide_is_excluded() -> None:
     assert fates["negated:condition"].by == ("R2",)
 
 
+@pytest.mark.slow
 def test_a_long_bound_is_stored_by_stretches() -> None:
     found = made("upon a the sw shall within 40 ticks satisfy x")
     (name, *_) = outcomes(found)["answered-at-last-tick", Polarity.KEPT].tests

@@ -52,6 +52,7 @@ def both(strata: list[tuple[list[float], list[float]]]) -> list[Stratum]:
     return [(before, after) for before, after in strata if before and after]
 
 
+@pytest.mark.slow
 @examples(60)
 @given(STRATA)
 def test_p_is_the_share_of_arrangements_that_are_as_large(
@@ -79,6 +80,7 @@ def test_it_alarms_no_more_often_than_it_says(pooled: list[float], after: int) -
         assert sum(p <= level + 1e-12 for p in found) / len(found) <= level + 1e-9
 
 
+@pytest.mark.slow
 @needs_package("scipy")
 @examples(40)
 @given(st.lists(st.integers(0, 10**6), min_size=2, max_size=40, unique=True), st.data())
@@ -126,6 +128,7 @@ def test_each_test_that_is_made_can_find_something_beside_the_others(least: list
     assert made == [i for i, each in enumerate(least) if each * beside <= 0.05]
 
 
+@pytest.mark.slow
 def test_all_together_alarm_no_more_often_than_the_level() -> None:
     """400 times ten comparisons of which none has changed; with ties, in strata of any size."""
     chance = random.Random(19)

@@ -288,6 +288,7 @@ RUNS = st.lists(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(st.lists(RUNS, min_size=1, max_size=4))
 def test_no_violation_of_the_newest_round_is_lost(

@@ -59,6 +59,7 @@ def changed(mcapl: Mcapl, change: Change) -> None:
     (mcapl.bundle / "result.json").write_text(json.dumps(content))
 
 
+@pytest.mark.slow
 def test_what_ajpf_shows_of_what_is_made_now_is_shown(ran: Mcapl) -> None:
     line = only(ran)
     assert (line.requirement, line.layer) == ("R1", Layer.AJPF)
@@ -73,6 +74,7 @@ def test_what_ajpf_shows_of_what_is_made_now_is_shown(ran: Mcapl) -> None:
     assert "r1_ajpf/README.md" not in line.artefacts
 
 
+@pytest.mark.slow
 def test_what_ajpf_refutes_is_refuted_with_its_run(ran: Mcapl) -> None:
     ran.says({"R1.jpf": (RECORDED, 0)})
     ran.run()
@@ -101,6 +103,7 @@ def test_what_is_not_as_expected_shows_nothing(
     assert outcome(only(ran)) == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     some(["SIF.gwen", "SIF.psl", "SIF_mutant.gwen", "Env.java", "SIF.ail", "R1.jpf", "run.py"], 3),
@@ -124,6 +127,7 @@ def test_a_result_of_the_requirement_as_it_was_is_stale(ran: Mcapl) -> None:
     assert result.detail.startswith("no bundle is made of R1 any more: F614 ")
 
 
+@pytest.mark.slow
 def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
     ran.says({"R1.jpf": (RECORDED, 0)})
     ran.run()
@@ -133,6 +137,7 @@ def test_a_stale_refutation_is_told_as_one(ran: Mcapl) -> None:
     assert result.detail.startswith("it was refuted; SIF.gwen is not made like that")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -181,6 +186,7 @@ def test_a_result_is_held_against_the_logs_that_lie_beside_it(ran: Mcapl, name: 
     assert only(ran).result is Result.PROVED
 
 
+@pytest.mark.slow
 def test_an_agent_of_ones_own_counts_while_it_is_as_it_was(ran: Mcapl) -> None:
     own = ran.folder / "mine.gwen"
     own.write_text((ran.bundle / "SIF.gwen").read_text().replace("do_stopped", "brake"))
@@ -250,6 +256,7 @@ def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: 
     assert merged([red], []) == (red,)
 
 
+@pytest.mark.slow
 def test_a_weaker_property_does_not_show_the_requirement(ran: Mcapl) -> None:
     formalized = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
     for artifact in emit([formalized], Options(weaken=True)):
@@ -293,6 +300,7 @@ def test_verify_and_report_read_it_as_the_planned_method(
     assert not planned(tmp_path)[0]
 
 
+@pytest.mark.slow
 def test_a_refutation_of_ajpf_is_red_in_both(ran: Mcapl, fretc: Fretc, tmp_path: Path) -> None:
     project(tmp_path)
     ran.says({"R1.jpf": (RECORDED, 0)})
@@ -305,6 +313,7 @@ def test_a_refutation_of_ajpf_is_red_in_both(ran: Mcapl, fretc: Fretc, tmp_path:
     assert planned(tmp_path)[1].startswith("counterexample: AJPF: ")
 
 
+@pytest.mark.slow
 def test_a_stale_result_is_said_and_does_not_count(
     ran: Mcapl, fretc: Fretc, tmp_path: Path
 ) -> None:

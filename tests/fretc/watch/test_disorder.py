@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -58,6 +59,7 @@ REPORTED = [
 """Messages of one topic after another, each in a disorder of its own."""
 
 
+@pytest.mark.slow
 @example(BY_ARRIVAL, REPORTED, None, True)
 @given(settings_, messages, st.sampled_from([None, 1, 3, 100]), st.booleans())
 @settings(max_examples=2000 if FULL else 10)
@@ -88,6 +90,7 @@ def test_what_is_shown_at_the_end_is_what_the_evidence_says(
         assert states == ended.verdicts
 
 
+@pytest.mark.slow
 @given(messages)
 @settings(max_examples=2000 if FULL else 12)
 def test_by_arrival_in_order_nothing_is_late_and_nothing_judged_again(some: list[Sent]) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -89,6 +90,7 @@ LATE_FIRST = [
 """The last of them is the first by its time, and later ticks look back to it."""
 
 
+@pytest.mark.slow
 @example(Setting(time="publish_time", slow="z < 5 for 25 ms", lateness=20), LATE_FIRST, 40)
 @given(settings_, messages, st.sampled_from([0, 3, 40]))
 @settings(max_examples=2000 if FULL else 10)
@@ -112,6 +114,7 @@ def test_rows_and_verdicts_are_those_of_the_audit(
 BY_STAMP = Setting(slow="y < 5")
 
 
+@pytest.mark.slow
 @given(messages, st.sets(st.integers(0, 24), min_size=1))
 @settings(max_examples=2000 if FULL else 15)
 def test_what_was_missed_satisfies_nothing_live_and_audited(
@@ -131,6 +134,7 @@ def test_what_was_missed_satisfies_nothing_live_and_audited(
     assert not {"satisfied", "vacuous"} & {each.verdict for each in found}
 
 
+@pytest.mark.slow
 @given(messages, st.data())
 @settings(max_examples=2000 if FULL else 12)
 def test_nothing_is_judged_while_the_source_is_gone(some: list[Sent], data: st.DataObject) -> None:

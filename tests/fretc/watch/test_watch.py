@@ -58,6 +58,7 @@ def runs(news: Sequence[News]) -> list[RunEnded]:
     return [each for each in news if isinstance(each, RunEnded)]
 
 
+@pytest.mark.slow
 def test_each_change_of_a_requirement_is_news_once(plan: Plan) -> None:
     items = [*steady(0, 100), *steady(100, 130, 1.0), *steady(130, 300)]
     news = told(Watch(plan), items)
@@ -68,6 +69,7 @@ def test_each_change_of_a_requirement_is_news_once(plan: Plan) -> None:
     assert all(one != other for one, other in pairwise(states))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("last", ["message", "idle"])
 def test_what_is_owed_is_news_before_the_tick_and_soon(last: str) -> None:
     """The grid ticks every 10 ms and waits for 200: what comes is not judged for long."""
@@ -107,6 +109,7 @@ def later(arrivals: Iterable[Arrival], by: int) -> Iterator[Arrival]:
         yield Arrival(each.channel, each.payload, each.log_time + by * MS, each.publish_time)
 
 
+@pytest.mark.slow
 def test_two_clocks_that_take_turns_are_given_up(
     plan: Plan, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -158,6 +161,7 @@ def test_a_recording_is_not_written_over(plan: Plan, tmp_path: Path) -> None:
 BROKEN = Diagnostic(Code.UNREADABLE, "the robot does not answer")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "events",
     [

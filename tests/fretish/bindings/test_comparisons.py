@@ -239,6 +239,7 @@ def speeds() -> st.SearchStrategy[str]:
     return st.recursive(leaf, larger, max_leaves=6)
 
 
+@pytest.mark.slow
 @given(speeds(), speeds(), st.sampled_from(sorted(COMPARE)), st.data())
 def test_raw_arithmetic_is_the_physical_one(
     left: str, right: str, op: str, data: st.DataObject

@@ -228,6 +228,7 @@ def test_a_chain_costs_in_proportion_to_its_length() -> None:
     assert large - small < 2.5 * (small - least)
 
 
+@pytest.mark.slow
 def test_a_long_chain_of_other_names_is_one_name() -> None:
     needed = {f"d{i}": e.Name(f"d{i - 1}") for i in range(1, 40_000)}
     sentence = parse(Source("r.fret", "the c shall satisfy d39999").span())

@@ -37,6 +37,7 @@ def test_tables_of_another_grammar_are_not_used() -> None:
     assert other.parser().options.start == ["value"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", SENTENCES)
 def test_kept_tables_parse_as_new_ones(sentence: str) -> None:
     kept, new = parser.GRAMMAR.parser(), parser.GRAMMAR._new()

@@ -28,6 +28,7 @@ def test_what_is_read_within_its_limits_is_given() -> None:
     assert with_budget(10, PLACE, lambda: 7) == 7
 
 
+@pytest.mark.slow
 def test_reading_without_end_is_f930(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "SECONDS", 0.2)
     start = time.process_time()
@@ -45,6 +46,7 @@ def test_reading_that_takes_more_and_more_memory_is_f930(monkeypatch: pytest.Mon
     assert diagnostic.message.startswith("it would take more than 40 MiB of memory")
 
 
+@pytest.mark.slow
 def test_a_library_that_takes_every_exception_for_its_own_is_ended_all_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -74,6 +76,7 @@ def test_what_is_larger_may_take_longer(monkeypatch: pytest.MonkeyPatch) -> None
     assert with_budget(200_000, PLACE, busy) == "read"
 
 
+@pytest.mark.slow
 def test_a_budget_within_another_is_a_part_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "SECONDS", 0.2)
 

@@ -2,6 +2,7 @@
 
 import random
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -27,6 +28,7 @@ def test_the_same_name_with_a_number_is_in_the_order_of_the_number(
     assert found == [f"{name}{number}x" for number in sorted(numbers)]
 
 
+@pytest.mark.slow
 @given(st.lists(st.text("aR0129.²٣"), unique=True), st.randoms(use_true_random=False))
 def test_the_order_is_one_and_the_same(names: list[str], chance: random.Random) -> None:
     shuffled = chance.sample(names, len(names))

@@ -47,6 +47,7 @@ def every(values: Sequence[object]) -> int:
     return (1 << len(values)) - 1
 
 
+@pytest.mark.slow
 @given(pairs)
 def test_since(both: tuple[Bits, Bits]) -> None:
     left, right = both
@@ -61,6 +62,7 @@ def test_released_is_the_dual_of_since(both: tuple[Bits, Bits]) -> None:
     assert c.released(number(left), number(right)) == number(dual)
 
 
+@pytest.mark.slow
 @given(pairs, bounds)
 def test_since_between(both: tuple[Bits, Bits], ago: tuple[int, int | None]) -> None:
     left, right = both
@@ -75,6 +77,7 @@ def test_released_between_is_its_dual(both: tuple[Bits, Bits], ago: tuple[int, i
     assert c.released_between(number(left), number(right), *ago, every(left)) == number(dual)
 
 
+@pytest.mark.slow
 @given(pairs, st.integers(0, 80))
 def test_since_from(both: tuple[Bits, Bits], lo: int) -> None:
     """Also where each witness lies within the left side: then it is found in another way."""

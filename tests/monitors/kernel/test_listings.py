@@ -58,6 +58,7 @@ OPERATIONS: dict[str, Callable[[Sequence[Any]], object]] = {
 }
 
 
+@pytest.mark.slow
 @example(LONG)
 @given(columns)
 def test_each_operation_gives_what_it_gives_of_the_tuple(column: int) -> None:

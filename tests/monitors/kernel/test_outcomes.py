@@ -312,6 +312,7 @@ def test_the_outcome_is_what_its_fields_mean(
     hold_to_the_definition(codes, len(codes["trigger"]), horizon, end)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("horizon", [None, 0, 5, 300])
 def test_the_outcome_of_a_long_trace_is_what_its_fields_mean(horizon: int | None) -> None:
     choose, ticks = random.Random(7), 20_000

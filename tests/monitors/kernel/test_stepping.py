@@ -102,6 +102,7 @@ def in_pieces(machine: Monitor, table: Rows, choose: random.Random) -> None:
         place += len(rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", [*SENTENCES, *LONG])
 @pytest.mark.parametrize("seed", range(4))
 def test_steps_batches_mistakes_saved_states_and_columns_tell_the_same(
@@ -259,6 +260,7 @@ def test_whatever_stops_a_run_both_rails_stay_together() -> None:
 # One rail again -------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sentence", [*SENTENCES, *LONG])
 @pytest.mark.parametrize("seed", range(3))
 def test_a_monitor_whose_rails_meet_again_tells_what_one_tells_whose_rails_do_not(

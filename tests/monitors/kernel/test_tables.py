@@ -253,6 +253,7 @@ def spoil(table: list[list[str]], ends: list[str], choose: random.Random) -> Non
             table[place], table[other] = table[other], table[place]
 
 
+@pytest.mark.slow
 @given(csv_tables(), st.sampled_from([1, 2, 5, 16, 64, 1 << 14]))
 @example(("p\n0\n\n1\n", ("p",)), 1)  # an empty line is a value, and not a line that is too much
 @example(("p\n0\n\n", ("p",)), 64)

@@ -129,6 +129,7 @@ def test_a_copy_shares_the_runs_that_have_ended(copied: Callable[[Window], Windo
     assert (copy.first, copy.last, copy.state()) == (window.first, window.last, window.state())
 
 
+@pytest.mark.slow
 def test_any_number_of_runs_can_be_forgotten_at_once() -> None:
     window = stepped(1, 10**6, [ON, OFF] * 200_000)
     window.step(left=False, right=False)

@@ -19,6 +19,7 @@ def test_the_grid_holds_the_clearance_of_its_cells_centres() -> None:
     assert GRID[58, 90] == 0.0  # Inside a shelf.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("margin", [0.1, 0.32, 0.45])
 def test_a_path_stays_clear_of_every_obstacle_and_reaches_its_goal(margin: float) -> None:
     for start, goal in zip((STORE.start, *STORE.goals), STORE.goals, strict=False):
@@ -95,6 +96,7 @@ def test_what_it_saw_and_the_map_lacks_is_kept_away_from() -> None:
     assert 0.45 < room < 1.0
 
 
+@pytest.mark.slow
 def test_the_pose_error_wanders_by_some_centimetres_and_slowly() -> None:
     error, seen = PoseError(1), []
     for _ in range(50 * 600):
@@ -115,6 +117,7 @@ def test_the_navigator_takes_its_goals_in_order_and_then_stands() -> None:
     assert navigator.step(STORE.start) == STANDSTILL
 
 
+@pytest.mark.slow
 def test_the_navigator_leads_a_perfect_robot_to_every_goal() -> None:
     navigator, pose = Navigator(STORE), STORE.start
     for _ in range(3000):

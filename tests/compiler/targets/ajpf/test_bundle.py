@@ -194,6 +194,7 @@ def test_a_response_that_is_an_action_is_that_action() -> None:
     assert "D(ag,halt)" in files["r1_ajpf/SIF.psl"]
 
 
+@pytest.mark.slow
 def test_the_mode_of_a_scope_is_drawn_too() -> None:
     files = bundle(rule("after m mode whenever a the ag shall eventually satisfy r"))
     manifest = json.loads(files["r1_ajpf/manifest.json"])
@@ -246,6 +247,7 @@ def test_modalities_that_no_agent_brings_about_are_refused(bindings: str, what: 
     assert diagnostic.message == f"an agent cannot express {what} of R1"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "sentence",
     [
@@ -324,6 +326,7 @@ def test_the_environment_compiles_against_what_it_uses_of_mcapl(tmp_path: Path) 
     assert (tmp_path / "classes/r7_a_ajpf/Env.class").is_file()
 
 
+@pytest.mark.slow
 def test_the_command_writes_a_folder_for_each_requirement(fretc: Fretc, tmp_path: Path) -> None:
     sentence = "whenever a the ag shall eventually satisfy r"
     for id in ("A-1", "A-2"):

@@ -179,6 +179,7 @@ def test_compound_sentences_keep_their_language(sentence: s.Sentence) -> None:
     assert not any(isinstance(formula, f.Const) for formula in found.values())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "response",
     [
@@ -482,6 +483,7 @@ def test_a_refusal_names_the_part_and_the_way_out(sentence: str, what: str, fix:
     assert text.endswith(f"\nhelp: {fix}")
 
 
+@pytest.mark.slow
 def test_nesting_has_an_end() -> None:
     names = (f"p{i}" for i in count())
     deep = "q"

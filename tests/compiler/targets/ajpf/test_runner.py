@@ -145,6 +145,7 @@ def mcapl(tmp_path: Path) -> Mcapl:
     return Mcapl(tmp_path)
 
 
+@pytest.mark.slow
 def test_all_as_expected_is_shown(mcapl: Mcapl) -> None:
     done = mcapl.run()
     assert done.returncode == 0, done.stderr
@@ -184,6 +185,7 @@ def test_what_is_not_expected_is_no_success(
     assert line in done.stdout
 
 
+@pytest.mark.slow
 def test_an_answer_that_does_not_come_is_none(mcapl: Mcapl) -> None:
     mcapl.tool("java", 'if [ "$1" = -version ]; then echo \'version "11"\'; else exec sleep 30; fi')
     done = mcapl.run("--timeout", "0.1")
@@ -191,6 +193,7 @@ def test_an_answer_that_does_not_come_is_none(mcapl: Mcapl) -> None:
     assert "R1.jpf: ERROR, EXPECTED HOLDS (no answer in 0.1 seconds)" in done.stdout
 
 
+@pytest.mark.slow
 def test_without_ajpf_nothing_is_run(mcapl: Mcapl, tmp_path: Path) -> None:
     for environment, message in (
         ({"AJPF_HOME": ""}, "set AJPF_HOME to the folder of MCAPL"),
@@ -228,6 +231,7 @@ def test_a_manifest_that_says_nothing_is_no_success(mcapl: Mcapl, text: str) -> 
     assert mcapl.run().returncode == 2
 
 
+@pytest.mark.slow
 def test_a_manifest_without_its_controls_is_no_success(mcapl: Mcapl) -> None:
     manifest = json.loads((mcapl.bundle / "manifest.json").read_text())
     manifest["checks"] = manifest["checks"][:1]
@@ -262,6 +266,7 @@ def test_a_file_that_changes_while_ajpf_is_at_work_leaves_no_result(
     assert not (mcapl.bundle / "result.json").exists()
 
 
+@pytest.mark.slow
 def test_an_agent_of_ones_own_that_changes_meanwhile_leaves_no_result(mcapl: Mcapl) -> None:
     own = mcapl.folder / "own.gwen"
     own.write_text((mcapl.bundle / "SIF.gwen").read_text(encoding="utf-8"), encoding="utf-8")
@@ -271,6 +276,7 @@ def test_an_agent_of_ones_own_that_changes_meanwhile_leaves_no_result(mcapl: Mca
     assert not (mcapl.bundle / "result.json").exists()
 
 
+@pytest.mark.slow
 def test_two_runs_in_one_folder_do_not_read_each_others_files(mcapl: Mcapl) -> None:
     with (mcapl.bundle / "run.lock").open("w") as other:
         fcntl.flock(other, fcntl.LOCK_EX)
@@ -280,6 +286,7 @@ def test_two_runs_in_one_folder_do_not_read_each_others_files(mcapl: Mcapl) -> N
     assert mcapl.run().returncode == 0
 
 
+@pytest.mark.slow
 def test_ajpf_starts_where_there_is_nothing_but_what_it_is_given(mcapl: Mcapl) -> None:
     """Java PathFinder reads a `jpf.properties` where it starts."""
     mcapl.write(mcapl.bundle / "jpf.properties", "search.depth_limit = 1\n")
@@ -294,6 +301,7 @@ def test_ajpf_starts_where_there_is_nothing_but_what_it_is_given(mcapl: Mcapl) -
 # What is run, and how --------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_newest_antlr_comes_before_the_others_on_the_class_path(mcapl: Mcapl) -> None:
     mcapl.run()
     places = (mcapl.folder / "said/class_path").read_text().strip().split(os.pathsep)
@@ -312,6 +320,7 @@ def test_without_an_antlr_that_is_new_enough_nothing_is_run(mcapl: Mcapl) -> Non
     assert "MCAPL's parsers need ANTLR 4.13.2" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", ["17.0.9", "1.8.0_392", "21"])
 def test_another_java_than_11_is_refused(mcapl: Mcapl, version: str) -> None:
     mcapl.java(version)
@@ -322,6 +331,7 @@ def test_another_java_than_11_is_refused(mcapl: Mcapl, version: str) -> None:
     assert not (mcapl.bundle / "result.json").exists()
 
 
+@pytest.mark.slow
 def test_all_paths_that_ajpf_reads_are_absolute(mcapl: Mcapl) -> None:
     mcapl.run()
     for name in ("R1", "R1_mutant"):
@@ -335,6 +345,7 @@ def test_all_paths_that_ajpf_reads_are_absolute(mcapl: Mcapl) -> None:
         assert agent == f"mas.file = {mcapl.bundle / wanted}"
 
 
+@pytest.mark.slow
 def test_modules_that_stand_beside_it_are_not_imported(mcapl: Mcapl) -> None:
     for name in ("json", "hashlib", "argparse", "subprocess", "dataclasses", "__future__"):
         mcapl.write(mcapl.bundle / f"{name}.py", "raise SystemExit(0)")
@@ -344,6 +355,7 @@ def test_modules_that_stand_beside_it_are_not_imported(mcapl: Mcapl) -> None:
         assert "AJPF says all that is expected of it" in done.stdout
 
 
+@pytest.mark.slow
 def test_an_agent_of_ones_own_is_checked_where_that_is_asked_for(mcapl: Mcapl) -> None:
     agent = mcapl.bundle / "SIF.gwen"
     agent.write_text(agent.read_text().replace("do_stopped", "brake"), encoding="utf-8")
@@ -359,6 +371,7 @@ def test_an_agent_of_ones_own_is_checked_where_that_is_asked_for(mcapl: Mcapl) -
     assert mcapl.run("--agent", str(agent)).returncode == 2
 
 
+@pytest.mark.slow
 def test_an_agent_of_another_name_is_refused(mcapl: Mcapl) -> None:
     own = mcapl.folder / "other.gwen"
     for text, message in ((":name: rover", "is called `rover`"), ("", "has no `:name:`")):
@@ -479,6 +492,7 @@ def test_the_statistics_are_read() -> None:
     assert states("nothing") == {}
 
 
+@pytest.mark.slow
 def test_a_result_is_what_its_schema_says_and_names_what_was_run(mcapl: Mcapl) -> None:
     mcapl.says({"R1.jpf": (ENDING, 0), "R1_mutant.jpf": (RECORDED, 0)})
     assert mcapl.run().returncode == 0
@@ -519,6 +533,7 @@ def test_a_result_that_shows_nothing_is_written_too(
     assert found["verdict"] == verdict_
 
 
+@pytest.mark.slow
 def test_a_run_that_cannot_begin_leaves_the_last_result_alone(mcapl: Mcapl) -> None:
     mcapl.run()
     before = mcapl.result()

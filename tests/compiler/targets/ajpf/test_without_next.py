@@ -47,6 +47,7 @@ def all_templates() -> list[Template]:
     return list(templates((2,)))
 
 
+@pytest.mark.slow
 def test_192_templates_have_a_form_and_the_other_96_count_ticks() -> None:
     made = Counter(next_free(read(t.sentence)) is not None for t in all_templates())
     assert made == {True: 192, False: 96}
@@ -54,6 +55,7 @@ def test_192_templates_have_a_form_and_the_other_96_count_ticks() -> None:
     assert refused == {"next", "within", "for", "after"}
 
 
+@pytest.mark.slow
 def test_each_form_is_next_free_and_has_the_language_of_the_formula() -> None:
     for template in all_templates():
         meant = read(template.sentence)
@@ -64,6 +66,7 @@ def test_each_form_is_next_free_and_has_the_language_of_the_formula() -> None:
             assert set(f.atoms(form)) <= set(template.columns)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("group", ["template", "duration"])
 def test_each_form_has_the_language_of_frets_own_formula(group: str) -> None:
     rows: list[dict[str, Any]] = json.loads(TABLE.read_text(encoding="utf-8"))
@@ -161,6 +164,7 @@ def test_next_free_is_logic_and_unbounded_operators_of_the_future(
 # Without a bound --------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [0, 1, 3])
 def test_without_its_bound_within_says_less_and_not_more(n: int) -> None:
     """And strictly less: with a bound, too late is too late."""
@@ -186,6 +190,7 @@ def test_plain_eventually_would_be_stronger_where_the_scope_ends() -> None:
     assert not equivalent(f.And((bound, ever)), bound)
 
 
+@pytest.mark.slow
 def test_nothing_else_loses_a_bound() -> None:
     for template in all_templates():
         if template.timing != "within" or template.scope.startswith("only"):

@@ -157,6 +157,7 @@ def test_any_sentence_tells_the_same_at_each_tick(seed: int, tmp_path: Path) -> 
     hold(machine, program, *(rows(choose, width, choose.choice([20, 150, 300])) for _ in range(3)))
 
 
+@pytest.mark.slow
 def test_monitors_in_one_file_tell_the_same(tmp_path: Path) -> None:
     machine, source = monitors(of_requirements()), Source.of(*of_requirements())
     program = compiled(tmp_path, "gcc", source, flags=[*STRICT, "-O0"])

@@ -25,6 +25,7 @@ from tests.programs import installed
 ROOT = Path(__file__).parents[4]
 
 
+@pytest.mark.slow
 @each("folder", ["requirements", "requirements/mission", "requirements/agv"])
 @pytest.mark.parametrize(
     "command",
@@ -57,6 +58,7 @@ def test_inexact_arithmetic_is_no_text_that_compiles(flag: str, tmp_path: Path) 
     assert "#error" in done.stderr
 
 
+@pytest.mark.slow
 def test_names_of_one_requirement_are_no_names_of_another(tmp_path: Path) -> None:
     """In one program, with each header in one file: a function is of a signal, or of a monitor."""
     names = ("init", "step", "state", "inputs", "motor_init", "motor_step", "x_sample_init")

@@ -129,6 +129,7 @@ def test_templates_alone_and_sentences_with_large_bounds(tmp_path: Path) -> None
     agree(tmp_path, [(each,) for each in choose.sample(sentences, MANY)], words=1, length=150)
 
 
+@pytest.mark.slow
 def test_every_bound_of_a_window(tmp_path: Path) -> None:
     a, b, no = f.Atom("a"), f.Atom("b"), f.FALSE
     bounds = [f.Interval(lo, hi) for lo in range(4) for hi in range(lo, 8)]
@@ -149,6 +150,7 @@ def test_every_bound_of_a_window(tmp_path: Path) -> None:
     alike(tmp_path, [rules], words=6, length=80)
 
 
+@pytest.mark.slow
 def test_no_name_clashes_with_another(tmp_path: Path) -> None:
     names = ("tick", "rail", "truths", "mark", "first", "class", "await", "is_p", "p", "not_p")
     odd = ("a.b", "two words", "__proto__", "constructor", "a</script>b", "a\u2028b", "since_1")
@@ -177,6 +179,7 @@ def test_values_come_in_their_order_or_by_name(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("row", "message"),
     [

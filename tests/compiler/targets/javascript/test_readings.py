@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -121,6 +122,7 @@ cases = st.tuples(with_their_units.filter(lambda each: is_compiled(*each)), rows
 MANY = settings().max_examples
 
 
+@pytest.mark.slow
 @settings(max_examples=max(4, MANY // 25))
 @given(st.lists(cases, min_size=10, max_size=40))
 def test_a_comparison_is_the_same(
@@ -147,6 +149,7 @@ def edges() -> list[Any]:
     return [None, math.nan, math.inf, -math.inf, *whole, *floats, *singles]
 
 
+@pytest.mark.slow
 def test_what_stands_at_an_edge_is_the_same() -> None:
     choose, values, y = random.Random("edges"), edges(), e.Name("y")
     speeds = {"x": ("km/h", Fraction(5, 18)), "y": ("m/s", Fraction(1))}
@@ -183,6 +186,7 @@ WORDS = (
 )
 
 
+@pytest.mark.slow
 def test_words_and_ticks_before_are_the_same(tmp_path: Path) -> None:
     choose = random.Random("words")
     values: dict[str, Sequence[Any]] = {

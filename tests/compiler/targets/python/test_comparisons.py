@@ -233,6 +233,7 @@ dyadic = trees(
 ).filter(_is_exact)
 
 
+@pytest.mark.slow
 @given(dyadic, st.fixed_dictionaries(dict.fromkeys(NAMES, small)))
 def test_where_nothing_is_rounded_both_are_exact(tree: e.Comparison, row: dict[str, float]) -> None:
     left, right = exactly(tree.left, row), exactly(tree.right, row)
@@ -386,6 +387,7 @@ def of(sentence: str) -> FormalizedRequirement:
     return rule
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sentence", "values", "expected"),
     [
@@ -491,6 +493,7 @@ def test_a_row_that_is_refused_is_no_tick_that_is_looked_back_at() -> None:
 # What stays a proposition ---------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sentence", "variables"),
     [

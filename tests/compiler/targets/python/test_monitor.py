@@ -284,7 +284,6 @@ def test_no_unknown_value_contradicts_a_definite_verdict(
         assert known.finite in (None, template.satisfied(cut(filled, length)))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_with_all_values_known_everything_is_definite(scope: str) -> None:
     for template in templates((2,)):
@@ -415,6 +414,7 @@ def test_a_monitor_with_a_long_duration_steps_to_its_deadline() -> None:
     assert [step.decided for step in outputs[999:]] == ["pending", "violated", "violated"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("p", "q"),
     [
@@ -509,6 +509,7 @@ HOSTILE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", HOSTILE, ids=ascii)
 def test_no_name_breaks_out_of_its_place(name: str) -> None:
     text = emitted(f"whenever {name} the sw shall immediately satisfy q")
@@ -690,6 +691,7 @@ def test_a_reader_that_goes_away_is_neither_a_verdict_nor_bad_use(
     assert (done.stdout, done.stderr) == ("141\n", "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("trace", "why"),
     [
@@ -716,6 +718,7 @@ def test_what_is_open_at_the_end_may_count_as_violated_on_request(programs: Path
     assert (done.returncode, done.stderr) == (1, b"")
 
 
+@pytest.mark.slow
 def test_the_worst_of_several_traces_decides(programs: Path, tmp_path: Path) -> None:
     good, bad = tmp_path / "good.csv", tmp_path / "bad.csv"
     good.write_text("p,q\n1,1\n")
@@ -759,6 +762,7 @@ def test_bad_input_is_one_clear_message(programs: Path, trace: bytes, message: s
     assert done.stderr.decode() == f"{message}\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("trace", [b'{"p": ' + b"[" * 100_000, b"p,q\n\x00,1\n", b'{"p":1}\n\xff'])
 def test_no_input_gives_a_traceback(programs: Path, trace: bytes) -> None:
     done = call(programs, "within", "-", stdin=trace)
@@ -766,6 +770,7 @@ def test_no_input_gives_a_traceback(programs: Path, trace: bytes) -> None:
     assert len(done.stderr.splitlines()) == 1, done.stderr[-300:]
 
 
+@pytest.mark.slow
 def test_a_file_that_is_not_there_is_one_clear_message(programs: Path, tmp_path: Path) -> None:
     missing = tmp_path / "missing.csv"
     done = call(programs, "within", str(missing))
@@ -776,6 +781,7 @@ def test_a_file_that_is_not_there_is_one_clear_message(programs: Path, tmp_path:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("arguments", [(), ("-", "--format", "xml"), ("-", "--end", "x"), ("--x",)])
 def test_bad_use_is_exit_status_2_with_a_hint(programs: Path, arguments: tuple[str, ...]) -> None:
     done = call(programs, "within", *arguments)
@@ -791,6 +797,7 @@ def test_help_names_the_sentence_and_the_columns(programs: Path) -> None:
     assert "columns: p, q" in done.stdout.decode()
 
 
+@pytest.mark.slow
 def test_a_percent_sign_in_a_sentence_does_not_break_the_help(
     programs: Path, tmp_path: Path
 ) -> None:
@@ -801,6 +808,7 @@ def test_a_percent_sign_in_a_sentence_does_not_break_the_help(
     assert "load%s" in done.stdout.decode()
 
 
+@pytest.mark.slow
 def test_unusual_names_are_columns(programs: Path) -> None:
     done = call(programs, "names", "--help").stdout.decode()
     columns = done.split("columns: ")[1].splitlines()[0]
@@ -810,6 +818,7 @@ def test_unusual_names_are_columns(programs: Path) -> None:
     assert json.loads(done)["violations"] == [[3, 3]]
 
 
+@pytest.mark.slow
 def test_a_table_of_numbers_is_compared_and_judged(programs: Path) -> None:
     """`x mod 3 = y` holds at the first two ticks; no response comes to the first in time."""
     trace = b"x,y,speed,q\n4,1,3,0\n7.5,1.5,2.5,0\n,1,2.5,0\n5,1,1,1\n"
@@ -829,6 +838,7 @@ def test_a_table_of_numbers_that_cannot_be_read_is_refused_with_its_place(progra
     )
 
 
+@pytest.mark.slow
 def test_a_monitor_of_numbers_reads_the_truth_of_comparisons_too(programs: Path) -> None:
     text = call(programs, "comparing", "--help").stdout.decode()
     assert "columns: speed, x, y, q\n" in text

@@ -92,6 +92,7 @@ def judging(setting: Setting, some: Sequence[Sent], idle: int) -> tuple[Any, lis
     return node, owed
 
 
+@pytest.mark.slow
 @given(settings_, messages, st.sampled_from([0, 3, 40]))
 @example(
     Setting(slow="z < 5 for 25 ms", lateness=0), [Sent("/x", 1.0, 0, 60), Sent("/x", 1.0, 40)], 3
@@ -107,6 +108,7 @@ def test_every_tick_is_that_of_the_audit(setting: Setting, some: list[Sent], idl
         assert node.perception.origin == session.origin
 
 
+@pytest.mark.slow
 @given(settings_, messages)
 def test_what_is_owed_on_arrival_is_what_a_watch_says(setting: Setting, some: list[Sent]) -> None:
     _, owed = judging(setting, some, 0)
@@ -125,6 +127,7 @@ def live_module() -> Any:
     return executed(perception.text(rules(slow.bindings, SENTENCES[:1])), "perception")
 
 
+@pytest.mark.slow
 @given(st.data())
 def test_a_sample_is_that_of_the_audit(data: st.DataObject) -> None:
     signal = data.draw(signals("a"))
@@ -163,6 +166,7 @@ truths_of_fields = st.recursive(
 )
 
 
+@pytest.mark.slow
 @given(
     signals("a"),
     truths_of_fields | st.none(),
@@ -187,6 +191,7 @@ def test_a_whole_array_at_once_gives_what_its_elements_give(
     assert (one, type(one)) == (other, type(other))
 
 
+@pytest.mark.slow
 @given(
     st.lists(st.floats(0, 10, width=32) | st.sampled_from([math.inf, -math.inf, math.nan])),
     st.floats(-3.2, 3.2),
@@ -230,6 +235,7 @@ expr = "clearance < 5 cm"
 """
 
 
+@pytest.mark.slow
 def test_the_text_is_of_python_3_10() -> None:
     found = rules(Setting(slow="y < 5").bindings, SENTENCES[:1])
     ast.parse(perception.text(found), feature_version=(3, 10))

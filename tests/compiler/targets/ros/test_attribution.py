@@ -76,6 +76,7 @@ def test_what_is_missing_is_asked_for_once(fretc: Fretc, missing: str | None) ->
     assert not Path("build").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("field", "value"),
     [

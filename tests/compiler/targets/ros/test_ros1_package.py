@@ -41,6 +41,7 @@ def package(request: pytest.FixtureRequest) -> tuple[str, Mapping[str, str]]:
     return name, {path.partition("/")[2]: text for path, text in found.items()}
 
 
+@pytest.mark.slow
 def test_catkin_takes_the_manifest(package: tuple[str, Mapping[str, str]]) -> None:
     name, texts = package
     warnings: list[str] = []
@@ -54,6 +55,7 @@ def test_catkin_takes_the_manifest(package: tuple[str, Mapping[str, str]]) -> No
     assert {each.partition("/")[0] for each in types} <= needed
 
 
+@pytest.mark.slow
 def test_what_one_file_names_is_there(package: tuple[str, Mapping[str, str]]) -> None:
     name, texts = package
     launch = ElementTree.fromstring(texts[f"launch/{name}.launch"])

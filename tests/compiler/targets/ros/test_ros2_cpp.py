@@ -26,6 +26,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write(ROOT / "requirements/r1.fret", folder, "ros2-cpp-package")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("subject", SUBJECTS)
 def test_the_manifest_is_valid_and_names_all_that_is_included(subject: str, tmp_path: Path) -> None:
     package = write(ROOT / subject, tmp_path, "ros2-cpp-package")
@@ -148,7 +149,6 @@ def test_the_node_lets_the_robot_go_when_it_knows_and_stops_it_when_a_demand_arr
     assert ("subscription", "/scan: 5 best effort") in lines
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "missing", [["/scan"], ["/odom"], ["/scan", "/odom"], ["now"], ["/scan nan"]]
 )
@@ -162,14 +162,12 @@ def test_the_node_stops_the_robot_while_it_does_not_know(node: Path, missing: li
     assert set(stops(lines)) == {"true"}
 
 
-@pytest.mark.slow
 def test_time_that_goes_back_begins_another_run(node: Path) -> None:
     script = [*BEGIN, *known(100 * SECOND), *known(SECOND), "beat", "signal", "beat"]
     _, lines, _ = played(node, *script)
     assert stops(lines) == ["true", "false", "true", "false", "false", "true"]
 
 
-@pytest.mark.slow
 def test_only_an_active_node_lets_the_robot_go(node: Path) -> None:
     away = ["deactivate", *known(2 * SECOND), "activate", *known(3 * SECOND), "shutdown", "beat"]
     _, lines, _ = played(node, *BEGIN, *known(SECOND), *away)
@@ -178,7 +176,6 @@ def test_only_an_active_node_lets_the_robot_go(node: Path) -> None:
     assert any("node=3" in text for topic, text in lines if topic == "/diagnostics")
 
 
-@pytest.mark.slow
 def test_however_it_ends_the_last_that_it_says_is_a_stop(node: Path) -> None:
     status, lines, told = played(node, *BEGIN, *known(SECOND), "fail")
     assert (status, stops(lines)[-2:]) == (1, ["false", "true"])

@@ -72,6 +72,7 @@ def test_a_demand_stops_the_wheels_when_it_arrives_and_not_at_its_tick(package: 
     assert robot.wheels == FORWARD
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("silent", ["scans", "odometry", "both"])
 def test_without_any_message_the_robot_stands(package: Path, silent: str) -> None:
     robot = Robot(package)
@@ -106,6 +107,7 @@ def test_a_beam_without_a_return_is_no_obstacle_and_hides_none(package: Path) ->
     assert robot.stop
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sensor", ["scans", "odometry"])
 def test_a_sensor_that_falls_silent_stops_the_robot(package: Path, sensor: str) -> None:
     robot, _ = driving(package)

@@ -26,6 +26,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return write(ROOT / "requirements/r1.fret", tmp_path_factory.mktemp("workspace") / "src")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("subject", SUBJECTS)
 def test_the_manifest_is_valid_and_names_all_that_is_imported(subject: str, tmp_path: Path) -> None:
     package = write(ROOT / subject, tmp_path)
@@ -62,6 +63,7 @@ def test_the_parameters_of_the_file_are_those_of_the_node(package: Path) -> None
     assert [type(each) for each in values.values()] == [float, float, list]
 
 
+@pytest.mark.slow
 def test_the_texts_run_on_python_3_10(package: Path) -> None:
     command = [str(BIN / "vermin"), "--eval-annotations", "--no-tips", "--violations", "-t=3.10-"]
     ran = subprocess.run([*command, str(package)], capture_output=True, text=True, check=False)

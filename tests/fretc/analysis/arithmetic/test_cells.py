@@ -219,6 +219,7 @@ def test_a_play_has_numbers() -> None:
     assert found.terms[-1].startswith("numbers are")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ticks", [10, 5_000])
 def test_a_long_play_has_numbers_as_a_short_one_has(ticks: int) -> None:
     """The longer one is of requirements that are looked at by themselves, and leaps."""
@@ -276,6 +277,7 @@ def test_what_is_not_linear_is_not_checked() -> None:
     assert found.why == "R1: `((v * t) > 1)` is not linear"
 
 
+@pytest.mark.slow
 def test_too_many_patterns_are_not_checked(monkeypatch: pytest.MonkeyPatch) -> None:
     """Here 2^(count + 1), where half as many are not too many."""
     count = 12 if FULL else 6

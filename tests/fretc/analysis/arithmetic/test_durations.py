@@ -44,6 +44,7 @@ def found(rules: list[FormalizedRequirement]) -> Analysis:
     return analyze(rules, ROLES, (), Options(repairs=False))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("ticks", "within"), [(3, 6), (6, 3)])
 def test_leaps_leave_what_lasts_as_it_is(
     ticks: int, within: int, monkeypatch: pytest.MonkeyPatch
@@ -61,6 +62,7 @@ def test_leaps_leave_what_lasts_as_it_is(
     assert slow.verdict is fast.verdict
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(10))
 def test_what_is_remembered_of_a_letter_that_stays_is_that_of_each_tick(seed: int) -> None:
     choose = random.Random(seed)

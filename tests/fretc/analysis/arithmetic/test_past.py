@@ -18,6 +18,7 @@ RATE = "the sw shall always satisfy absReal(v - preReal(0.0, v)) <= 1"
 NAMED = roles(["t", "a"], ["v", "x"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "others",
     [
@@ -83,6 +84,7 @@ def test_what_is_not_remembered_is_left_open() -> None:
     assert "no more is remembered than which comparisons it makes true" in found.why
 
 
+@pytest.mark.slow
 def test_conflicts_with_the_past_and_beside_it_are_found() -> None:
     fight = (
         "whenever a the sw shall immediately satisfy v > 3",
@@ -134,6 +136,7 @@ def test_plays_follow_their_own_numbers() -> None:
     assert shown > 1
 
 
+@pytest.mark.slow
 def test_sorting_numbers_out_takes_the_time_of_the_question() -> None:
     many = [f"the sw shall always satisfy v{i} + v{i + 1} > v{i + 2}" for i in range(9)]
     named = roles(["a"], [f"v{i}" for i in range(11)])
@@ -142,6 +145,7 @@ def test_sorting_numbers_out_takes_the_time_of_the_question() -> None:
     assert found.why == "not answered within 0.05 s of a processor"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("start", ["0.0", "7.0"])
 def test_what_no_number_before_helps_cannot_be_kept(start: str) -> None:
     """Whoever comes from below 1 by steps of 1 is not above 5 at the next tick."""

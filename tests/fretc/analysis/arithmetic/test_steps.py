@@ -137,6 +137,7 @@ def every_bit(transition: Transition) -> list[int]:
     return [*{n for bit in transition.start for n in (bit, *bdd.support(transition.step(bit)))}]
 
 
+@pytest.mark.slow
 @settings(max_examples=settings().max_examples // 4)
 @given(texts(), st.data())
 def test_what_samples_make_true_together_is_a_letter(
@@ -163,6 +164,7 @@ def test_what_samples_make_true_together_is_a_letter(
         assert states != bdd.false(), (tables, seen, tick)
 
 
+@pytest.mark.slow
 @settings(max_examples=settings().max_examples // 4)
 @given(texts(), st.integers(0, 2**32))
 def test_what_is_a_letter_for_certain_some_samples_make_true(

@@ -155,6 +155,7 @@ def test_two_goals_take_turns() -> None:
     assert {"x": False, "y": True} in outputs
 
 
+@pytest.mark.slow
 def test_long_bounds_need_no_states() -> None:
     setting = staged(
         "upon a the sw shall for 100000 ticks satisfy x",

@@ -176,6 +176,7 @@ def test_two_duties_take_turns() -> None:
     assert_won(kept, random.Random(1))
 
 
+@pytest.mark.slow
 def test_eight_deadlines_on_one_resource() -> None:
     """As many as fit into the shortest deadline: one tick less, and they do not."""
     names = roles([f"a{i}" for i in range(8)], [f"x{i}" for i in range(8)])

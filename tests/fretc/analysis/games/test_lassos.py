@@ -28,6 +28,7 @@ def values(run: Lasso) -> list[Fraction]:
     return [Fraction(str(each["v"].as_fraction())) for each in run.numbers]
 
 
+@pytest.mark.slow
 @examples(10)
 @given(st.integers(-3, 3), st.integers(1, 4), st.integers(0, 6), st.integers(-8, 12), st.booleans())
 def test_a_goal_is_reached_just_where_the_rate_lets_it(
@@ -77,6 +78,7 @@ def test_what_no_memory_of_comparisons_tells_is_unrolled(
     assert whole.consistent is (verdict is Verdict.REALIZABLE)
 
 
+@pytest.mark.slow
 def test_what_never_comes_back_is_not_known() -> None:
     """A run that grows for ever keeps it; there is no lasso, and no end."""
     assert found("the sw shall always satisfy v > preReal(0.0, v)") is None
@@ -111,6 +113,7 @@ def test_as_fret_nothing_is_owed_at_any_tick() -> None:
     assert isinstance(found(*sentences, as_fret=True), Impossible)
 
 
+@pytest.mark.slow
 def test_a_number_before_is_not_known_where_there_are_inputs() -> None:
     """Then one run shows nothing of the others."""
     jump = "whenever x the sw shall immediately satisfy v >= 5"

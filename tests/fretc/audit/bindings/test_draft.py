@@ -61,6 +61,7 @@ def test_a_whole_draft(
     golden("bindings/draft.toml", drafted(Path("run.mcap"), needs))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", LOGS, ids=lambda path: path.stem)
 def test_a_draft_without_open_propositions_is_read_and_finds_no_fault_with_its_log(
     path: Path,

@@ -588,6 +588,7 @@ def test_evidence_of_what_has_come_back_is_still_of_something_else(reviewed: Fre
     assert answers.differs == {"R1"}
 
 
+@pytest.mark.slow
 def test_evidence_of_something_else_is_not_accepted(reviewed: Fretc) -> None:
     put(BINDINGS, "x > 1 m", "x > 2 m")()
     before = Path("requirements/fretc.lock").read_text()
@@ -612,6 +613,7 @@ def test_a_log_that_nothing_identifies_is_not_accepted(reviewed: Fretc) -> None:
     assert "F542 nothing tells the log `logs/a.mcap` of R1 from another one: there is no" in run.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("audited", [False, True])
 def test_a_log_that_is_gone_is_told(reviewed: Fretc, audited: bool) -> None:
     Path(LOGS[1]).unlink()

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
@@ -98,6 +99,7 @@ steps = st.tuples(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(steps, min_size=1, max_size=40), st.integers(1, 40))
 @settings(deadline=None, max_examples=40, phases=(Phase.generate,))
 def test_the_way_is_where_the_robot_was_within_its_error(

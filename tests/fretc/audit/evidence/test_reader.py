@@ -75,6 +75,7 @@ def test_a_folder_that_is_no_store_is_an_error(tmp_path: Path) -> None:
     assert [d.code for d in outcome.diagnostics] == [Code.BAD_STORE]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("path", "value", "says"),
     [
@@ -143,6 +144,7 @@ def test_what_is_unknown_is_refused(tmp_path: Path, path: tuple[str | int, ...],
     assert says in wrong(tmp_path, json.dumps(content)).message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sha256", ["", "0" * 63, "0" * 64 + "\n", "A" * 64, "<script>"])
 @pytest.mark.parametrize("name", ["log", "sentence", "monitor"])
 def test_a_hash_is_a_hash(tmp_path: Path, name: str, sha256: str) -> None:

@@ -64,6 +64,7 @@ def test_a_bound_is_wrong_no_more_often_than_stated() -> None:
             assert under <= Fraction(5, 100)
 
 
+@pytest.mark.slow
 @needs_package("scipy")
 @given(st.integers(1, 5000), st.data(), st.sampled_from([0.5, 0.9, 0.95, 0.975, 0.99, 0.999]))
 def test_the_bounds_are_those_of_the_beta_distribution(

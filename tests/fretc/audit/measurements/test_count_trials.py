@@ -307,6 +307,7 @@ def test_a_cut_tick_undoes_what_was_only_kept() -> None:
 # The monitor ----------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_text_is_the_monitor_of_the_sentence_without_its_probability_and_says_so() -> None:
     with_, without = text(rule(WITHIN)), text(rule(WITHIN.replace("with probability >= 0.99 ", "")))
     more = [line for line in with_.splitlines() if line not in without.splitlines()]

@@ -146,7 +146,6 @@ SAMPLES = st.lists(st.tuples(st.integers(0, 60), VALUES), max_size=8)
 GAPS = st.lists(st.tuples(st.integers(0, 60), st.integers(0, 12)), max_size=2)
 
 
-@pytest.mark.slow
 @given(SAMPLES, GAPS, st.integers(0, 60))
 @example([(0, 0.07), (0, 0.03)], [], 10)
 @example([(5, 0.07), (30, 0.03)], [(6, 3)], 40)

@@ -4,6 +4,8 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
+import pytest
+
 from compiler.logic import formula as f
 from compiler.logic.definition import holds
 from compiler.situations.situations import Situation, situations
@@ -63,6 +65,7 @@ def runs(drawn: Template, unknowns: int) -> Iterator[list[Row]]:
         yield [*run]
 
 
+@pytest.mark.slow
 @each("template", [*templates((0, 2))][::8])
 def test_what_is_known_is_seen_at_its_first_tick(template: Template) -> None:
     of = situations(rule(template.sentence), exact=True)
@@ -80,6 +83,7 @@ def exact(one: Situation, firsts: Sequence[int | None]) -> Encounter:
     return Encounter(one.key, None, min(shows, default=None))
 
 
+@pytest.mark.slow
 @each("template", [*templates((0, 2))][4::8])
 def test_seen_is_what_every_completion_shows_and_never_what_none_does(template: Template) -> None:
     of = situations(rule(template.sentence), exact=True)
@@ -100,6 +104,7 @@ def by_table(template: Template, run: Sequence[Mapping[str, bool]]) -> dict[str,
     return found
 
 
+@pytest.mark.slow
 @each("template", some(templates((0, 1, 3)), 16, 7))
 def test_every_situation_is_that_of_the_table_whatever_is_unknown(template: Template) -> None:
     made = rule(template.sentence)

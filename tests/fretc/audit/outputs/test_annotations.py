@@ -246,6 +246,7 @@ def test_evidence_is_not_lost_to_an_annotation(fretc: Fretc) -> None:
     assert Path("x/run.fretc.mcap/manifest.json").exists()
 
 
+@pytest.mark.slow
 def test_a_log_is_never_replaced(fretc: Fretc) -> None:
     shutil.copy("run.mcap", "run.fretc.mcap")
     before = Path("run.fretc.mcap").read_bytes()

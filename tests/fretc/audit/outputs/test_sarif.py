@@ -247,6 +247,7 @@ def test_an_address_on_the_web_stays_as_it_is() -> None:
     assert one["analysisTarget"] == {"uri": "https://a.b/c%20d.mcap?x=1&y=z%20e", "index": 0}
 
 
+@pytest.mark.slow
 def test_the_command_prints_it(fretc: Fretc) -> None:
     shutil.copytree(ROOT / "requirements", "requirements")
     shutil.copy(ROOT / "traces/mission-seed15.mcap", "run.mcap")

@@ -64,12 +64,14 @@ slowest answers
 """
 
 
+@pytest.mark.slow
 def test_a_summary_counts_verdicts_and_names_the_worst(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
     assert fretc("audit", "--summary", "runs.parquet") == Run(1, SUMMARY, "")
 
 
+@pytest.mark.slow
 def test_evidence_is_summarized_as_its_table_and_a_row_counts_once(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
@@ -84,6 +86,7 @@ def renamed(results: list[dict[str, Any]], **hashes: str) -> list[dict[str, Any]
     ]
 
 
+@pytest.mark.slow
 def test_a_log_counts_once_whatever_its_name_in_the_head_and_in_the_rows(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
@@ -92,6 +95,7 @@ def test_a_log_counts_once_whatever_its_name_in_the_head_and_in_the_rows(
         assert fretc("audit", "--summary", *tables) == Run(1, SUMMARY, "")
 
 
+@pytest.mark.slow
 def test_other_logs_under_the_same_names_count_as_others(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
@@ -168,12 +172,14 @@ def test_a_summary_as_json(fretc: Fretc, results: list[dict[str, Any]]) -> None:
     assert content["failed_runs"] == 2
 
 
+@pytest.mark.slow
 def test_the_exit_status_is_that_of_the_audit(fretc: Fretc, results: list[dict[str, Any]]) -> None:
     for name, part, status in [("all", results[2:4], 0), ("part", results[:4], 3)]:
         Path(f"{name}.parquet").write_bytes(table(part, "1"))
         assert fretc("audit", "--summary", f"{name}.parquet").status == status
 
 
+@pytest.mark.slow
 def test_only_the_worst_of_many_runs_are_listed(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
@@ -197,6 +203,7 @@ def test_two_versions_of_a_requirement_are_not_counted_as_one_in_silence(
     assert run.err.startswith("F504 warning: R1 was audited as 2 different requirements: ")
 
 
+@pytest.mark.slow
 def test_a_query_is_answered_for_a_person_and_for_a_program(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:

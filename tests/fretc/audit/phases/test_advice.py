@@ -92,6 +92,7 @@ def test_a_satisfied_run_that_other_phases_violate_says_so(robot: Fretc) -> None
     assert "F425 warning" in run.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["junit", "sarif", "github", "json"])
 def test_every_form_says_it(robot: Fretc, form: str) -> None:
     assert "violated at 12 %" in robot("audit", "run.mcap", "--format", form).out.replace(

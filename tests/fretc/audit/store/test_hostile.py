@@ -61,6 +61,7 @@ def with_table(store: Path, name: TableName, table: pa.Table) -> None:
     changed(store, change)
 
 
+@pytest.mark.slow
 def test_a_table_that_is_missing_or_another_one_is_refused(store: Path) -> None:
     for path in sorted(store.glob("*/*.parquet")):
         data = path.read_bytes()
@@ -84,6 +85,7 @@ def test_links_and_pipes_are_not_followed(store: Path) -> None:
     assert "does not fit its manifest" in refused(store)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("table", TABLES)
 def test_a_folder_of_tables_that_is_a_link_is_neither_read_nor_cleared(
     store: Path, table: TableName
@@ -96,6 +98,7 @@ def test_a_folder_of_tables_that_is_a_link_is_neither_read_nor_cleared(
     assert any(Path("elsewhere").iterdir())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -117,6 +120,7 @@ def test_a_manifest_that_is_none_or_contradicts_itself_is_refused(
     refused(store)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", ["", "[]", "{", "\0", '{"schema": "fretc-store-1"}'])
 def test_what_is_no_manifest_is_refused(store: Path, text: str) -> None:
     (store / "manifest.json").write_text(text)
@@ -134,6 +138,7 @@ def tables() -> dict[TableName, pa.Table]:
     return dict(tabled(RESULTS, "1"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*TABLES])
 def test_a_table_of_other_columns_is_refused(store: Path, name: TableName) -> None:
     table = tables()[name]
@@ -141,6 +146,7 @@ def test_a_table_of_other_columns_is_refused(store: Path, name: TableName) -> No
     assert "does not have the columns of this version of fretc" in refused(store)
 
 
+@pytest.mark.slow
 def test_a_store_of_earlier_versions_is_read_and_has_no_situations(store: Path) -> None:
     now = opened(str(store))
     assert isinstance(now, Store)
@@ -153,6 +159,7 @@ def test_a_store_of_earlier_versions_is_read_and_has_no_situations(store: Path) 
     assert not isinstance(read(str(store)), Diagnostic)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "column", "values"),
     [

@@ -69,6 +69,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return logs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [n for n in CHANGES if n in {*some(CHANGES, 3), *READ_AGAIN}])
 def test_a_log_is_read_again_only_where_something_else_of_it_is_read(
     tmp_path: Path, log: str, kept: SampleCache, opened: list[str], name: str
@@ -237,6 +238,7 @@ def project(folder: Path, texts: dict[str, str]) -> None:
         (folder / file).write_text(f"{head}{text}")
 
 
+@pytest.mark.slow
 def test_a_changed_threshold_needs_no_log(
     fretc: Fretc, tmp_path: Path, log: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

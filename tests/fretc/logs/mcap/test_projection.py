@@ -245,6 +245,7 @@ def test_a_chunk_is_unpacked_up_to_the_last_message_that_is_wanted(
     assert facts(found) == facts(whole(path, Integrity.FULL))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("compression", sorted(PACK))
 def test_a_message_that_is_longer_than_any_before_is_read_whole(
     tmp_path: Path, compression: str

@@ -120,6 +120,7 @@ def test_messages_with_idl_are_those_with_msg(tmp_path: Path) -> None:
     assert recording.findings == ()
 
 
+@pytest.mark.slow
 def test_the_layouts_of_idl_are_trusted_by_its_decoder() -> None:
     for name, text in (("sensor_msgs/msg/LaserScan", DEFINITION), ("robot/msg/Mixed", MIXED)):
         one = stream(name, text)
@@ -157,6 +158,7 @@ def test_info_lists_the_numbers() -> None:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "definition",
     [

@@ -90,6 +90,7 @@ def test_a_message_too_large_to_be_made_up_is_not_trusted() -> None:
     assert not trusted(known, decode)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["cdr", "ros1"])
 def test_common_types_are_trusted(encoding: str) -> None:
     """What the decoder of ROS 1 carries over, and with it whole times, is not looked at."""

@@ -135,6 +135,7 @@ def test_signals_of_many_messages_are_those_of_each_of_them(
 DROPS = 'nan = "drop", "+inf" = "drop", "-inf" = "drop", other = "drop"'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("reduce", ["min", "max"])
 @pytest.mark.parametrize("op", ["<", "<="])
 def test_the_ends_of_a_band_are_told_from_the_floats_around_them(reduce: str, op: str) -> None:

@@ -161,6 +161,7 @@ def in_force(pairs: Pairs, time: int, age: int | None = None) -> Value:
 PAIRS = st.lists(st.tuples(st.integers(0, 60), st.sampled_from([1.0, 4.0, 9.0, NAN])), max_size=9)
 
 
+@pytest.mark.slow
 @given(PAIRS, PAIRS, st.sampled_from(list(EXPRESSIONS)), st.integers(0, 70))
 def test_it_agrees_with_a_walk_from_tick_to_tick(
     x: Pairs, y: Pairs, expression: str, end: int

@@ -342,6 +342,7 @@ samples_strategy = st.lists(
 ).map(lambda found: sorted(found, key=lambda pair: pair[0]))
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(
     samples_strategy,

@@ -42,6 +42,7 @@ def true_ticks(
     return column.true.bit_count()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", [3, MANY])
 @pytest.mark.parametrize(
     ("kind", "value", "unit", "text", "expected"),

@@ -174,6 +174,7 @@ def test_of_three_topics_the_one_that_differs_is_told(tmp_path: Path) -> None:
     assert finding.message.startswith("the stamps of `/scan` are 5 s behind those of `/back`")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unset", [3, 4096, 5000])
 @pytest.mark.parametrize("integrity", list(Integrity))
 def test_many_messages_before_the_first_stamp_are_as_that_one(

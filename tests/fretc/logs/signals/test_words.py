@@ -117,6 +117,7 @@ def numbers(encoding: str, seen: Sequence[int]) -> list[Sent]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["ros1", "cdr", "idl"])
 @pytest.mark.parametrize("values", ['["DRIVE", "DOCKING"]', "{ DRIVE = 0, DOCKING = 4 }"])
 @pytest.mark.parametrize("count", [6, 600])
@@ -281,6 +282,7 @@ values = ["drive", "docking", "idle"]
 """
 
 
+@pytest.mark.slow
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.lists(
@@ -355,6 +357,7 @@ ROWS = st.tuples(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.tuples(st.sampled_from([40, 100, 300]), ROWS), min_size=1, max_size=8))
 def test_a_stream_sees_what_a_log_of_the_same_messages_shows(

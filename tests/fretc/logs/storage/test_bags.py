@@ -193,6 +193,7 @@ def test_messages_that_the_index_of_a_database_hides_are_a_loss(tmp_path: Path) 
     assert refused(file).code is Code.UNREADABLE_LOG
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [

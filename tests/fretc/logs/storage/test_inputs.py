@@ -253,6 +253,7 @@ def test_a_log_on_a_server_is_the_log(server: tuple[type[Server], str], ranges: 
     assert handler.sent <= 2 * len(handler.data)
 
 
+@pytest.mark.slow
 def test_by_its_index_little_is_asked_of_a_server(
     server: tuple[type[Server], str], tmp_path: Path
 ) -> None:

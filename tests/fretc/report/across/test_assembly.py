@@ -4,6 +4,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from fretc.report.model.across import Lanes
 from tests.fretc.report.cases import R1, moment, project, report_of, requirement, result, violation
 
@@ -47,6 +49,7 @@ def test_lanes_have_what_the_evidence_has(tmp_path: Path) -> None:
     assert second.lanes.left_out == "No lane: 1 run with nothing of it."
 
 
+@pytest.mark.slow
 def test_every_link_of_a_picture_leads_somewhere(tmp_path: Path) -> None:
     known = project(tmp_path, *TEXTS)
     build = report_of(

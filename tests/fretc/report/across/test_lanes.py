@@ -3,6 +3,7 @@
 from collections import Counter
 from itertools import pairwise
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -66,6 +67,7 @@ def covers(mark: LaneMark, kind: str, start: float, end: float, id: str) -> bool
     return mark.kind == kind and inside and id in mark.requirements
 
 
+@pytest.mark.slow
 @given(results(), st.integers(1, 40), st.sampled_from([1, 30, 1000]))
 @settings(deadline=None, max_examples=60)
 def test_each_stretch_is_in_exactly_one_mark_at_its_time(
@@ -92,6 +94,7 @@ def test_each_stretch_is_in_exactly_one_mark_at_its_time(
             assert all(a.end <= b.start + 2e-6 for a, b in pairwise(of_kind))
 
 
+@pytest.mark.slow
 @given(results(), st.integers(1, 5))
 @settings(deadline=None, max_examples=60)
 def test_what_is_left_out_is_counted_and_never_worse(drawn: Drawn, most: int) -> None:

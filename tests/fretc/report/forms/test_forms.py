@@ -162,6 +162,7 @@ def figures(text: str) -> dict[str, int]:
 MARKS = ("violated", "refuted", "no data", "inconclusive", "vacuous", "satisfied", "retired")
 
 
+@pytest.mark.slow
 @given(
     st.lists(st.tuples(st.sampled_from(MARKS), st.booleans()), max_size=60),
     st.integers(0, 60),
@@ -287,6 +288,7 @@ def test_junit_has_the_elements_of_the_schema_that_jenkins_has(reported: Fretc) 
     assert {element.tag for element in root.iter()} == set(junit_schema.MAY)
 
 
+@pytest.mark.slow
 def test_a_suspect_requirement_fails_whatever_its_verdict(reported: Fretc) -> None:
     path = Path("requirements/bindings.toml")
     path.write_text(path.read_text().replace("< 0.01 m/s", "< 0.02 m/s"))
@@ -299,6 +301,7 @@ def test_a_suspect_requirement_fails_whatever_its_verdict(reported: Fretc) -> No
     ]
 
 
+@pytest.mark.slow
 def test_sarif_marks_suspect_evidence(reported: Fretc) -> None:
     log = json.loads(form(reported, "sarif"))
     jsonschema.validate(log, SARIF)
@@ -428,6 +431,7 @@ def test_a_form_never_goes_where_another_goes(reported: Fretc) -> None:
     assert not Path("x").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("verdict", "status"), [("satisfied", 0), ("violated", 1), ("vacuous", 3), (None, 3)]
 )

@@ -146,6 +146,7 @@ def test_it_fits_the_schema(exported: Callable[[], str], schema: XMLSchema) -> N
     schema.validate(exported())
 
 
+@pytest.mark.slow
 def test_the_schema_notices_what_does_not_fit(
     exported: Callable[[], str], schema: XMLSchema
 ) -> None:
@@ -168,6 +169,7 @@ def test_every_reference_has_what_it_refers_to(exported: Callable[[], str]) -> N
     assert referred <= known
 
 
+@pytest.mark.slow
 def test_each_object_has_what_is_known_of_it(exported: Callable[[], str]) -> None:
     objects = read(exported()).objects
     assert tuple(objects) == IDS
@@ -203,6 +205,7 @@ def test_each_object_has_what_is_known_of_it(exported: Callable[[], str]) -> Non
     }
 
 
+@pytest.mark.slow
 def test_the_verdicts_are_those_of_the_report(exported: Callable[[], str]) -> None:
     objects = read(exported()).objects
     verdicts = {id: values["Verdict"] for id, values in objects.items() if "Verdict" in values}
@@ -219,6 +222,7 @@ def test_the_verdicts_are_those_of_the_report(exported: Callable[[], str]) -> No
     assert "F107" in objects["R4"]["Reasons"]
 
 
+@pytest.mark.slow
 def test_suspect_evidence_is_reported_as_such(exported: Callable[[], str]) -> None:
     path = Path("requirements/bindings.toml")
     path.write_text(path.read_text().replace("< 5 cm", "< 6 cm"))
@@ -230,6 +234,7 @@ def test_suspect_evidence_is_reported_as_such(exported: Callable[[], str]) -> No
     ]
 
 
+@pytest.mark.slow
 def test_relations_go_from_the_child_to_each_parent_that_is_there(
     exported: Callable[[], str],
 ) -> None:
@@ -255,6 +260,7 @@ def test_an_object_stands_once_below_its_first_hazard(exported: Callable[[], str
     ]
 
 
+@pytest.mark.slow
 def test_texts_come_back_as_they_were(exported: Callable[[], str]) -> None:
     values = read(exported()).objects["R1"]
     assert values["ReqIF.Text"] == TEXT
@@ -269,6 +275,7 @@ def ours(text: str) -> Mapping[str, Parent]:
     return objects
 
 
+@pytest.mark.slow
 def test_it_can_be_the_parents_of_another_project(exported: Callable[[], str]) -> None:
     objects = ours(exported())
     assert tuple(objects) == IDS
@@ -276,6 +283,7 @@ def test_it_can_be_the_parents_of_another_project(exported: Callable[[], str]) -
     assert objects["R1"].text == TEXT
 
 
+@pytest.mark.slow
 def test_the_same_report_gives_the_same_bytes(
     exported: Callable[[], str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

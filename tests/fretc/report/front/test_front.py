@@ -52,6 +52,7 @@ def lines(page: Mapping[str, Any], name: str) -> dict[str, list[str]]:
     return {line["text"]: [link["name"] for link in line["names"]] for line in figure["lines"]}
 
 
+@pytest.mark.slow
 @given(
     cells=st.lists(
         st.tuples(
@@ -120,6 +121,7 @@ def test_causes_are_told_apart(known: Project, folder: Path) -> None:
 RUNS = ("walk-1", "walk-2", "stop-1", "stop-2")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("verdicts", "headline", "sentences"),
     [

@@ -38,6 +38,7 @@ BINDINGS = "the bindings have changed since the audit"
 SENTENCE = "the sentence has changed since the audit"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("cases", "headline", "suspect"),
     [

@@ -91,6 +91,7 @@ def section(page: Path) -> str:
     return found[0]
 
 
+@pytest.mark.slow
 def test_a_change_is_marked_word_by_word_with_what_follows_from_it(page: Path) -> None:
     changes = section(page)
     assert "clearance &lt; <del>5 cm</del><ins>9 cm</ins>" in changes
@@ -116,6 +117,7 @@ def test_texts_of_a_lock_are_shown_and_not_followed(page: Path) -> None:
     assert len(changes) < 20_000, "of a long text only what is around the difference"
 
 
+@pytest.mark.slow
 def test_of_many_runs_the_violated_ones_come_first_and_the_rest_is_counted(tmp_path: Path) -> None:
     known = project(tmp_path)
     runs = [f"logs/{n:02}.mcap" for n in range(30)]

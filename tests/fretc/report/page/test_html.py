@@ -91,6 +91,7 @@ def test_the_page_needs_nothing_but_itself(tmp_path: Path) -> None:
     assert set(re.findall(r"url\((.)", html)) == {"#"}
 
 
+@pytest.mark.slow
 def test_only_the_script_and_the_style_of_the_page_may_run(tmp_path: Path) -> None:
     html = page(tmp_path)
     (policy,) = re.findall(r'Content-Security-Policy" content="(.*?)"', html)
@@ -173,6 +174,7 @@ def test_a_requirement_that_no_run_can_violate_says_so_beside_its_verdict(tmp_pa
     assert "no run can violate it" in text
 
 
+@pytest.mark.slow
 def test_a_violation_has_its_picture_and_its_values(tmp_path: Path) -> None:
     text = Page(page(tmp_path)).text
     late = "stopped was false from 1.1 s to 2 s, it had to be true by 1.4 s"
@@ -291,6 +293,7 @@ def test_backticks_set_code_where_they_come_in_pairs(tmp_path: Path) -> None:
     assert "near`" in Page(report.html).text
 
 
+@pytest.mark.slow
 def test_right_to_left_text_is_isolated(tmp_path: Path) -> None:
     assert "<bdi>שלום עולם</bdi>" in _everywhere(tmp_path, "שלום עולם")
 

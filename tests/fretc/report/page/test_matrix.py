@@ -110,6 +110,7 @@ def whole(report: Report) -> dict[str, list[str]]:
     return {anchor: [words.get(run, "") for run in runs] for anchor, words in known.items()}
 
 
+@pytest.mark.slow
 def test_a_cell_costs_about_sixty_bytes_and_the_page_one_and_a_half_megabytes(
     build: ReportBuild,
 ) -> None:
@@ -148,6 +149,7 @@ def test_two_results_of_one_run_have_one_mark_the_worst(tmp_path: Path) -> None:
     assert [cell.mark.word for cell in line.cells if cell] == ["violated"]
 
 
+@pytest.mark.slow
 def test_a_mark_leads_to_its_details_or_to_its_requirement(build: ReportBuild) -> None:
     text = page(build, 3, [("", 40)], mostly_satisfied(2, 0.9))
     places = set(re.findall(r'id="([^"]+)"', text))
@@ -159,6 +161,7 @@ def test_a_mark_leads_to_its_details_or_to_its_requirement(build: ReportBuild) -
     assert detailed <= {match[1] for match in cells}
 
 
+@pytest.mark.slow
 def test_the_page_and_its_json_say_the_same_of_each_run(tmp_path: Path) -> None:
     known = project(tmp_path)
     words = ("satisfied", "violated", "vacuous", "no data", "inconclusive")

@@ -57,6 +57,7 @@ def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(tmp_p
     assert "Details below: of 8 of 10 runs that are not satisfied." in html
 
 
+@pytest.mark.slow
 def test_a_few_satisfied_runs_can_be_opened_in_the_page(tmp_path: Path) -> None:
     build, html = reported(tmp_path, 2, 3, 0.0)
     chosen = selection(build)
@@ -82,6 +83,7 @@ def test_a_compact_page_lists_what_is_not_satisfied_and_says_so(
     assert links <= set(re.findall(r'id="([^"]+)"', html))
 
 
+@pytest.mark.slow
 def test_with_very_many_requirements_their_sections_are_short(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

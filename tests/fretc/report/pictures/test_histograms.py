@@ -62,6 +62,7 @@ def test_an_answer_at_the_border_of_two_bars_counts_below_it(tmp_path: Path) -> 
     assert [each["count"] for each in bins[:5]] == [3, 2, 2, 2, 1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("allowed", "late"), [(3, [0.1, 0.3, 0.3]), (7, [0.0, 0.7]), (30, [3.0, 1.4, 2.9])]
 )
@@ -128,6 +129,7 @@ def test_without_a_bound_none_is_marked(tmp_path: Path) -> None:
     assert "no bound in seconds" in late["text"]
 
 
+@pytest.mark.slow
 @example([0.0, 1e-10])
 @settings(deadline=None, max_examples=15)
 @given(st.lists(st.floats(0, 1e9) | st.floats(0, 1e-8), min_size=2, max_size=5))

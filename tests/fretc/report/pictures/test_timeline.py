@@ -1,5 +1,7 @@
 import re
 
+import pytest
+
 from compiler.files.records import replace
 from fretc.audit.evidence.schema import Hashes, Health, Moment, Result
 from fretc.report.model.pictures import SpanMark
@@ -81,6 +83,7 @@ def test_a_run_without_trigger_says_so() -> None:
     assert picture.text == "From 0 s to 10 s: no tick with a trigger."
 
 
+@pytest.mark.slow
 def test_a_hundred_thousand_triggers_are_few_marks_and_all_counted() -> None:
     ticks = range(0, 1_000_000, 10)
     result = replace(EMPTY, ticks=1_000_000, triggers=at(*ticks))

@@ -150,6 +150,7 @@ def test_a_proof_of_another_text_is_suspect(
     assert plan(report)[1:] == (False, False)
 
 
+@pytest.mark.slow
 @each("kind", ["c", "rust", "js"])
 def test_a_proof_of_the_monitor_in_another_language_stands(
     tmp_path_factory: pytest.TempPathFactory, kind: str
@@ -166,6 +167,7 @@ def test_a_proof_of_the_monitor_in_another_language_stands(
         assert len(view["suspicions"]) == doubts
 
 
+@pytest.mark.slow
 @each("kind", ["monitor", "c", "rust", "js"])
 def test_a_proof_of_the_monitor_of_all_requirements_stands(
     tmp_path_factory: pytest.TempPathFactory, kind: str

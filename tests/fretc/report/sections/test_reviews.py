@@ -202,6 +202,7 @@ def test_a_waiver_that_has_ended_covers_nothing(
     assert only(reported(known, tmp_path, result(known, "vacuous")))["mark"]["word"] == "vacuous"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "verdict", "state"),
     [

@@ -42,6 +42,7 @@ def test_nothing_is_said_where_nobody_has_asked(fretc: Fretc) -> None:
     assert 'id="together"' not in Path("r.html").read_text()
 
 
+@pytest.mark.slow
 def test_a_conflict_is_in_every_headline(fretc: Fretc) -> None:
     write(FIGHT)
     assert fretc("analyze").status == 1
@@ -54,6 +55,7 @@ def test_a_conflict_is_in_every_headline(fretc: Fretc) -> None:
     assert fretc("report", "--strict").status == 1
 
 
+@pytest.mark.slow
 def test_the_play_is_drawn_and_stands_in_a_table(fretc: Fretc) -> None:
     write(FIGHT)
     fretc("analyze")
@@ -69,6 +71,7 @@ def test_the_play_is_drawn_and_stands_in_a_table(fretc: Fretc) -> None:
     assert "at tick 2 R1 demands" in html
 
 
+@pytest.mark.slow
 def test_a_conflict_without_a_run_is_still_one(fretc: Fretc) -> None:
     """The run of a conflict may take too long to find."""
     write(FIGHT)
@@ -81,6 +84,7 @@ def test_a_conflict_without_a_run_is_still_one(fretc: Fretc) -> None:
     assert "No run is drawn" in Path("r.html").read_text()
 
 
+@pytest.mark.slow
 def test_a_set_that_can_be_kept_takes_nothing_from_the_headline(fretc: Fretc) -> None:
     write(FREE)
     headline = report(fretc)["front"]["headline"]
@@ -90,6 +94,7 @@ def test_a_set_that_can_be_kept_takes_nothing_from_the_headline(fretc: Fretc) ->
     assert "All requirements can be kept together." in content["front"]["notes"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("now", [FIGHT, {"R1": FIGHT["R1"]}, {**FREE, "R3": FIGHT["R2"]}])
 def test_an_analysis_of_other_requirements_is_suspect(fretc: Fretc, now: Mapping[str, str]) -> None:
     """A good answer about what was there before is no answer about what is there now."""
@@ -102,6 +107,7 @@ def test_an_analysis_of_other_requirements_is_suspect(fretc: Fretc, now: Mapping
     assert fretc("report", "--strict").status == 1
 
 
+@pytest.mark.slow
 def test_a_stale_conflict_stays_in_the_headline(fretc: Fretc) -> None:
     write(FIGHT)
     fretc("analyze")
@@ -111,6 +117,7 @@ def test_a_stale_conflict_stays_in_the_headline(fretc: Fretc) -> None:
     assert "is suspect: R2 has changed since." in headline
 
 
+@pytest.mark.slow
 def test_what_is_not_known_is_in_the_headline(fretc: Fretc) -> None:
     write({**FREE, "R2": "the line shall always satisfy nextOcc(run, stop)"})
     assert fretc("analyze").status == 3
@@ -122,6 +129,7 @@ def test_what_is_not_known_is_in_the_headline(fretc: Fretc) -> None:
     assert fretc("report", "--strict").status in (1, 3)
 
 
+@pytest.mark.slow
 def test_free_text_was_not_asked_about(fretc: Fretc) -> None:
     write({**FREE, "R3": '"It should look nice."'})
     assert fretc("analyze").status == 0

@@ -267,6 +267,7 @@ def test_a_suspect_link_has_a_change_that_makes_it_suspect(reviewed: Fretc) -> N
 # Verdicts ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_what_became_of_verdicts_is_counted_and_new_violations_are_named_first(
     reviewed: Fretc,
 ) -> None:
@@ -287,6 +288,7 @@ def test_what_became_of_verdicts_is_counted_and_new_violations_are_named_first(
     )
 
 
+@pytest.mark.slow
 def test_a_run_that_is_gone_is_told_with_its_verdict(reviewed: Fretc) -> None:
     Path(LOGS[1]).unlink()
     reviewed("audit", "logs", "-o", EVIDENCE, *ONE_PROCESS)
@@ -295,6 +297,7 @@ def test_a_run_that_is_gone_is_told_with_its_verdict(reviewed: Fretc) -> None:
         assert [one.text for one in each.changes] == ["verdict of logs/b.mcap: satisfied → none"]
 
 
+@pytest.mark.slow
 def test_another_log_of_the_same_name_is_told_by_its_hash(reviewed: Fretc) -> None:
     log(LOGS[0], 0, 2, 3, 3, 2, 1, 0)
     reviewed("audit", "logs", *ONE_PROCESS)
@@ -310,6 +313,7 @@ def test_another_log_of_the_same_name_is_told_by_its_hash(reviewed: Fretc) -> No
 # Contradictions ---------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_words_that_state_another_number_are_told_beside_the_change(reviewed: Fretc) -> None:
     put(R3, '"Keep"', '"Keep below 9 m"')()
     assert reviewed("lock", "R3", *BY).status == 0
@@ -330,6 +334,7 @@ def without_texts(lock: Lock) -> Lock:
     return Lock({id: replace(one, texts=None) for id, one in lock.reviews.items()})
 
 
+@pytest.mark.slow
 def test_a_lock_without_texts_is_read_and_says_that_it_does_not_know(reviewed: Fretc) -> None:
     old = text(without_texts(locked())).replace("fretc-lock-3", "fretc-lock-2")
     write(LOCK, old)
@@ -444,6 +449,7 @@ def test_texts_of_another_form_are_refused(
     assert why in found.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", ["requirements", "requirements/mission", "requirements/agv"])
 def test_the_texts_of_real_projects_give_their_fingerprints(folder: str) -> None:
     project = load_folder(str(Path(__file__).parents[4] / folder))
@@ -484,6 +490,7 @@ role = "internal"
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("bindings", [None, CLOCK, CLOCK + SIGNALS, '[clock]\ntick = "/s"\n'])
 @pytest.mark.parametrize(
     "sentence",

@@ -52,6 +52,7 @@ def test_a_line_goes_in_and_a_line_comes_out() -> None:
         assert program.step([-3, None]) == (None, -3)
 
 
+@pytest.mark.slow
 @each("expected", WRONG)
 def test_what_is_wrong_has_a_code(expected: str) -> None:
     code, _, word = expected.partition(" ")

@@ -86,7 +86,6 @@ def test_emitted_tests_pass(sentence: str, tmp_path: Path) -> None:
     assert functions(tmp_path, "test_r1.py") == []
 
 
-@pytest.mark.slow
 def test_long_bounds_stay_short(tmp_path: Path) -> None:
     found, _ = written(tmp_path, Form.PYTEST, SENTENCES[3])
     assert max(test.ticks for test in found.tests) > LONG
@@ -221,6 +220,7 @@ def test_a_wrong_monitor_fails_in_its_language(
     assert reason in ran.stdout
 
 
+@pytest.mark.slow
 @each("sentence", SENTENCES[:3])
 def test_tables_are_read_by_the_monitor(sentence: str, tmp_path: Path) -> None:
     """Each ends with the verdict that the index states."""
@@ -254,6 +254,7 @@ def test_a_number_that_is_known_at_some_ticks_alone_is_no_column_of_the_simulato
         assert simulator.table(rule, some) == simulator.table(rule, test)
 
 
+@pytest.mark.slow
 def test_traces_of_the_simulator_have_its_form(tmp_path: Path) -> None:
     found, _ = written(tmp_path, Form.FRET, *SENTENCES[:3])
     traces = json.loads((tmp_path / "ltlsim.json").read_text())

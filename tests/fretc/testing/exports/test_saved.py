@@ -40,6 +40,7 @@ def made() -> Made:
     return Made(made_once().rules, deepcopy(made_once().document))
 
 
+@pytest.mark.slow
 def test_what_was_made_is_taken_as_it_is(made: Made) -> None:
     written = decoded(made.document, Suite)
     found = saved(written, made.rules)
@@ -47,6 +48,7 @@ def test_what_was_made_is_taken_as_it_is(made: Made) -> None:
     assert {test.requirement for test in found.suite.tests} == {"R1", "R2"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("length", [1, 40, 99, 100, 101, 150])
 def test_what_was_made_is_taken_however_long_its_names_are(length: int) -> None:
     rules = (
@@ -103,6 +105,7 @@ FAULTS: dict[str, tuple[str, Callable[[Any], object]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FAULTS)
 @pytest.mark.parametrize("requirement", ["R1", "R2"])
 def test_a_test_that_is_none_is_refused(made: Made, name: str, requirement: str) -> None:

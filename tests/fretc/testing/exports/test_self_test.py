@@ -58,7 +58,6 @@ def test_it_passes_without_a_warning_or_undefined_behaviour(tmp_path: Path) -> N
     assert ran.stdout == "0"
 
 
-@pytest.mark.slow
 @full_only("half a minute")
 @each("scope", meaning.SCOPES)
 def test_it_passes_for_every_template(scope: str, tmp_path_factory: pytest.TempPathFactory) -> None:
@@ -86,6 +85,7 @@ def test_it_compiles_without_a_library(cc: tuple[str, ...], tmp_path: Path) -> N
     assert all(re.search(r"_(init|step)", each) for each in unknown), unknown
 
 
+@pytest.mark.slow
 def test_its_main_tells_by_its_status(tmp_path: Path) -> None:
     written(tmp_path, Form.C, OTHERS[0])
     path = built(tmp_path, "gcc", "-std=c99", "-DFRETC_SELF_TEST_MAIN", main="")

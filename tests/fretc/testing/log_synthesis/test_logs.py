@@ -111,6 +111,7 @@ def test_what_looks_back_has_ticks_before_the_test(tmp_path: Path) -> None:
     assert {one.lead for one in found} == {0, 2}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "why"),
     [

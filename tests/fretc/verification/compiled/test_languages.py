@@ -80,7 +80,6 @@ def test_a_long_bound_is_proved_as_it_is(tongue: Tongue, checker: Checker) -> No
     assert f"{bound + 2} states" in outcome.detail
 
 
-@pytest.mark.slow
 @full_only("minutes")
 @each("scope", meaning.SCOPES)
 def test_every_template_is_proved(scope: str, tongue: Tongue, checker: Checker) -> None:
@@ -135,6 +134,7 @@ def test_what_is_made_of_a_text_is_the_same_each_time(tongue: Tongue, tmp_path: 
     assert (first.artefacts, first.engine) == (second.artefacts, second.engine)
 
 
+@pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_the_reference_tells_what_the_monitor_in_python_tells(sentence: str) -> None:
     """Saved and loaded at each tick, on both rails."""
@@ -178,6 +178,7 @@ def test_what_may_do_more_is_not_run(tongue: Tongue, edits: Edits) -> None:
     assert [each for each in edits.further if is_formed(tongue, one, each)] == []
 
 
+@pytest.mark.slow
 def test_what_keeps_a_number_of_ticks_is_as_fretc_writes_it(tongue: Tongue, edits: Edits) -> None:
     one = rule(edits.keeping)
     tongue.language.checked(tongue.given(one), [one])
@@ -194,6 +195,7 @@ def is_formed(tongue: Tongue, one: FormalizedRequirement, edit: Edit) -> bool:
     return True
 
 
+@pytest.mark.slow
 def test_what_is_no_text_of_the_language_is_not_proved(
     tongue: Tongue, checker: Checker, edits: Edits
 ) -> None:
@@ -224,6 +226,7 @@ def test_what_a_requirement_does_not_speak_of_has_no_part_in_it(
         checked.plan(one)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tongue", some(TONGUES, 3), indirect=True)
 def test_drawn_faults_are_refuted_or_refused(tongue: Tongue, checker: Checker) -> None:
     """A few of those below, in this process: what crashes a library is not among them."""
@@ -236,7 +239,6 @@ def test_drawn_faults_are_refuted_or_refused(tongue: Tongue, checker: Checker) -
     assert kinds.count(SAME) <= 2
 
 
-@pytest.mark.slow
 @full_only("minutes")
 @each("sentence", [WITHIN, FOR, RING])
 def test_faults_are_refuted_or_refused_or_of_no_effect(

@@ -49,7 +49,6 @@ def check(run: Run) -> Outcome:
 
 
 @needs_frama_c
-@pytest.mark.slow
 def test_requirements_in_one_text_are_proved() -> None:
     sentences = (WITHIN, RING, "the sw shall always satisfy p", "the sw shall eventually satisfy p")
     outcome = check(asked(*(rule(sentence, f"R{i}") for i, sentence in enumerate(sentences))))
@@ -57,7 +56,6 @@ def test_requirements_in_one_text_are_proved() -> None:
 
 
 @needs_frama_c
-@pytest.mark.slow
 @full_only("minutes")
 @each("scope", meaning.SCOPES)
 def test_every_template_is_proved(scope: str) -> None:
@@ -67,7 +65,6 @@ def test_every_template_is_proved(scope: str) -> None:
 
 
 @needs_frama_c
-@pytest.mark.slow
 @each(
     "sentences",
     [
@@ -114,7 +111,6 @@ FAULTS = (
 
 
 @needs_frama_c
-@pytest.mark.slow
 @each("fault", some(FAULTS, 7))
 def test_a_fault_is_not_proved(fault: tuple[str, str, str, str | None]) -> None:
     """Here the text may have any form; one that is never reached does no harm."""
@@ -196,6 +192,7 @@ def test_all_valid_without_alarms_is_proved(fake: Fake) -> None:
 WHOLE = HEAD + row(3) + row(5)
 
 
+@pytest.mark.slow
 @each(
     "case",
     [
@@ -272,7 +269,6 @@ def test_a_monitor_in_python_is_none_in_c(
 
 
 @needs_frama_c
-@pytest.mark.slow
 def test_the_evidence_names_program_options_and_texts(fretc: Fretc) -> None:
     """Of the text that fretc writes, where no file is named; and of a file of two requirements."""
     sentences = (WITHIN, "the sw shall always satisfy p")

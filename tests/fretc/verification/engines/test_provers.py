@@ -76,6 +76,7 @@ def test_lines_that_debians_z3_adds_do_not_matter(dafny: Fake) -> None:
     assert answer.result is Result.PROVED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "reason"),
     [
@@ -225,14 +226,12 @@ def modules(texts: Iterable[str]) -> str:
     return "\n".join(f"module M{i} {{\n{one}}}\n" for i, one in enumerate(texts))
 
 
-@pytest.mark.slow
 @full_only("the lemmas that say most are verified with the mutants")
 @needs_dafny
 def test_dafny_verifies_monitors_at_any_bound() -> None:
     assert say(modules(monitors())).result is Result.PROVED
 
 
-@pytest.mark.slow
 @full_only("the lemmas that say most are verified with the mutants")
 @needs_dafny
 def test_dafny_verifies_the_interceptor_and_the_loop() -> None:
@@ -308,7 +307,6 @@ def test_dafny_rejects_mutants_and_nothing_else() -> None:
     ]
 
 
-@pytest.mark.slow
 @full_only("the same mutants are rejected")
 @needs_dafny
 @each(
@@ -429,6 +427,7 @@ def kept(command: Velocity) -> Velocity:
 '''
 
 
+@pytest.mark.slow
 @needs_crosshair
 def test_velocities_that_nobody_looks_into_are_whole_numbers_for_crosshair() -> None:
     (proof,) = with_crosshair(KEEPING, seconds=10)
@@ -455,6 +454,7 @@ def test_velocities_that_somebody_looks_into_stay_floats(body: str) -> None:
     assert crosshair._with_whole_velocities(KEEPING) == KEEPING.replace("float = 0.0", "int = 0")
 
 
+@pytest.mark.slow
 @needs_crosshair
 def test_crosshair_confirms_a_step_of_the_interceptor() -> None:
     """The others take their time; all of them are looked at by the command."""

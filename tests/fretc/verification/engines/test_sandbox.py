@@ -46,31 +46,37 @@ def die() -> None:
     os.kill(os.getpid(), signal.SIGSEGV)
 
 
+@pytest.mark.slow
 def test_the_result_comes_back() -> None:
     assert confined(DEFAULT, twice, 21) == 42
     assert multiprocessing.active_children() == []
 
 
+@pytest.mark.slow
 def test_what_the_function_raises_is_raised() -> None:
     with pytest.raises(ValueError, match="no"):
         confined(DEFAULT, fail)
 
 
+@pytest.mark.slow
 def test_an_error_that_cannot_be_sent_is_raised_in_words() -> None:
     with pytest.raises(RuntimeError, match="LocalError: no"):
         confined(DEFAULT, fail_with_what_cannot_be_sent)
 
 
+@pytest.mark.slow
 def test_time_on_the_wall_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Limits, "wall", 1.0)
     assert confined(DEFAULT, sleep) == Stopped("out of time: no answer within 1 s")
     assert multiprocessing.active_children() == []
 
 
+@pytest.mark.slow
 def test_memory_is_limited() -> None:
     assert confined(Limits(memory=2**30), fill) == Stopped("out of memory: more than 1 GiB")
 
 
+@pytest.mark.slow
 def test_a_crash_is_told() -> None:
     answer = confined(DEFAULT, die)
     assert answer == Stopped("the process crashed (signal 11); it may have had too little memory")
@@ -114,6 +120,7 @@ def test_the_program_itself_is_not_executed_once_more(tmp_path: Path) -> None:
     assert (run.stdout, run.stderr) == ("-21\n", "")
 
 
+@pytest.mark.slow
 def test_a_child_that_is_interrupted_while_it_imports_answers_without_a_word(
     tmp_path: Path,
 ) -> None:
@@ -143,6 +150,7 @@ def test_a_child_that_is_interrupted_while_it_imports_answers_without_a_word(
     assert (run.returncode, run.stdout, run.stderr) == (0, "3\n", "")
 
 
+@pytest.mark.slow
 def test_an_interruption_ends_the_process(tmp_path: Path) -> None:
     (tmp_path / "waits.py").write_text(
         "import os, time\n"

@@ -322,6 +322,7 @@ def test_a_counterexample_is_a_shortest_run_that_can_be_replayed() -> None:
 # What is not checked --------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "why"),
     [

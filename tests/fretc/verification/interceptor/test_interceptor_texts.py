@@ -175,6 +175,7 @@ def _there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     builtins.min, builtins.max = kept
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", TEXTS)
 def test_the_loop_does_not_take_it(name: str) -> None:
     taken = True
@@ -247,6 +248,7 @@ def test_a_helper_with_a_name_of_its_own_changes_nothing() -> None:
     assert all_proved(with_helper("asks"))
 
 
+@pytest.mark.slow
 @each("name", sorted({*set().union(*map(bound_by_node, NODES)), *dir(builtins)} - {"OPTIONS"}))
 def test_a_core_binds_no_name_that_its_node_binds_or_calls(name: str) -> None:
     """The node below would have it mean something else while it flies, or would call the core's."""
@@ -290,6 +292,7 @@ def test_a_velocity_has_its_six_numbers_and_no_others(old: str, new: str) -> Non
     assert not any(one.result is Result.PROVED for one in contracts(text, OPTIONS))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new"),
     [
@@ -311,6 +314,7 @@ def test_a_node_that_differs_in_anything_is_not_the_one_that_is_declared(
     assert deviation == "its node is not one that fretc writes for these bindings: emit it again"
 
 
+@pytest.mark.slow
 def test_the_core_and_comments_may_differ() -> None:
     assert otherwise(BASE, DECLARED) is None
     assert otherwise(with_helper("asks"), DECLARED) is None
@@ -447,6 +451,7 @@ def test_what_is_not_of_the_language_is_refused_and_not_executed(
         assert isinstance(core(text), str), inner
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("outside", OUTSIDE)
 def test_each_expression_is_outside_by_itself(outside: str) -> None:
     assert isinstance(head(sub(SCAN, f"    return ({outside}), None\n")), str)
@@ -464,11 +469,13 @@ def _never(*_: object) -> None:
     raise AssertionError("it was executed")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", PLACES[1:])
 def test_the_places_themselves_are_of_the_language(place: str) -> None:
     assert isinstance(head(sub(SCAN, f"    return ({place.format('0')}), None\n")), Head)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "annotation",
     [
@@ -503,6 +510,7 @@ def test_an_annotation_names_types_and_does_nothing(annotation: str, old: str, n
     assert isinstance(head(sub(old, new.format(annotation))), str)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "line"),
     [

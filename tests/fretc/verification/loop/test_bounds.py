@@ -79,6 +79,7 @@ def test_the_least_bound_is_the_one_that_is_proved(channel: Channel, least: int)
     assert answer.enough.detail.startswith(f"the least that is kept is {least} tick")
 
 
+@pytest.mark.slow
 def test_a_loop_that_does_something_else_is_not_checked() -> None:
     wrong = edited(
         CORE, "return after, ZERO if halted(after, options) else command", "return after, command"

@@ -36,6 +36,7 @@ def trace(outcome: Outcome) -> list[str]:
 # The loops of the paper and their fixes -------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("settings", "channel", "kept", "released"),
     [
@@ -62,6 +63,7 @@ def test_without_a_bound_only_what_is_sent_once_is_lost() -> None:
     assert results == {"level": "proved", "edge": "counterexample"}
 
 
+@pytest.mark.slow
 def test_a_heartbeat_repairs_what_is_lost_on_change_only() -> None:
     """Two messages may be lost, three ticks apart: after six ticks the third one is heard."""
     lossy = Channel(1, lost=2, edge=True, heartbeat=3)
@@ -88,6 +90,7 @@ def test_a_watchdog_lets_go_where_the_heartbeat_is_faster(timeout: int, released
     assert (results.kept.result, results.released.result) == ("proved", released)
 
 
+@pytest.mark.slow
 def test_a_heartbeat_of_one_tick_speaks_at_every_tick() -> None:
     traces = {
         search(case(WITHIN.format(3), TIMER, channel)).kept
@@ -188,6 +191,7 @@ def test_a_safety_function_that_is_a_tick_late_is_refuted() -> None:
     assert search(with_safety(known, with_step(late))).kept.result == "counterexample"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "reason"),
     [
@@ -308,6 +312,7 @@ def halted(state: State, options: Options) -> bool:
 def kept_back(state: State, options: Options) -> bool:"""
 
 
+@pytest.mark.slow
 def test_what_a_core_says_of_itself_does_not_release_a_stop() -> None:
     """Its `halted` says no, and its steps go by another function."""
     lying = CORE.replace("halted(", "kept_back(")

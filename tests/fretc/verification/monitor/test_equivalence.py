@@ -88,6 +88,7 @@ def sentence_within(n: int) -> s.Sentence:
 # Proofs ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [0, 1, 3, 10_000])
 def test_a_right_monitor_is_proved_at_its_own_bound(n: int) -> None:
     pairs = n + 2  # before tick 0; nothing waits; something has waited for 1..n ticks
@@ -336,6 +337,7 @@ def test_what_a_sentence_lacks_is_false() -> None:
     assert letters == {(False,): (False,) * 4, (True,): (False, False, True, False)}
 
 
+@pytest.mark.slow
 @given(sentences)
 def test_letters_have_the_values_of_the_expressions(sentence: s.Sentence) -> None:
     timing = sentence.timing

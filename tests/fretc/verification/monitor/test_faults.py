@@ -186,6 +186,7 @@ def test_a_step_that_has_another_tick_in_it_than_its_rail_is_refused(old: str, n
     assert examiner.kind(text[:place] + text[place:].replace(old, new)) == REFUSED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     "row tick doubt known must may rows refused Signals since other_name".split(),

@@ -124,6 +124,7 @@ def test_a_monitor_that_is_given_the_truth_of_a_comparison_is_refused() -> None:
     assert verified(right, opaque[:place] + own).result is REFUSED
 
 
+@pytest.mark.slow
 def test_each_requirement_of_a_file_is_compared_for_itself() -> None:
     rules = [rule(f"the agv shall always satisfy x < {n} & p", f"R{n}") for n in (2, 3)]
     text = target.text(*rules)
@@ -134,6 +135,7 @@ def test_each_requirement_of_a_file_is_compared_for_itself() -> None:
         assert verified(each, wrong, others=others).result is expected
 
 
+@pytest.mark.slow
 def test_a_file_may_read_as_a_truth_value_what_one_requirement_takes_for_a_number() -> None:
     rules = [
         rule("the agv shall always satisfy x < 2", "R1"),

@@ -30,6 +30,7 @@ def check(place: int, text: str, sentences: tuple[str, ...] = SENTENCES) -> Outc
     return verified(rules[place], text, others=rules)
 
 
+@pytest.mark.slow
 def test_each_requirement_of_a_file_with_many_propositions_is_proved() -> None:
     text = emitted(*MANY)
     assert all(check(i, text, MANY).result is Result.PROVED for i in (0, 4, 8))
@@ -64,6 +65,7 @@ def broken(text: str, old: str, new: str) -> str:
     return text[:place] + text[place:].replace(old, new, 1)
 
 
+@pytest.mark.slow
 def test_what_looks_at_another_proposition_is_not_taken_for_independent() -> None:
     """Were `s` left out of the comparison as false, the change would never show."""
     text = broken(emitted(*SENTENCES), "            if p:\n", "            if p or s:\n")
@@ -90,6 +92,7 @@ def named(sentence: str, number: int) -> str:
 CONTRADICTING = "whenever x < 2 the sw shall within 2 ticks satisfy !(x > 3)"
 
 
+@pytest.mark.slow
 def test_no_counterexample_has_comparisons_that_contradict_each_other() -> None:
     """The edits show at ticks with both as well as at others, or with an unknown x."""
     text = emitted(CONTRADICTING)

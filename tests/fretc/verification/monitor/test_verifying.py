@@ -110,6 +110,7 @@ def test_long_bounds_are_proved_as_they_are(sentence: str) -> None:
     assert ticks > 4 * bound, "the columns are compared on traces that reach the bound"
 
 
+@pytest.mark.slow
 def test_each_requirement_of_one_text_is_proved() -> None:
     sentences = (WITHIN, FOR, "in m mode the sw shall before s satisfy q")
     text = emitted(*sentences)
@@ -131,6 +132,7 @@ NAMES = (
 THREE_OF_THEM = [*zip(NAMES[::3], NAMES[1::3], NAMES[2::3], strict=True)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("names", [("m", name, "q") for name in NAMES] if FULL else THREE_OF_THEM)
 def test_names_do_not_confuse_it(names: tuple[str, str, str]) -> None:
     mode, name, answer = names
@@ -139,6 +141,7 @@ def test_names_do_not_confuse_it(names: tuple[str, str, str]) -> None:
     assert check(sentence).result is Result.PROVED
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("id", ["tick", "doubt", "Monitor", "3", "a-b", "since_1", "self", "first"])
 def test_ids_do_not_confuse_it(id: str) -> None:
     formalized = rule(WITHIN, id)
@@ -156,6 +159,7 @@ PENDING = "pending (true if it ended there)"
 VIOLATED = "violated (false if it ended there)"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("edits", "word", "expected", "actual"),
     [
@@ -212,6 +216,7 @@ def test_a_wrong_column_program_is_found_at_a_long_bound() -> None:
         assert disagreement(check(sentence, wrong)), bound
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("signal", ["trigger", "breach", "owed", "settled", "answer"])
 def test_every_signal_of_the_column_program_is_compared(signal: str) -> None:
     sentence = "before m mode the sw shall within 2 ticks satisfy q"
@@ -253,6 +258,7 @@ def test_predicates_about_other_ticks_are_not_checked() -> None:
     assert why == "`occurred` speaks of other ticks, and the automaton knows one"
 
 
+@pytest.mark.slow
 def test_more_than_twelve_propositions_are_not_checked() -> None:
     def of(count: int) -> str:
         return f"the sw shall always satisfy {' | '.join(f'a{i}' for i in range(count))}"
@@ -476,6 +482,7 @@ WINDOWED = "only in m mode whenever p the sw shall after 2 ticks satisfy q"
 WINDOW = "            since_1 = kept_since_1.step("
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "edit",
     [

@@ -252,6 +252,7 @@ def closes(connection: ServerConnection) -> None:
     connection.close(1011, "\x1b[2J out of order")
 
 
+@pytest.mark.slow
 @each(
     "handler",
     [
@@ -354,6 +355,7 @@ def test_a_channel_that_the_server_does_not_know_yet_is_asked_for_again() -> Non
     assert found.codes == [Code.SERVER_STATUS]
 
 
+@pytest.mark.slow
 @each("encoding", ["odd", "cdr", "protobuf", "ros1"])
 def test_a_channel_that_cannot_be_decoded_is_told_of(encoding: str) -> None:
     """With the message, for without one nothing is missing."""
@@ -366,7 +368,6 @@ def test_a_channel_that_cannot_be_decoded_is_told_of(encoding: str) -> None:
     assert Code.UNKNOWN_ENCODING in problems
 
 
-@pytest.mark.slow
 def test_a_certificate_has_to_be_trusted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     files = certificate(tmp_path)
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)

@@ -117,6 +117,7 @@ def test_a_proposition_is_read() -> None:
     assert (stopped.role, stopped.kind) == (Role.OUTPUT, "physical")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("digits", ["1", "15", "1.5", "1e9", "15e12", "1.5E+3", "1e-5", "2e-10"])
 @pytest.mark.parametrize("unit", ["m/s", "mm/s", "km/h"])
 def test_a_number_may_have_an_exponent_with_and_without_a_unit(digits: str, unit: str) -> None:
@@ -204,6 +205,7 @@ def test_a_path_names_a_topic_and_a_field(text: str, expected: Path | None) -> N
     assert path(text) == expected
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "place", "message"),
     [
