@@ -143,9 +143,11 @@ def test_runs_with_errors_come_first_and_are_named(tmp_path: Path) -> None:
         "F402",
         "F401",
     ]
-    assert (
-        "b (F405) has an error: read them before the verdicts." in (content["overall"]["sentences"])
-    )
+    sentences = content["overall"]["sentences"]
+    assert "b (F405) has an error: read them before the verdicts." in sentences
+    other = result(known, "no data", run="c.mcap", health={"findings": findings})
+    sentences = as_json(report_of(known, tmp_path, wrong, other))["overall"]["sentences"]
+    assert any(each.endswith("have errors: read them before the verdicts.") for each in sentences)
 
 
 def test_values_are_in_the_declared_unit_and_bounds_are_exact(tmp_path: Path) -> None:
