@@ -4,7 +4,6 @@ The names below are the API; docs/api.md says what they do, and which of their p
 is imported when it is first asked for.
 """
 
-import warnings
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -90,9 +89,11 @@ __all__ = [
 def __getattr__(name: str) -> object:
     """The value of a name, which stays: it is not asked for again."""
     if name in _RENAMED:
+        import warnings
+
         message = f"`fretc.{name}` is now `fretc.{_RENAMED[name]}`"
         warnings.warn(message, DeprecationWarning, stacklevel=2)
-        return getattr(import_module(__name__), _RENAMED[name])
+        return __getattr__(_RENAMED[name])
     if name not in _HOMES:
         raise AttributeError(f"module `fretc` has no attribute `{name}`", name=name)
     value = globals()[name] = getattr(import_module(_HOMES[name]), name)

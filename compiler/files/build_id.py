@@ -1,4 +1,4 @@
-"""Which fretc this is, to the letter: one edition makes one evidence of the same bytes."""
+"""The identity of a build of fretc: one build makes the same evidence of the same bytes."""
 
 from __future__ import annotations
 

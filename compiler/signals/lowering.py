@@ -56,7 +56,7 @@ class Lowering:
     unit: Unit = ONE
     """In which quantities are read."""
     held: list[tuple[n.Truth, int]] = field(default_factory=list)
-    """What is asked to have held, and for how many nanoseconds, in the order of `Held.place`."""
+    """What is asked to have held, and for how many nanoseconds, in the order of `HeldFor.place`."""
 
     def truth(self, tree: e.Expression) -> n.Truth:
         """The truth of an expression that the reader of bindings accepts, without `pre`."""

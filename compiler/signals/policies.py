@@ -10,7 +10,7 @@ read, and the truths of these propositions. Printers of languages turn both into
 - the numbers of all signals → `Meaning.truth` at an instant;
 - the truths of all instants of a tick → `Meaning.aggregate`, then `Meaning.on_unknown`.
 
-What depends on more than one instant is an input: `... for 200 ms` is `Held`. What looks back by
+What depends on more than one instant is an input: `... for 200 ms` is `HeldFor`. What looks back by
 ticks (`pre`) is no function of an instant at all, and stands in `Instant.left_out`. A mean and a
 clearance are not exact in other languages: their signals are given as one number (`is_given`).
 """
@@ -34,7 +34,7 @@ class Policy:
 
     An element is NaN, +inf, -inf, a finite number for which `valid` is not true, or a
     measurement; `signal.invalid` says of each of the first four what it means. `valid` compares
-    `Given("x")`, the element, with fields of the same message, which are 64-bit floats.
+    `SignalValue("x")`, the element, with fields of the same message, which are 64-bit floats.
     """
 
     signal: Signal
@@ -60,7 +60,7 @@ class Meaning:
     name: str
     truth: n.Truth
     held: tuple[tuple[n.Truth, int], ...]
-    """What has to hold for a duration, and for how many nanoseconds; in the order of `Held`."""
+    """What has to hold for a duration, and for how many nanoseconds; in the order of `HeldFor`."""
     aggregate: Aggregate
     on_unknown: bool | None
 

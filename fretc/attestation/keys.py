@@ -211,7 +211,7 @@ def read_envelope(line: str) -> DsseEnvelope:
     key, no two name the same, and nothing else stands in the envelope.
 
     Raises:
-        MisshapenError: the JSON has another form.
+        SchemaError: the JSON has another form.
     """
     shape = Shape(plain(line))
     shape.only("payload", "payloadType", "signatures")

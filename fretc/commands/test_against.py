@@ -70,11 +70,9 @@ def against(
     stopped = False
     try:
         campaign = ConformanceRun(rules, assumed, chosen, seconds)
-        referee = campaign.referee
+        oracle = campaign.oracle
         try:
-            campaign.run(
-                lambda: Program(words, referee.inputs, referee.outputs, line_time), at_work
-            )
+            campaign.run(lambda: Program(words, oracle.inputs, oracle.outputs, line_time), at_work)
         except ProgramError as error:
             wrong = error.diagnostic
         except KeyboardInterrupt:

@@ -16,7 +16,7 @@ from fretc.analysis.arithmetic.projection import Limit
 
 
 class NumberCourse:
-    """A `Course`."""
+    """A `NumericTrace`."""
 
     def __init__(self, groups: Sequence[Group], atoms: Atoms, budget: Budget) -> None:
         """A run that has not begun.

@@ -60,7 +60,7 @@ class ConformanceRun:
         judged = [*self._rules.values()]
         if not judged:
             raise UnsupportedError("no requirement has a monitor")
-        self.referee = Oracle(judged, assumptions, roles)
+        self.oracle = Oracle(judged, assumptions, roles)
         self._fields = [
             RequirementGroup(group, about(group, assumptions, roles), roles, Budget(seconds))
             for group in by_variables(judged, assumptions, roles)
@@ -82,7 +82,7 @@ class ConformanceRun:
             UnsupportedError: no value is known for an input.
             ProgramError: the program does not keep to the protocol.
         """
-        driver = Driver(self._fields, self.referee, start)
+        driver = Driver(self._fields, self.oracle, start)
         try:
             for field in self._fields:
                 for aim in field.aims:
@@ -161,7 +161,7 @@ class ConformanceRun:
     def _failure(
         self, aim: TargetState | None, rule: FormalizedRequirement, run: Run, driver: Driver
     ) -> Failure:
-        shrinking = Shrinking(rule.id, self.referee.inputs, driver.again, run)
+        shrinking = Shrinking(rule.id, self.oracle.inputs, driver.again, run)
         again = shrinking.again()
         best = shrinking.shrink() if again else run
         return Failure(

@@ -21,8 +21,8 @@ Start = Callable[[], Program]
 class Driver:
     """Runs of one program."""
 
-    def __init__(self, fields: Sequence[RequirementGroup], referee: Oracle, start: Start) -> None:
-        self._fields, self._referee, self._start = fields, referee, start
+    def __init__(self, fields: Sequence[RequirementGroup], oracle: Oracle, start: Start) -> None:
+        self._fields, self._oracle, self._start = fields, oracle, start
         self.runs = self.ticks = 0
         """How many there were of both."""
 
@@ -79,25 +79,25 @@ class Driver:
 
     def _run(self, inputs: Callable[[int], Tick | None], goes_on: Callable[[Truths], bool]) -> Run:
         """One run, as long as there are inputs, it goes on, and nothing is violated."""
-        referee = self._referee
-        referee.begin()
+        oracle = self._oracle
+        oracle.begin()
         rows: list[Tick] = []
         found: list[Truths] = []
         with self._start() as program:
             while (values := inputs(len(rows))) is not None:
-                missing = next((name for name in referee.inputs if name not in values), None)
+                missing = next((name for name in oracle.inputs if name not in values), None)
                 if missing is not None:
                     raise UnsupportedError(f"no value is known for `{missing}`")
-                given = {name: values[name] for name in referee.inputs}
-                answer = dict(zip(referee.outputs, program.step([*given.values()]), strict=True))
-                truths = referee.step({**given, **answer})
+                given = {name: values[name] for name in oracle.inputs}
+                answer = dict(zip(oracle.outputs, program.step([*given.values()]), strict=True))
+                truths = oracle.step({**given, **answer})
                 rows.append({**given, **answer})
                 found.append(truths)
-                if referee.broken() or referee.is_over() or not goes_on(truths):
+                if oracle.broken() or oracle.is_over() or not goes_on(truths):
                     break
         self.runs += 1
         self.ticks += len(rows)
-        return Run(tuple(rows), tuple(found), referee.broken(), referee.triggered())
+        return Run(tuple(rows), tuple(found), oracle.broken(), oracle.triggered())
 
 
 class _Side:

@@ -82,7 +82,7 @@ class Flow:
         """The names in an expression.
 
         Raises:
-            StrangeTextError: there is anything else in it.
+            UnexpectedLayoutError: there is anything else in it.
         """
         names, place, grammar = set[str](), 0, self._grammar
         while place < len(value):
@@ -146,7 +146,7 @@ class Flow:
             expression: what a field's value is made of.
 
         Raises:
-            StrangeTextError: they are not made of expressions.
+            UnexpectedLayoutError: they are not made of expressions.
         """
         if self.conditions or [*map(_names, given)] != [*map(_names, own)]:
             raise strange([token for fields in given for _, value in fields for token in value])

@@ -60,7 +60,7 @@ def formed(
         outcomes: names for them.
 
     Raises:
-        StrangeTextError: it has another form.
+        UnexpectedLayoutError: it has another form.
     """
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
     outside, (first, stepped) = split(given, _FREE)
@@ -111,7 +111,7 @@ class _Step(Flow):
         """One more statement; what an `if` or `else` holds is a single one.
 
         Raises:
-            StrangeTextError: it is of no form that is known to be harmless.
+            UnexpectedLayoutError: it is of no form that is known to be harmless.
         """
         if statement in self._known and self._fixed(statement):
             self.conditions = []

@@ -29,7 +29,7 @@ def checked(given: SourceText, rules: Sequence[FormalizedRequirement]) -> Parsed
     """The text in the form that fretc writes.
 
     Raises:
-        StrangeTextError: it has another form.
+        UnexpectedLayoutError: it has another form.
     """
     own_rules = implemented([json.loads(id) for id in _IDS.findall(given.text)], rules)
     made = _program(own_rules)

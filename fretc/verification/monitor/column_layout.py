@@ -22,7 +22,7 @@ def check_columns(node: ast.stmt, literals: Sequence[str]) -> None:
         literals: the names of its parameters.
 
     Raises:
-        StrangeError: it does something else.
+        UnexpectedCodeError: it does something else.
     """
     parameters = ", ".join(f"{name}: int" for name in literals)
     arguments = f"every: int, *, {parameters}" if literals else "every: int"

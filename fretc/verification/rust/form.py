@@ -61,7 +61,7 @@ def formed(
         outcomes: those of the outcomes.
 
     Raises:
-        StrangeTextError: it has another form.
+        UnexpectedLayoutError: it has another form.
     """
     given, own = LEXIS.tokens(text), LEXIS.tokens(written)
     outside, (first, stepped) = split(given, _FREE)
@@ -122,7 +122,7 @@ class _Step(Flow):
         """One more statement.
 
         Raises:
-            StrangeTextError: it is of no form that is known to be harmless.
+            UnexpectedLayoutError: it is of no form that is known to be harmless.
         """
         if not (self._branch(statement) or self._fixed(statement) or self._assignment(statement)):
             raise strange(statement)

@@ -24,7 +24,7 @@ def checked(given: SourceText, rules: Sequence[FormalizedRequirement]) -> Parsed
     """The text in the form that fretc writes.
 
     Raises:
-        StrangeTextError: it has another form.
+        UnexpectedLayoutError: it has another form.
     """
     own_rules = implemented([id for id, _ in _OUTCOMES.findall(given.text)], rules)
     files = TARGET.emit(own_rules, Options(one_file=True))

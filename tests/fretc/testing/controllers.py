@@ -124,6 +124,6 @@ def seen_of(text: str, folder: Path | None = None) -> Conformance:
         path.write_text(text)
         kind, command = Program, [sys.executable, "-ISE", str(path)]
     campaign = ConformanceRun([*RULES.values()], [ASSUMED], roles(INPUTS, OUTPUTS), 60)
-    columns = campaign.referee.inputs, campaign.referee.outputs
+    columns = campaign.oracle.inputs, campaign.oracle.outputs
     campaign.run(partial(kind, command, *columns, seconds=60), lambda words: None)
     return campaign.findings(command)
