@@ -34,47 +34,70 @@ from fretc.terminal.output import (
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.reading.limits import ExceededError, exceeded
 
-_HELP = f"""From FRETish requirements to monitors, audited logs and a traceability report.
+_HELP = f"""From FRETish requirements to runtime monitors, audited logs and a traceability report.
 
-`fretc FILE...` parses and formalizes requirements; with `--emit` it makes files of them:
-{", ".join(TARGETS)}. `fretc FILE --help` says more.
+`fretc FILE...` formalizes requirements; with `--emit KIND` it generates files from them. Kinds:
+{", ".join(TARGETS)}. See also `fretc FILE --help`.
 """
 
 
+_GROUPS = {
+    "Write requirements": {
+        "check": ("check:check", "Report errors and warnings of a project, before any run."),
+        "explain": ("explain:explain", "Explain a requirement with traces, or a message code."),
+        "init": ("init:init", "Create a project: requirement, bindings and hazards."),
+        "bind": ("bind:bind", "Draft bindings from a log, or check bindings against logs."),
+        "info": ("info:info", "Show the topics, rates and damage of recorded runs."),
+        "play": ("play:play", "Make a page on which you edit a trace and see the verdicts."),
+        "fmt": ("formalize:fmt", "Rewrite sentences in canonical wording."),
+        "import": ("formalize:import_", "Import requirements that FRET has exported."),
+    },
+    "Audit runs": {
+        "audit": ("audit:audit", "Check recorded runs against the requirements."),
+        "watch": ("watch:watch", "Check a running robot against the requirements."),
+        "coverage": ("coverage:coverage", "Show which situations the runs have exercised."),
+        "mutate": ("mutate:mutate", "Show which wrong requirements the runs would not detect."),
+        "trends": ("trends:trends", "Compare audits: newly violated, fixed, flaky or worse."),
+        "simulate": ("simulate:simulate", "Simulate a robot's mission and record it."),
+    },
+    "Prove and test": {
+        "verify": ("verify:verify", "Prove monitors, interceptors and agents."),
+        "analyze": ("analyze:analyze", "Find requirements that conflict or are redundant."),
+        "test": ("test:test", "Generate tests from requirements, or test a program."),
+    },
+    "Report and review": {
+        "report": ("report:report", "Trace hazard to verdict in one HTML file."),
+        "lock": ("review:lock", "Record your review of requirements."),
+        "diff": ("review:diff", "Show what has changed since a review."),
+        "sign": ("sign:sign", "Sign evidence, proofs, reviews or a report."),
+        "verify-evidence": ("verify_evidence:verify_evidence", "Recompute evidence and compare."),
+    },
+    "Installation": {
+        "completion": ("completion:completion", "Print a completion script for your shell."),
+        "sbom": ("sbom:sbom", "List the installed components as CycloneDX."),
+    },
+}
+"""By the work of the user, the most used first: module and attribute, and the line in the help."""
 _COMMANDS = Registry(
     {
         DEFAULT: "fretc.commands.formalize:compile_",
-        "init": "fretc.commands.init:init",
-        "fmt": "fretc.commands.formalize:fmt",
-        "import": "fretc.commands.formalize:import_",
-        "explain": "fretc.commands.explain:explain",
-        "info": "fretc.commands.info:info",
-        "bind": "fretc.commands.bind:bind",
-        "check": "fretc.commands.check:check",
-        "play": "fretc.commands.play:play",
-        "analyze": "fretc.commands.analyze:analyze",
-        "test": "fretc.commands.test:test",
-        "audit": "fretc.commands.audit:audit",
-        "coverage": "fretc.commands.coverage:coverage",
-        "mutate": "fretc.commands.mutate:mutate",
-        "report": "fretc.commands.report:report",
-        "trends": "fretc.commands.trends:trends",
-        "lock": "fretc.commands.review:lock",
-        "diff": "fretc.commands.review:diff",
-        "verify": "fretc.commands.verify:verify",
-        "verify-evidence": "fretc.commands.verify_evidence:verify_evidence",
-        "sign": "fretc.commands.sign:sign",
-        "watch": "fretc.commands.watch:watch",
-        "simulate": "fretc.commands.simulate:simulate",
-        "sbom": "fretc.commands.sbom:sbom",
-        "completion": "fretc.commands.completion:completion",
+        **{
+            name: f"fretc.commands.{place}"
+            for commands in _GROUPS.values()
+            for name, (place, _) in commands.items()
+        },
     }
 )
+_SUMMARIES = {
+    heading: {name: summary for name, (_, summary) in commands.items()}
+    for heading, commands in _GROUPS.items()
+}
 
 
 @click.group(
     cls=Commands,
     commands=_COMMANDS,
+    summaries=_SUMMARIES,
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     help=_HELP,
@@ -85,7 +108,7 @@ _COMMANDS = Registry(
     "folders",
     multiple=True,
     metavar="FOLDER",
-    help="Parents of requirements may be in this folder, too, outside of the project.",
+    help="Folder outside the project in which parents of requirements may also be. Repeatable.",
 )
 def cli(folders: tuple[str, ...]) -> None:
     """The command itself; its help is `_HELP`."""

@@ -43,34 +43,37 @@ if TYPE_CHECKING:
     from fretc.analysis.findings import Analysis
 
 
-@click.command(short_help="Say whether requirements can be kept together.")
+@click.command()
 @click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
-@click.option(
-    "--component", metavar="NAME", help="Only the requirements of this component of the sentences."
-)
+@click.option("--component", metavar="NAME", help="Only requirements of this component.")
 @click.option(
     "--time",
     "seconds",
     type=SECONDS,
     default=20,
     show_default=True,
-    help="Seconds of a processor for each question.",
+    help="CPU time limit for each question, in seconds.",
 )
 @click.option(
     "--emit",
     "emitted",
     type=click.Choice(("python", "hoa", "dot")),
-    help="Write how a system keeps them: a program, or a Mealy machine.",
+    help="Write a controller that satisfies all requirements, as a Python program or a Mealy "
+    "machine.",
 )
 @path_option(
-    "--emit-to", default="build", show_default=True, help="Folder for `--emit`; `-` prints."
+    "--emit-to", default="build", show_default=True, help="Folder for `--emit`. `-` prints."
 )
-@click.option("--as-fret", is_flag=True, help="Answer as FRET does: `eventually` means at once.")
+@click.option(
+    "--as-fret",
+    is_flag=True,
+    help="Answer as FRET does: an `eventually` without a bound must hold at once.",
+)
 @requirements_option
-@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
 @format_option()
 @output_option(
-    default="build/analysis.json", show_default=True, help="Where evidence goes; `-` prints it."
+    default="build/analysis.json", show_default=True, help="File for the analysis. `-` prints it."
 )
 def analyze(
     files: tuple[str, ...],
@@ -84,12 +87,19 @@ def analyze(
     form: str,
     output: str,
 ) -> None:
-    """Say whether requirements can be kept together, which fight, and which say nothing.
+    """Find out whether a system can satisfy all requirements together.
 
-    FILE holds requirements, or is a folder of such files: in place of `--requirements`. The
-    bindings say which variables are inputs, chosen by the environment, and which are outputs.
+    FILE is a requirement file, or a folder of them; it replaces `--requirements`. The bindings
+    say which variables are inputs, chosen by the environment, and which are outputs, chosen by
+    the system.
 
-    Exit status: 0 a system can keep all of them, 1 none can, 2 bad use or input, 3 not checked.
+    The analysis names requirements that conflict, that are redundant, and that no input can
+    trigger.
+
+    Exit status: 0 realizable, 1 not realizable, 2 bad usage or bad input, 3 not all questions
+    are answered.
+
+    Example: fretc analyze requirements/agv --time 60
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json

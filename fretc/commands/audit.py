@@ -61,10 +61,10 @@ if TYPE_CHECKING:
 
 
 _AUDIT = {
-    "Judged by": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
-    "Printed and written": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
-    "Which logs": ("since", "sample", "seed"),
-    "Many logs": (
+    "Input": ("requirements", "bindings", "integrity", "evaluation", "confidence"),
+    "Output": ("form", "verbose", "output", "parquet", "annotate", "annotations"),
+    "Selection": ("since", "sample", "seed"),
+    "Many logs, performance": (
         "labels",
         "jobs",
         "log_time",
@@ -74,7 +74,7 @@ _AUDIT = {
         "keep_columns",
         "command",
     ),
-    "Questions to tables and evidence: LOG is one of them, nothing is audited": (
+    "Queries on existing evidence": (
         "summary",
         "query",
     ),
@@ -84,7 +84,6 @@ _AUDIT = {
 @click.command(
     cls=Grouped,
     headings=_AUDIT,
-    short_help="Audit recorded runs against all requirements.",
     epilog=extras({**OF_LOGS, "fleet": "--engine dask"}),
 )
 @click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
@@ -93,46 +92,55 @@ _AUDIT = {
 @output_option(
     cls=Renamed,
     earlier="--evidence",
-    help="Where evidence goes: NAME.json is a file, another name the folder of a store, `-` "
-    "prints it. If not given, build/evidence.json for one log, build/evidence for several.",
+    help="Evidence file (NAME.json), or folder of an evidence store (any other name). `-` "
+    "prints the evidence.  [default: build/evidence.json for one log, build/evidence for "
+    "several]",
 )
-@click.option("--annotate", is_flag=True, help="Also write its verdicts as a log, for Foxglove.")
+@click.option(
+    "--annotate",
+    is_flag=True,
+    help="Also write the verdicts as annotation logs, which Foxglove shows beside each run.",
+)
 @path_option(
     "--annotations",
     metavar="FOLDER",
-    help="Where these go: build/annotations, if not given. Implies --annotate.",
+    help="Folder for the annotation logs. Implies --annotate.  [default: build/annotations]",
 )
 @format_option(
     "junit",
     "github",
     "sarif",
-    text="What is printed: for a person, as JSON, as JUnit XML, as annotations of GitHub Actions, "
-    "as SARIF.",
+    text="Output format. `github`: annotations for GitHub Actions.",
 )
 @click.option(
-    "-v", "--verbose", is_flag=True, help="List each result, of many runs too: no table of marks."
+    "-v",
+    "--verbose",
+    is_flag=True,
+    help="List every result. Without it, many runs are shown as a table of symbols.",
 )
 @click.option(
     "--evaluation",
     type=click.Choice(("columns", "online")),
     default="columns",
     show_default=True,
-    help="Run the monitors over whole logs at once, or step by step; what they show is the same.",
+    help="How monitors are run: over whole columns at once, or step by step. The results are "
+    "the same.",
 )
 @click.option(
     "--integrity",
     type=click.Choice(("index", "hash", "full")),
     default="hash",
     show_default=True,
-    help="How much of a log is read: what is bound (index); that, and all bytes are hashed (hash); "
-    "every record, CRC and count (full).",
+    help="How thoroughly a log is checked. `index`: only topics in the bindings are read. "
+    "`hash`: also computes the SHA-256 of the file. `full`: also checks every record, CRC "
+    "and count.",
 )
 @click.option(
     "--confidence",
     type=click.FloatRange(min=0.5, max=0.999, min_open=True),
     default=0.95,
     show_default=True,
-    help="Of what all logs together say of a requirement with a probability.",
+    help="Confidence level for requirements with a probability.",
 )
 @label_option
 @jobs_option
@@ -140,37 +148,66 @@ _AUDIT = {
     "--engine",
     default="local",
     show_default=True,
-    help="Where logs are audited: local, dask (a cluster of this machine), dask://HOST:PORT.",
-)
-@click.option("--since", metavar="TIME", help="Logs since then: 2026-11-22, 24h, 7d.")
-@click.option(
-    "--sample", type=click.IntRange(min=1), metavar="N", help="At most N of the logs, by chance."
+    help="Where the audit runs: `local`, `dask` (a Dask cluster on this machine) or "
+    "dask://HOST:PORT.",
 )
 @click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of that chance."
+    "--since",
+    metavar="TIME",
+    help="Only logs recorded since this time, for example 2026-11-22, 24h or 7d.",
 )
-@click.option("--log-time", metavar="TIME", help="For each log at most: 90s, 5min.")
-@click.option("--time", "whole_time", metavar="TIME", help="For all logs at most: 6h.")
+@click.option(
+    "--sample",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Audit a random sample of at most N logs.",
+)
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    help="Seed of the random sample.",
+)
+@click.option(
+    "--log-time", metavar="TIME", help="Time limit for each log, for example 90s or 5min."
+)
+@click.option(
+    "--time", "whole_time", metavar="TIME", help="Time limit for the whole audit, for example 6h."
+)
 @click.option(
     "--keep-columns",
     is_flag=True,
-    help="Keep samples of all logs beside the evidence; an unchanged log is not read again.",
+    help="Keep the samples of all logs beside the evidence, so that unchanged logs are not read"
+    " again.",
 )
 @click.option(
-    "--rehash", is_flag=True, help="Know a log by its SHA-256, not by its size and times."
+    "--rehash",
+    is_flag=True,
+    help="Identify unchanged logs by SHA-256, not by size and time of change.",
 )
 @click.option(
-    "--notify", "command", metavar="CMD", help="Give CMD a summary on standard input, as JSON."
+    "--notify",
+    "command",
+    metavar="CMD",
+    help="Run CMD at the end, with a JSON summary on its standard input.",
 )
-@path_option("--parquet", help="Where a table goes, too: a row for each run and requirement.")
+@path_option(
+    "--parquet", help="Also write a Parquet table with one row for each run and requirement."
+)
 @click.option("--resume", is_flag=True, hidden=True)
 @click.option(
-    "--summary", is_flag=True, help="How many of which verdict, worst runs, slowest answers."
+    "--summary",
+    is_flag=True,
+    help="Summarize existing evidence: verdict counts, worst runs, "
+    "slowest responses. LOG is the evidence; nothing is "
+    "audited.",
 )
 @click.option(
     "--query",
     metavar="SQL",
-    help="The answer to SQL of DuckDB; the tables are `results`, `violations`, `runs`.",
+    help="Query existing evidence with DuckDB SQL. LOG is the evidence; the tables are "
+    "`results`, `violations` and `runs`.",
 )
 def audit(
     paths: tuple[str, ...],
@@ -200,15 +237,20 @@ def audit(
     summary: bool,
     query: str | None,
 ) -> None:
-    """Audit recorded runs against all requirements.
+    """Check recorded runs against the requirements and give each a verdict.
 
-    LOG is an MCAP file, a bag (.bag, .db3), a folder (all logs below it), a quoted pattern
-    ('runs/**/*.mcap'), a URL, a folder or pattern in a store (s3://bucket/runs/), or - for standard
-    input. A folder of rosbag2 with several files is one log.
+    LOG is an MCAP file, a ROS bag (.bag, .db3), a folder (all logs below it), a quoted pattern
+    ('runs/**/*.mcap'), a URL, a folder or pattern in an object store (s3://bucket/runs/), or
+    `-` for standard input. A rosbag2 folder with several files is one log.
 
-    Each run and requirement gets a verdict: satisfied, violated, inconclusive, vacuous or no data.
-    A requirement with a probability is judged over all runs: supported, refuted or inconclusive.
-    Exit status: 0 all satisfied, 1 a violation, 2 bad use or bad input, 3 something is not shown.
+    The verdict of a requirement in a run is satisfied, violated, inconclusive, vacuous or no
+    data. A requirement with a probability gets one verdict over all runs: supported, refuted or
+    inconclusive.
+
+    Exit status: 0 all are satisfied, 1 one is violated, 2 bad usage or bad input, 3 none is
+    violated but one is inconclusive, vacuous or has no data.
+
+    Example: fretc audit runs/ --requirements requirements/mission -o build/mission.json
     """
     if summary or query is not None:
         summarize(paths, query, form)

@@ -39,17 +39,16 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    short_help="Draft bindings from a log, or check what they see in logs.",
     epilog=extras(OF_LOGS),
 )
 @click.argument("paths", nargs=-1, type=PATH, metavar="[LOG...]")
-@path_option("--from", "source", metavar="LOG", help="Draft bindings of what is in this log.")
-@click.option("--check", is_flag=True, help="Tell what each proposition was in each LOG.")
+@path_option("--from", "source", metavar="LOG", help="Draft bindings from this log.")
+@click.option("--check", is_flag=True, help="Check the bindings against each LOG.")
 @requirements_option
 @bindings_option
-@output_option(default="-", show_default=True, help="Where a draft goes.")
-@click.option("--force", is_flag=True, help="Write over a file that is there.")
-@format_option(text="How a check is printed.")
+@output_option(default="-", show_default=True, help="File for the draft.")
+@click.option("--force", is_flag=True, help="Overwrite an existing file.")
+@format_option(text="Output format of `--check`.")
 @jobs_option
 def bind(
     paths: tuple[str, ...],
@@ -62,13 +61,17 @@ def bind(
     form: str,
     jobs: int,
 ) -> None:
-    """Draft bindings from a log, or check what they see in logs.
+    """Draft bindings from a log, or check bindings against logs.
 
-    `--from LOG` prints a bindings.toml: the clock, a signal for each field whose meaning is known,
-    all other numbers and texts as comments, and each proposition that the requirements name and no
-    bindings define, to be filled in. `--check LOG...` tells in how many ticks each proposition was
-    true, false and unknown, and how often it changed. Exit status of a check: 0 each proposition
-    took both values in some log, 3 one did not, 2 bad input.
+    `--from LOG` prints a bindings.toml with the clock, a signal for each field whose meaning is
+    known, all other numbers and texts as comments, and a blank entry for each proposition that
+    the requirements use and no bindings define.
+
+    `--check LOG...` prints in how many ticks each proposition was true, false and unknown, and
+    how often it changed. Exit status: 0 each proposition took both values in some log, 3 one
+    did not, 2 bad usage or bad input.
+
+    Example: fretc bind --from run.mcap -o requirements/bindings.toml
     """
     drafts = source is not None
     if drafts == check:

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    short_help="Say what is wrong or missing in a project, before any run.",
     epilog=extras({"reqif": "parents in a .reqif"}),
 )
 @click.argument("folder", required=False, type=PATH, metavar="")
@@ -44,11 +43,14 @@ if TYPE_CHECKING:
 @click.option(
     "--analyze",
     is_flag=True,
-    help="Ask whether all requirements can be kept together, too; what `fretc analyze` has written "
-    "counts as long as it is about these.",
+    help="Also find out whether all requirements can be satisfied together. An up-to-date "
+    "result of `fretc analyze` is used again.",
 )
 @click.option(
-    "--fix", is_flag=True, help="Apply the safe fixes to the requirement files, then check."
+    "--fix",
+    is_flag=True,
+    help="First apply the safe fixes to the requirement files, such as "
+    "`shall` for `should`. Each fix is listed.",
 )
 @format_option()
 def check(
@@ -63,15 +65,17 @@ def check(
     fix: bool,
     form: str,
 ) -> None:
-    """Say what is wrong or missing in a project, before any run.
+    """Report errors and warnings of a project, before any run.
 
-    Mistakes in requirements, bindings, hazards, lock and waivers; everything that an audit would
-    refuse; numbers that have drifted apart; requirements that hold whatever happens; planned
-    methods that can give no result; links that are missing; what has changed since its review,
-    or since its audit; what was reviewed and is claimed no more; waivers that cover nothing.
-    Warnings that are accepted are listed with their reasons.
-    `--fix` fixes what can mean one thing only (`should`, `and`, `=<`) and names each fix.
-    Exit status: 0 no warning but accepted ones, 3 warnings, 2 mistakes.
+    It checks requirements, bindings, hazards, lock and waivers, and reports: syntax errors;
+    whatever an audit would refuse; numbers that differ between a sentence and the parameters;
+    requirements that always hold; methods in the hazards that can give no result; missing
+    links; changes since the review or the audit; reviewed requirements that are gone; waivers
+    that match nothing. Accepted warnings are listed with their reasons.
+
+    Exit status: 0 no warnings, or only accepted ones; 3 warnings; 2 errors.
+
+    Example: fretc check --fix
     """
     from compiler.files.dates import today
     from compiler.project.folder import load_folder

@@ -7,12 +7,13 @@ import click
 from fretc.terminal.completion import SHELLS, script
 
 
-@click.command(short_help="Print what lets a shell complete commands, options and files.")
+@click.command()
 @click.argument("shell", type=click.Choice(SHELLS))
 def completion(shell: str) -> None:
-    """Print what lets a shell complete commands, options and files.
+    """Print a script that completes commands, options and files in your shell.
 
-    For bash, put `eval "$(fretc completion bash)"` into ~/.bashrc; for zsh the same with zsh into
-    ~/.zshrc; for fish, `fretc completion fish | source` into ~/.config/fish/config.fish.
+    bash: put `eval "$(fretc completion bash)"` into ~/.bashrc. zsh: put `eval "$(fretc
+    completion zsh)"` into ~/.zshrc. fish: put `fretc completion fish | source` into
+    ~/.config/fish/config.fish.
     """
     click.echo(script(click.get_current_context().find_root().command, shell), nl=False)

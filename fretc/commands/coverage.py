@@ -47,7 +47,6 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    short_help="Say which situations of requirements recorded runs have shown.",
     epilog=extras(OF_LOGS),
 )
 @click.argument("paths", nargs=-1, type=PATH, metavar="[LOG]...")
@@ -55,7 +54,9 @@ if TYPE_CHECKING:
 @bindings_option
 @evidence_option
 @format_option()
-@click.option("-v", "--verbose", is_flag=True, help="List what was seen, and all runs, too.")
+@click.option(
+    "-v", "--verbose", is_flag=True, help="Also list the situations that were seen, and all runs."
+)
 @tests_option
 @jobs_option
 def coverage(
@@ -68,14 +69,17 @@ def coverage(
     tests: str | None,
     jobs: int,
 ) -> None:
-    """Say which situations of requirements recorded runs have shown, and which they never have.
+    """Show which situations of each requirement recorded runs have exercised, and which never.
 
-    LOG is what `fretc audit` takes. Without one, the evidence of an audit says what its runs have
-    shown. A situation is a way in which a run can meet a requirement: triggered again while a
-    demand is open, answered at the last tick allowed, and others (docs/coverage.md).
+    LOG is a log, folder, pattern or URL, as for `fretc audit`. Without LOG, the evidence of an
+    audit is used. A situation is one way in which a run can exercise a requirement: it is
+    triggered again while a response is pending, it is answered at the last possible tick, and
+    others (docs/coverage.md).
 
-    Exit status: 0 every situation was seen that a run can show, 2 bad use or bad input (as of an
-    audit: what could be looked at is printed all the same), 3 some were not.
+    Exit status: 0 every possible situation was seen, 2 bad usage or bad input, 3 some were not
+    seen.
+
+    Example: fretc coverage runs/ --requirements requirements/mission
     """
     from fretc.coverage import record, text_output
     from fretc.coverage.coverage import coverage as found_in

@@ -30,21 +30,23 @@ if TYPE_CHECKING:
     from fretish.documents import Requirement
 
 
-@click.command(short_help="Explain a requirement with traces and a picture, or a code.")
+@click.command()
 @click.argument("what", type=PATH, metavar="WHAT")
 @requirements_option
 @bindings_option
 @format_option()
-@path_option("--svg", "picture", help="Write the picture of the meaning to this file; `-` prints.")
+@path_option("--svg", "picture", help="Write the timing diagram to this file. `-` prints it.")
 def explain(
     what: str, requirements: str, bindings: str | None, form: str, picture: str | None
 ) -> None:
-    """Explain a requirement, or what a diagnostic means.
+    """Explain a requirement, or the code of a message.
 
-    WHAT is the id of a requirement, a `.fret` file or folder, a sentence in quotes, or the code of
-    a diagnostic (`F203`). Of a requirement: its meaning, its formulas, a picture of when its
-    response matters, and short traces that satisfy and violate it, each with the reason and the
-    tick that decides.
+    WHAT is the id of a requirement, a .fret file or folder, a sentence in quotes, or a code
+    such as F203. For a requirement the command prints its meaning, its formulas, a timing
+    diagram, and short traces that satisfy and violate it, each with the reason and the tick
+    that decides.
+
+    Example: fretc explain "whenever near the robot shall within 2 ticks satisfy stopped"
     """
     is_file = what == "-" or what.endswith(".fret") or _is_path(what)
     code = None if is_file else _code(what)

@@ -44,22 +44,27 @@ _NOTATIONS = ("plain", "fret", "spot", "nusmv", "latex")
     "kinds",
     multiple=True,
     type=click.Choice([*TARGETS]),
-    help="Make this kind of file; may be given several times.",
+    help="Kind of file to generate. Repeatable.",
 )
-@output_option(default="build", show_default=True, help="Folder; `-` prints.")
-@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
-@format_option(text="Form of the formulas.")
+@output_option(default="build", show_default=True, help="Folder for generated files. `-` prints.")
+@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
+@format_option(text="Output format of the formulas.")
 @click.option(
     "--notation",
     type=click.Choice(_NOTATIONS),
     default="plain",
     show_default=True,
-    help="Spelling of the formulas.",
+    help="Notation of the formulas.",
 )
-@click.option("--simplify", is_flag=True, help="Show a simplified formula beside the exact one.")
-@click.option("--one-file", is_flag=True, help="Put the monitors of all requirements in one file.")
+@click.option("--simplify", is_flag=True, help="Also show a simplified formula.")
 @click.option(
-    "--weaken", is_flag=True, help="Let AJPF's files say `eventually` for `within`, and say so."
+    "--one-file", is_flag=True, help="Generate one file with the monitors of all requirements."
+)
+@click.option(
+    "--weaken",
+    is_flag=True,
+    help="In AJPF files, write `eventually` where the requirement "
+    "says `within`; each such file says so.",
 )
 def compile_(
     files: tuple[str, ...],
@@ -72,9 +77,12 @@ def compile_(
     one_file: bool,
     weaken: bool,
 ) -> None:
-    """Parse and formalize requirements; make files of them.
+    """Formalize requirements, and generate files from them.
 
-    FILE holds one or more requirements, or is a folder of such files; `-` is standard input.
+    FILE is a requirement file, or a folder of them; `-` is standard input. Without `--emit`,
+    the command prints the meaning and the formulas.
+
+    Example: fretc requirements/r1.fret --emit monitor --emit c
     """
     from compiler.project.folder import load
     from compiler.project.paths import listed
@@ -246,12 +254,22 @@ def _not_of_all(target: Target, refused: Sequence[Refused]) -> Diagnostic:
     )
 
 
-@click.command(short_help="Put sentences into their canonical wording.")
+@click.command()
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
-@click.option("--check", is_flag=True, help="Write nothing; exit with 1 if a file would change.")
-@click.option("-o", "--output", type=click.Choice(("-",)), help="`-` prints in place of writing.")
+@click.option(
+    "--check", is_flag=True, help="Write nothing; exit with status 1 if a file would change."
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Choice(("-",)),
+    help="`-` prints the files instead of rewriting them.",
+)
 def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
-    """Put the sentences of requirement files into their canonical wording."""
+    """Rewrite the sentences of requirement files in canonical wording.
+
+    Example: fretc fmt requirements/*.fret
+    """
     from compiler.project.formatting import formatted
     from compiler.project.paths import listed
 
@@ -274,13 +292,13 @@ def fmt(files: tuple[str, ...], check: bool, output: str | None) -> None:
             deliver({path: file.after})
 
 
-@click.command("import", short_help="Read requirements that FRET exported.")
+@click.command("import")
 @click.argument("file", type=PATH, metavar="FILE")
-@output_option(default=REQUIREMENTS_FOLDER, show_default=True, help="Folder; `-` prints.")
-@click.option("--id-column", help="CSV: the column of the ids.")
-@click.option("--text-column", help="CSV: the column of the sentences or texts.")
-@click.option("--project-column", help="CSV: the column of the projects.")
-@click.option("--force", is_flag=True, help="Write over files that are there.")
+@output_option(default=REQUIREMENTS_FOLDER, show_default=True, help="Folder. `-` prints.")
+@click.option("--id-column", help="Name of the CSV column with the ids.")
+@click.option("--text-column", help="Name of the CSV column with the sentences or texts.")
+@click.option("--project-column", help="Name of the CSV column with the projects.")
+@click.option("--force", is_flag=True, help="Overwrite existing files.")
 def import_(
     file: str,
     output: str,
@@ -289,11 +307,13 @@ def import_(
     project_column: str | None,
     force: bool,
 ) -> None:
-    """Read requirements that FRET exported: JSON, or a CSV.
+    """Import requirements that FRET has exported, as JSON or CSV.
 
-    A comma, a semicolon or a tab parts the columns of a CSV: what parts its header into the most.
-    Writes a `.fret` file for each project, and `bindings.toml` with FRET's variables. Formulas are
-    not taken over: they are made from the sentences.
+    The command writes a .fret file for each FRET project, and bindings.toml with FRET's
+    variables. Formulas are made anew from the sentences. The columns of a CSV are separated by
+    comma, semicolon or tab, whichever splits its header into the most columns.
+
+    Example: fretc import EXPORT.json -o requirements
     """
     from compiler.files.text_files import read
     from compiler.project.fret_import import read_export

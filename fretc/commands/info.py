@@ -10,19 +10,21 @@ from fretish.diagnostics.diagnostic import Diagnostic
 
 
 @click.command(
-    short_help="Say what is in recorded runs, and how healthy they are.",
     epilog=extras(OF_LOGS),
 )
 @click.argument("paths", nargs=-1, required=True, type=PATH, metavar="LOG...")
-@click.option("--all", "whole", is_flag=True, help="Name every field that a signal can read.")
+@click.option("--all", "whole", is_flag=True, help="List every field that a signal can read.")
 @format_option()
 def info(paths: tuple[str, ...], whole: bool, form: str) -> None:
-    """Say what is in recorded runs, and how healthy they are.
+    """Show the topics, rates and damage of recorded runs.
 
-    LOG is an MCAP file, a bag (.bag, .db3), a folder (all logs below it), a quoted pattern
-    ('runs/**/*.mcap'), a URL, or - for standard input. Of each topic its type, count, rate and
-    longest gap, and the fields that a signal of `bindings.toml` can read. Exit status: 0 read, 3
-    something is damaged, 2 a log cannot be read.
+    LOG is an MCAP file, a ROS bag (.bag, .db3), a folder (all logs below it), a quoted pattern
+    ('runs/**/*.mcap'), a URL, or `-` for standard input. For each topic the command prints
+    type, count, rate, longest gap, and the fields that a signal in bindings.toml can read.
+
+    Exit status: 0 no damage, 3 a log is damaged, 2 a log cannot be read.
+
+    Example: fretc info traces/
     """
     from compiler.files.templating import to_json
     from fretc.audit.log_paths import logs as logs_of

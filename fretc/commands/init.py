@@ -15,18 +15,21 @@ from fretish.diagnostics.rendering import visible
 
 
 @click.command(
-    short_help="Begin a project: one requirement, its bindings and hazards.",
     epilog=extras(OF_LOGS),
 )
 @click.argument("folder", default=".", type=PATH, metavar="[FOLDER]")
-@path_option("--from", "log", metavar="LOG", help="Draft bindings and requirement from this log.")
+@path_option(
+    "--from", "log", metavar="LOG", help="Log from which bindings and requirement are drafted."
+)
 def init(folder: str, log: str | None) -> None:
-    """Begin a project: one requirement, its bindings and hazards.
+    """Create a project: one requirement, its bindings and hazards.
 
-    They go to FOLDER/requirements, which must not be there yet, or be empty; FOLDER is the present
-    one if not given. With `--from LOG` the bindings are those that `fretc bind --from LOG` drafts,
-    and the requirement bounds a signal of the log, so that `fretc audit LOG` can judge it at once.
-    What is yours to say is marked `To do`.
+    The files are written to FOLDER/requirements, which must not exist or be empty; FOLDER is
+    the current folder by default. With `--from LOG`, the bindings are drafted from the log, and
+    the requirement limits one of its signals, so that `fretc audit LOG` gives a verdict at
+    once. `To do` marks what you must complete.
+
+    Example: fretc init my-robot --from run.mcap
     """
     from compiler.files.settings import NAME as SETTINGS
     from fretc.audit.bindings.beginning import from_log, without_log

@@ -22,7 +22,6 @@ from fretc.terminal.output import BAD, INTERRUPTED, NOT_SHOWN, SHOWN, coloured, 
 
 
 @click.command(
-    short_help="Say which wrong requirements recorded runs would not have noticed.",
     epilog=extras(OF_LOGS),
 )
 @click.argument("folder", required=False, type=PATH, metavar="[FOLDER]")
@@ -33,12 +32,14 @@ from fretc.terminal.output import BAD, INTERRUPTED, NOT_SHOWN, SHOWN, coloured, 
     required=True,
     type=PATH,
     metavar="LOG",
-    help="A log, or what else `fretc audit` takes; may be given again.",
+    help="A log, folder, pattern or URL, as for `fretc audit`. Repeatable.",
 )
 @requirements_option
 @bindings_option
 @format_option()
-@click.option("-v", "--verbose", is_flag=True, help="List what was noticed, too, and how.")
+@click.option(
+    "-v", "--verbose", is_flag=True, help="Also list the mutants that were detected, and how."
+)
 @tests_option
 @jobs_option
 def mutate(
@@ -51,16 +52,16 @@ def mutate(
     tests: str | None,
     jobs: int,
 ) -> None:
-    """Say which wrong requirements recorded runs would not have noticed.
+    """Show which wrong requirements the recorded runs would not have detected.
 
-    FOLDER has requirements, or is one file of them: in place of `--requirements`. Each is
-    changed in small ways, as somebody might have written or meant it (docs/coverage.md). A run
-    notices a change where the verdict, or the ticks of a violation, are not what they were.
+    FOLDER is a folder of requirement files, or one file; it replaces `--requirements`. Each
+    requirement is changed in small ways (mutants, docs/coverage.md). A run detects a mutant if
+    its verdict or the ticks of a violation differ from those of the requirement. Mutants that
+    `--tests` prove equivalent are left out.
 
-    A change that tests (`--tests`) prove to mean the same is left out: no run could notice it.
+    Exit status: 0 every mutant is detected, 2 bad usage or bad input, 3 some are not detected.
 
-    Exit status: 0 every change is noticed, 2 bad use or bad input (what could be judged is printed
-    all the same), 3 some are not.
+    Example: fretc mutate --against runs/
     """
     from fretc.commands.audit_logs import selected
     from fretc.commands.audit_progress import shown

@@ -33,25 +33,26 @@ _SECONDS = 20
 """Of a processor, for the search of a trace that tells two versions apart."""
 
 
-@click.command(short_help="Make a page: move a tick and see what requirements say.")
+@click.command()
 @click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
 @requirements_option
-@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
 @path_option(
     "--against",
     metavar="OLD",
-    help="What the requirements were, a file or a folder: both versions side by side, and where "
-    "they differ.",
+    help="Earlier version of the requirements, a file or folder. The page shows both versions, "
+    "the ticks at which their verdicts differ, and a shortest trace that distinguishes "
+    "them.",
 )
 @path_option(
     "--log",
     "logs",
     multiple=True,
-    help="A recorded run: its violations are traces to start from. May be given several times.",
+    help="Recorded run whose violations are added as traces. Repeatable.",
 )
 @tests_option
 @analysis_option
-@output_option(default="build/play.html", show_default=True, help="The page; `-` prints it.")
+@output_option(default="build/play.html", show_default=True, help="HTML page. `-` prints it.")
 def play(
     files: tuple[str, ...],
     requirements: str,
@@ -62,17 +63,16 @@ def play(
     analysis: str | None,
     output: str,
 ) -> None:
-    """Make a page: move a tick of a trace and see what each requirement says.
+    """Make an HTML page on which you edit a trace and see each requirement's verdict.
 
-    FILE holds requirements, or is a folder of such files: in place of `--requirements`. The page is
-    one file, asks nothing of the network, and judges with the monitors of `--emit js`. It starts
-    from the traces of `fretc explain`, and from those of `fretc test` and `fretc analyze` where
-    they have been made. With `--against` a requirement that has changed stands beside what it was,
-    with the ticks at which both have other verdicts, and a shortest trace that tells them apart.
-    With `--log` it starts from the violations of a recorded run.
+    FILE is a requirement file, or a folder of them; it replaces `--requirements`. The page is
+    one file, needs no network, and runs the monitors of `--emit js`. It starts with the traces
+    of `fretc explain` and, if they exist, those of `fretc test` and `fretc analyze`.
 
-    Exit status: 0 the page has all requirements, 2 bad use or input, or a requirement of which no
-    monitor can be made: the page names it.
+    Exit status: 0 the page has all requirements, 2 bad usage or bad input, or no monitor can be
+    made for a requirement, which the page names.
+
+    Example: fretc play requirements/ --log run.mcap
     """
     from compiler.formalization.formalize import name_collisions
     from compiler.project.paths import companions

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from fretc.report.page.html import Inset
 
 _HEADINGS = {
-    "Made from": (
+    "Input": (
         "requirements",
         "bindings",
         "hazards",
@@ -45,7 +45,11 @@ _HEADINGS = {
         "waivers",
         "signers",
     ),
-    "Forms: one by `--format` and `-o`, or each to a file of its own": ("form", "output", *FORMS),
+    "Output: one format with --format and -o, or one file for each format": (
+        "form",
+        "output",
+        *FORMS,
+    ),
 }
 
 
@@ -63,16 +67,15 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
 @click.command(
     cls=Grouped,
     headings=_HEADINGS,
-    short_help="Trace hazard to verdict in one HTML file.",
     epilog=extras({"reqif": "--reqif", "sign": "what is signed"}),
 )
 @click.option(
     "--format",
     "form",
     type=click.Choice([*FORMS]),
-    help="The form that is printed, or goes to `-o`; html if only `-o` is given.",
+    help="Format that is printed, or written to the file of `-o`; html if only `-o` is given.",
 )
-@output_option(help="Where it goes; `-` prints it.")
+@output_option(help="File for `--format`. `-` prints.")
 @_forms
 @requirements_option
 @bindings_option
@@ -83,22 +86,24 @@ def _forms(command: Callable[..., None]) -> Callable[..., None]:
 @path_option(
     "--ajpf",
     multiple=True,
-    help="A result of AJPF; each build/*_ajpf/result.json if none is given.",
+    help="Result of AJPF. Repeatable.  [default: every build/*_ajpf/result.json]",
 )
-@path_option("--lock", help="fretc.lock; the one in the requirements' folder if not given.")
-@path_option("--waivers", help="waivers.toml; the one in the requirements' folder if not given.")
+@path_option("--lock", help="Lock with the reviews.  [default: fretc.lock beside the requirements]")
+@path_option("--waivers", help="Waivers file.  [default: waivers.toml beside the requirements]")
 @path_option(
-    "--signers", help="Whose keys count; allowed_signers in the requirements' folder if not given."
+    "--signers",
+    help="List of trusted public keys.  [default: allowed_signers beside the requirements]",
 )
 @click.option(
     "--play",
     is_flag=True,
-    help="The page of `fretc play` is part of the HTML, at each requirement.",
+    help="Include the page of `fretc play` in the HTML page.",
 )
 @click.option(
     "--strict",
     is_flag=True,
-    help="Exit as the report says: 1 violated or suspect, 3 something is not shown.",
+    help="Set the exit status from the report: 1 violated or suspect, 3 a requirement is not "
+    "shown to be satisfied.",
 )
 def report(
     requirements: str,
@@ -119,8 +124,10 @@ def report(
 ) -> None:
     """Trace hazard, requirement, formula, artefact, run and verdict in one HTML file.
 
-    All forms say the same. The same inputs give the same bytes; waivers count by the day of
-    SOURCE_DATE_EPOCH, where that is set.
+    All formats have the same content. The same inputs give the same bytes. If SOURCE_DATE_EPOCH
+    is set, its day decides whether a waiver has expired.
+
+    Example: fretc report --html build/report.html --junit build/report.xml
     """
     from compiler.project.folder import load_folder
     from compiler.project.paths import companions, requirement_files, sibling_path

@@ -49,21 +49,25 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    short_help="Accept the present state of requirements, as their reviewer.",
     epilog=extras({"sign": "--key"}),
 )
 @click.argument("ids", nargs=-1, metavar="[ID]...")
-@click.option("--reviewer", required=True, help="Who has reviewed.")
-@click.option("--role", required=True, help="As what: `safety engineer`.")
-@click.option("--comment", required=True, help="What was looked at, and why it is accepted.")
-@click.option("--date", "day", help="As 2026-11-22; today, or the day of SOURCE_DATE_EPOCH.")
+@click.option("--reviewer", required=True, help="Name of the reviewer.")
+@click.option("--role", required=True, help="Role of the reviewer, for example `safety engineer`.")
+@click.option("--comment", required=True, help="What was reviewed, and why it is accepted.")
+@click.option(
+    "--date",
+    "day",
+    help="Date of the review, for example 2026-11-22.  [default: the"
+    " day of SOURCE_DATE_EPOCH, else today]",
+)
 @requirements_option
 @evidence_option
 @verification_option
 @analysis_option
-@path_option("--lock", "path", help="The lock; `fretc.lock` in the requirements' folder.")
-@path_option("--key", help="Your private key, to sign the reviews with: ~/.ssh/id_ed25519.")
-@click.option("--accept-violations", is_flag=True, help="Also what a run violates, and conflicts.")
+@path_option("--lock", "path", help="Lock file.  [default: fretc.lock beside the requirements]")
+@path_option("--key", help="Private key that signs the reviews, for example ~/.ssh/id_ed25519.")
+@click.option("--accept-violations", is_flag=True, help="Also accept violations and conflicts.")
 @format_option()
 def lock(
     ids: tuple[str, ...],
@@ -80,15 +84,18 @@ def lock(
     accept_violations: bool,
     form: str,
 ) -> None:
-    """Accept the present state of requirements, as their reviewer.
+    """Record your review of requirements in fretc.lock.
 
-    Fingerprints of the sentence, its parents, parameters, bindings and artefacts, and of each
-    audited run with its verdict, go into `fretc.lock`. Any later change makes the links downstream
-    of it suspect. Without an ID all requirements are accepted; of the others the reviews stay.
-    What the runs say of each is named, and whether it can be kept with the others; a violation or
-    a conflict is accepted only with `--accept-violations`, and stays what it is.
-    Evidence of something else than what is here now is not accepted. A review of a requirement
-    that is not there any more stays until its ID is given, or none.
+    The lock stores fingerprints of each sentence, its parents, parameters, bindings and
+    artefacts, and of each audited run with its verdict. A later change marks everything that
+    depends on it as suspect. Without ID, all requirements are reviewed, and reviews of
+    requirements that are gone are removed. With ID, all other reviews stay.
+
+    The command prints the audit results and the analysis that you accept. Violations and
+    conflicts are accepted only with `--accept-violations`; they stay violations. Evidence that
+    does not belong to the present requirements is refused.
+
+    Example: fretc lock --reviewer "A. Meier" --role "safety engineer" --comment "first review"
     """
     from compiler.files.dates import is_date, is_to_come, today
     from compiler.files.templating import to_json
@@ -153,7 +160,7 @@ def _signatures(
     return signed(of_reviews(path, accepted, reviews.values()), mine)
 
 
-@click.command(short_help="Say what has changed since a review, verdicts included.")
+@click.command()
 @click.argument("baseline", required=False, type=PATH, metavar="[BASELINE]")
 @requirements_option
 @evidence_option
@@ -168,10 +175,13 @@ def diff(
     analysis: str | None,
     form: str,
 ) -> None:
-    """Say what has changed since a review, verdicts included.
+    """Show what has changed since a review, verdicts included.
 
-    BASELINE is a lock; `fretc.lock` in the requirements' folder if not given. Exit status: 0
-    nothing has changed, 3 something has.
+    BASELINE is a lock file; fretc.lock beside the requirements by default.
+
+    Exit status: 0 nothing has changed, 3 something has changed, 2 bad usage or bad input.
+
+    Example: fretc diff
     """
     from compiler.files.templating import to_json
     from fretc.report.traceability.comparison import as_record, differences, text

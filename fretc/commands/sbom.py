@@ -11,16 +11,17 @@ from fretc.terminal.output import deliver, stop
 
 
 @click.command(
-    short_help="Say what the installed fretc consists of, as CycloneDX.",
     epilog=extras({"sbom": "all of this"}),
 )
-@output_option(default="-", show_default=True, help="File; `-` prints it.")
+@output_option(default="-", show_default=True, help="File. `-` prints.")
 def sbom(output: str) -> None:
-    """Say what the installed fretc consists of, as CycloneDX.
+    """List the installed components as a CycloneDX software bill of materials.
 
-    The JSON (CycloneDX 1.6) names fretc, each library that it needs, those of the extras that are
-    installed, their versions and licences. With SOURCE_DATE_EPOCH the same installation gives the
-    same bytes.
+    The JSON file (CycloneDX 1.6) lists fretc, its dependencies and those of the installed
+    extras, with versions and licences. With SOURCE_DATE_EPOCH set, the same installation gives
+    the same bytes.
+
+    Example: fretc sbom -o build/sbom.json
     """
     from fretc.attestation.sbom import missing
     from fretc.attestation.sbom import sbom as bill

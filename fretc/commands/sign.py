@@ -43,28 +43,31 @@ class Signable:
 
 
 @click.command(
-    short_help="Sign evidence, proofs, an analysis, reviews or a report with your key.",
     epilog=extras({"sign": "all of this"}),
 )
 @click.argument("files", nargs=-1, required=True, type=PATH, metavar="FILE...")
-@path_option("--key", required=True, metavar="FILE", help="Your private key: ~/.ssh/id_ed25519.")
+@path_option(
+    "--key", required=True, metavar="FILE", help="Your private key, for example ~/.ssh/id_ed25519."
+)
 @click.option(
     "--reviewer",
-    help="Whose reviews or waivers to sign; if not given, those that `allowed_signers` beside FILE "
-    "says are yours, or those of the only person who is named.",
+    help="Sign the reviews or waivers of this person.  [default: yours according to "
+    "allowed_signers beside FILE, or those of the only person named]",
 )
 @path_option(
     "--verification",
-    help="What `fretc verify` found, signed with evidence; build/verification.json, if it is there "
-    "and none is given.",
+    help="Proofs, signed together with the evidence.  [default: build/verification.json, if it "
+    "exists]",
 )
 def sign(files: tuple[str, ...], key: str, reviewer: str | None, verification: str | None) -> None:
-    """Sign evidence, proofs, an analysis, reviews, waivers or a report with your key.
+    """Sign evidence, proofs, an analysis, reviews, waivers or a report with your SSH key.
 
-    FILE is `build/evidence.json`, `build/verification.json`, `build/analysis.json`, `fretc.lock`,
-    `waivers.toml` or a report. What is signed is told before your passphrase is asked for (or
-    taken from FRETC_PASSPHRASE). The signature is a line of `FILE.intoto.jsonl`: an envelope (DSSE)
-    with a statement (in-toto). Signatures of others stay.
+    FILE is build/evidence.json, build/verification.json, build/analysis.json, fretc.lock,
+    waivers.toml or a report. The command prints what it signs before it asks for your
+    passphrase, or reads it from FRETC_PASSPHRASE. The signature is appended to
+    FILE.intoto.jsonl (in-toto statement in a DSSE envelope). Signatures of other people stay.
+
+    Example: fretc sign --key ~/.ssh/id_ed25519 build/evidence.json
     """
     installed()
     signables = [_signable(path, key, reviewer, verification) for path in dict.fromkeys(files)]

@@ -32,33 +32,44 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    short_help="Record missions of the simulated robot.",
     epilog=extras({"sim": "all but --list"}),
 )
 @click.argument("scenarios", nargs=-1, type=PATH, metavar="[SCENARIO]...")
 @output_option(
     cls=Renamed,
     earlier="--out",
-    help="The MCAP file to record; of a campaign, the folder for all logs.",
+    help="MCAP file of the recording; with --campaign, folder for all recordings.",
 )
-@click.option("--seed", default=1, show_default=True, type=click.IntRange(min=0))
+@click.option(
+    "--seed",
+    default=1,
+    show_default=True,
+    type=click.IntRange(min=0),
+    help="Seed of the random numbers.",
+)
 @click.option(
     "--duration",
     type=click.FloatRange(min=0, min_open=True),
-    help="Simulated seconds after which the mission is given up; else what the scenario says.",
+    help="Time limit for the mission, in simulated seconds.  [default: that of the scenario]",
 )
-@click.option("--encoding", type=click.Choice(("ros2", "ros1")), default="ros2", show_default=True)
-@path_option("--png", metavar="FILE", help="Also draw the mission.")
-@path_option("--gif", metavar="FILE", help="Also draw it as it went on.")
+@click.option(
+    "--encoding",
+    type=click.Choice(("ros2", "ros1")),
+    default="ros2",
+    show_default=True,
+    help="Message encoding of the recording.",
+)
+@path_option("--png", metavar="FILE", help="Also draw the mission as a picture.")
+@path_option("--gif", metavar="FILE", help="Also draw the mission as an animation.")
 @click.option(
     "--campaign",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Run each scenario with N seeds, audit each log, print one table.",
+    help="Run each scenario with N seeds, audit every recording, and print one table.",
 )
 @jobs_option
 @format_option()
-@click.option("--list", "listing", is_flag=True, help="Name the scenarios, and record nothing.")
+@click.option("--list", "listing", is_flag=True, help="List the scenarios and stop.")
 def simulate(
     scenarios: Sequence[str],
     output: str | None,
@@ -72,10 +83,12 @@ def simulate(
     form: str,
     listing: bool,
 ) -> None:
-    """Let the simulated robot drive its mission and record it.
+    """Simulate a robot's mission and record it as a log.
 
-    SCENARIO says what goes wrong: one of `--list`, or a file (`.toml`); `nominal` if not given. The
-    safety function in it is the monitor that fretc compiles from R1.
+    SCENARIO is a name from `--list`, or a .toml file; `nominal` by default. It says which fault
+    occurs. The robot's safety function is the monitor that fretc generates from R1.
+
+    Example: fretc simulate obstacle-moved --seed 7 -o mission.mcap
     """
     from simulation.world.scenario import NOMINAL, load, names
 

@@ -44,68 +44,64 @@ if TYPE_CHECKING:
 
 
 @click.command(
-    short_help="Make tests from requirements.",
     epilog=extras({"sim": "--emit mcap and --emit scenario"}),
 )
 @click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
-@click.option(
-    "--component", metavar="NAME", help="Only the requirements of this component of the sentences."
-)
+@click.option("--component", metavar="NAME", help="Only requirements of this component.")
 @click.option("--show", metavar="ID", help="Print the tests of this requirement, tick by tick.")
-@path_option("--suite", "saved", help="Take the tests of this file, and make none.")
+@path_option("--suite", "saved", help="Use the tests of this file instead of generating new ones.")
 @click.option(
     "--time",
     "seconds",
     type=SECONDS,
     default=120,
     show_default=True,
-    help="Seconds of a processor for each requirement.",
+    help="CPU time limit for each requirement, in seconds.",
 )
 @click.option(
     "--emit",
     "emitted",
     type=click.Choice(("pytest", "csv", "fret", "c", "mcap", "scenario")),
-    help="Write the tests: for pytest, as tables for monitors, for the simulator of FRET, as a "
-    "self-test in C, as logs of messages for audits, or as missions of the simulated robot that "
-    "show the same.",
+    help="Write the tests: `pytest` files, `csv` tables for monitors, traces for FRET's "
+    "simulator, a self-test in `c`, `mcap` logs for audits, or `scenario` files for the "
+    "simulated robot. Repeatable.",
 )
 @click.option(
     "--language",
     "languages",
     multiple=True,
     type=click.Choice(("python", "c", "js")),
-    help="The language of the monitor that tests for pytest step, maybe several; python if none "
-    "is given.",
+    help="Language of the monitor that the pytest files run. Repeatable.  [default: python]",
 )
 @path_option(
-    "--emit-to", default="build/tests", show_default=True, help="Folder for `--emit`; `-` prints."
+    "--emit-to", default="build/tests", show_default=True, help="Folder for `--emit`. `-` prints."
 )
 @click.option(
     "--runs",
     type=click.IntRange(min=1),
     default=40,
     show_default=True,
-    help="Missions that are simulated for `--emit scenario`, at most.",
+    help="Maximum number of simulated missions for `--emit scenario`.",
 )
 @jobs_option
 @click.option(
     "--against",
     metavar="CMD",
-    help="Test this program: a line of inputs goes in, a line of outputs comes out.",
+    help="Test this program. It reads a line of inputs and answers with a line of outputs.",
 )
 @click.option(
     "--line-time",
     type=click.FloatRange(min=0, min_open=True),
     default=5,
     show_default=True,
-    help="Seconds that the program of `--against` may take for a line.",
+    help="Time limit for each answer of the program, in seconds.",
 )
 @requirements_option
-@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
 @format_option()
 @output_option(
-    help="Where the suite goes, or what was seen of a program; `-` prints it. "
-    "[default: build/tests/suite.json, build/tests/conformance.json]"
+    help="File for the tests, or for the result of --against. `-` prints it.  [default: "
+    "build/tests/suite.json, build/tests/conformance.json]"
 )
 def test(
     files: tuple[str, ...],
@@ -125,17 +121,21 @@ def test(
     form: str,
     output: str | None,
 ) -> None:
-    """Make tests from requirements: few short runs, each with the verdict that it is to get.
+    """Generate tests from requirements: short traces, each with its expected verdict.
 
-    FILE holds requirements, or is a folder of such files: in place of `--requirements`. Each
-    situation of a sentence is met by a shortest run that keeps it and by one that breaks it, and
-    each sentence that might have been meant in its place gets another verdict on some run. All runs
-    keep the other requirements.
+    FILE is a requirement file, or a folder of them; it replaces `--requirements`. Each
+    situation of a sentence gets a shortest trace that satisfies the requirement and one that
+    violates it. Each mutant of a sentence gets a trace that distinguishes it. All traces
+    satisfy the other requirements.
 
-    With `--against` a program is tested, and no tests are made: its inputs react to its outputs.
+    With `--against`, a program is tested instead: it reads inputs and must answer with outputs
+    that satisfy the requirements.
 
-    Exit status: 0 all is met or proved impossible, or the program conforms, 1 it violates a
-    requirement, 2 bad use or input, 3 not all was searched, or tested.
+    Exit status: 0 every goal is reached or proved impossible, or the program conforms; 1 the
+    program violates a requirement; 2 bad usage or bad input; 3 the search or the test is
+    incomplete.
+
+    Example: fretc test requirements/agv --emit pytest
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json

@@ -20,35 +20,39 @@ from fretc.terminal.output import (
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 
 
-@click.command(short_help="Say what is new, fixed, flaky or worse between audits.")
+@click.command()
 @click.argument("evidence", nargs=-1, required=True, type=PATH, metavar="EVIDENCE...")
 @click.option(
     "--by",
     metavar="evidence|day|LABEL",
-    help="What is compared: each evidence, each day, or each value of a label such as version. "
-    "Each evidence, if not given; of a single one, each day.",
+    help="What is compared: each evidence, each day, or each value of a label such as version."
+    "  [default: evidence; day for a single EVIDENCE]",
 )
 @click.option(
     "--level",
     type=click.FloatRange(min=0, max=0.5, min_open=True),
     default=0.05,
     show_default=True,
-    help="The chance of even one regression that is none, of all that are told together.",
+    help="Significance level: the probability of even one false alarm among all reported "
+    "regressions.",
 )
 @format_option()
-@path_option("--html", metavar="FILE", help="Also write a page with pictures.")
+@path_option("--html", metavar="FILE", help="Also write an HTML page with charts.")
 def trends(
     evidence: tuple[str, ...], by: str | None, level: float, form: str, html: str | None
 ) -> None:
-    """Say what is new, fixed, flaky or worse between audits.
+    """Compare audits: what is newly violated, fixed, flaky or worse.
 
-    EVIDENCE is what `fretc audit` has written: one of each night, say, or a single one with runs
-    of many days. The newest round is held against those before it, for each requirement and each
-    scenario (a label of the runs; else the name of the log). A change of a verdict is always told.
-    Latencies and margins that are worse are told where that is more than chance.
-    Exit status: 0 nothing is newly violated and nothing has regressed, 1 something is or has, 3
-    something that was known before is not known now, or nothing can be compared, 2 bad use or
-    bad input.
+    EVIDENCE is what `fretc audit` writes: one file or store for each night, or a single one
+    with runs of several days. The newest round is compared with all earlier ones, by
+    requirement and scenario. The scenario is a label of the run, or else the name of the log.
+    Every change of a verdict is reported. Longer latencies and smaller margins are reported if
+    they are statistically significant.
+
+    Exit status: 0 no new violation and no regression, 1 a new violation or a regression, 3 a
+    known result has become unknown, or nothing can be compared, 2 bad usage or bad input.
+
+    Example: fretc trends nights/*.json --html build/trends.html
     """
     from fretc.audit.store.anywhere import StoreError, required_source
     from fretc.trends.trends import trends as trends_of

@@ -49,26 +49,28 @@ if TYPE_CHECKING:
 
 _LAYERS = tuple(map(str, Layer))
 _HEADINGS = {
-    "What is looked at": ("layers", "monitor", "provers", "requirements", "bindings", "limit"),
-    "Texts in place of new ones": (
+    "Input and selection": ("layers", "monitor", "provers", "requirements", "bindings", "limit"),
+    "Existing files instead of generated ones": (
         "monitor_file",
         "interceptor",
         "agent",
         "properties",
         "percepts",
+        "ajpf",
     ),
-    "Found by others": ("ajpf",),
-    "Printed and written": ("form", "every_claim", "output", "traces"),
+    "Output": ("form", "every_claim", "output", "traces"),
 }
 """The names of the parameters of `verify`, under the headings of its help."""
-_HELP = f"""Prove that what is made of requirements keeps them, layer by layer.
+_HELP = f"""Prove that monitors, interceptors and agents do what the requirements say.
 
-FILE holds requirements, or is a folder of such files: in place of `--requirements`.
+FILE is a requirement file, or a folder of them; it replaces `--requirements`.
 
 {in_words()}
 
-Exit status: 0 all that applies is proved, 1 a claim about a requirement is refuted, 2 bad use or
-input, 3 something is vacuous, not checked, or stays stopped.
+Exit status: 0 everything that applies is proved, 1 a claim about a requirement is refuted, 2
+bad usage or bad input, 3 a claim is vacuous or not checked, or the robot stays stopped.
+
+Example: fretc verify requirements/r1.fret --monitor
 """
 
 
@@ -76,7 +78,6 @@ input, 3 something is vacuous, not checked, or stays stopped.
     cls=Grouped,
     headings=_HEADINGS,
     help=_HELP,
-    short_help="Prove that what is made of requirements keeps them.",
     epilog=extras({"crosshair": "--with crosshair"}),
 )
 @click.argument("files", nargs=-1, type=PATH, metavar="[FILE]...")
@@ -85,43 +86,51 @@ input, 3 something is vacuous, not checked, or stays stopped.
     "layers",
     multiple=True,
     type=click.Choice(_LAYERS),
-    help="The layer to examine, for every requirement; may be repeated. If none is given, each "
-    "layer where it applies.",
+    help="Examine only this layer. Repeatable.  [default: all that apply]",
 )
-@click.option("--monitor", is_flag=True, help="The same as `--layer monitor`.")
+@click.option("--monitor", is_flag=True, help="Same as `--layer monitor`.")
 @click.option(
     "--with",
     "provers",
     multiple=True,
     type=click.Choice(PROVERS),
-    help="A prover to ask as well, if it is installed.",
+    help="Also use this external prover, if it is installed. Repeatable.",
 )
-@path_option("--file", "monitor_file", help="A monitor that was made before: .py, .c, .rs, .mjs.")
-@path_option("--interceptor", help="An interceptor that was made before.")
-@path_option("--agent", help="An agent in Gwendolen; with --properties.")
-@path_option("--properties", help="The properties of the agent, as AJPF reads them.")
+@path_option(
+    "--file",
+    "monitor_file",
+    help="Verify this monitor (.py, .c, .rs, .mjs) instead of a generated one.",
+)
+@path_option("--interceptor", help="Verify this interceptor instead of a generated one.")
+@path_option("--agent", help="Verify this Gwendolen agent. Needs --properties.")
+@path_option("--properties", help="Properties of the agent, in AJPF's language.")
 @click.option(
-    "--percept", "percepts", multiple=True, help="A percept that the agent's environment draws."
+    "--percept",
+    "percepts",
+    multiple=True,
+    help="Percept that the environment of the agent can give. Repeatable.",
 )
 @path_option(
     "--ajpf",
     multiple=True,
-    help="A result of AJPF; each build/*_ajpf/result.json if none is given.",
+    help="Result of AJPF. Repeatable.  [default: every build/*_ajpf/result.json]",
 )
 @requirements_option
-@path_option("--bindings", help="bindings.toml; the one beside the first FILE if not given.")
+@path_option("--bindings", help="Bindings file.  [default: bindings.toml beside the first FILE]")
 @limit_option
 @format_option()
 @output_option(
-    default="build/verification.json", show_default=True, help="Where evidence goes; `-` prints it."
+    default="build/verification.json",
+    show_default=True,
+    help="File for the proofs. `-` prints them.",
 )
 @click.option(
     "--all",
     "every_claim",
     is_flag=True,
-    help="List each claim, those that are proved or do not apply too.",
+    help="List every claim, also those that are proved or do not apply.",
 )
-@path_option("--traces", help="A folder for each counterexample as a table that monitors read.")
+@path_option("--traces", help="Folder for counterexamples, as CSV tables that monitors read.")
 def verify(
     files: tuple[str, ...],
     layers: tuple[str, ...],
@@ -141,7 +150,7 @@ def verify(
     every_claim: bool,
     traces: str | None,
 ) -> None:
-    """Prove that what is made of requirements keeps them."""
+    """The command; its help is `_HELP`."""
     from compiler.project.paths import companions
     from fretc.terminal.progress import at_work
     from fretc.verification.ajpf_results import default_paths

@@ -62,7 +62,6 @@ if TYPE_CHECKING:
 
 @click.command(
     "verify-evidence",
-    short_help="Make evidence again, and say whether it stands.",
     epilog=extras({**OF_LOGS, "sign": "what is signed"}),
 )
 @click.argument("file", type=PATH, required=False, metavar="[FILE]")
@@ -73,38 +72,43 @@ if TYPE_CHECKING:
     "places_named",
     multiple=True,
     metavar="FOLDER|URL",
-    help="Look for the logs below this folder, by their names; or open those of FILE whose URL "
-    "begins so. Else only files below the present folder are opened, and https.",
+    help="Where the logs are: a folder, in which they are found by name, or a URL prefix.  "
+    "[default: files below the current folder, and https URLs]",
 )
-@click.option("--offline", is_flag=True, help="Ask nothing of any server.")
+@click.option("--offline", is_flag=True, help="Do not access the network.")
 @path_option(
     "--manifest",
     metavar="FILE",
-    help="What `sha256sum LOG...` wrote: FILE has these logs, with these hashes, and no other.",
+    help="Output of `sha256sum LOG...`: FILE must have exactly these logs, with these hashes.",
 )
 @click.option(
     "--only",
     metavar="ID,...",
-    help="Look at these requirements only; else at all in force. A part never stands as a whole.",
+    help="Check only these requirements, for example R1,R2. A part never counts as the whole.",
 )
-@path_option("--report", help="An HTML report: it is made again from FILE, and compared.")
+@path_option("--report", help="HTML report that must equal the one made from FILE.")
 @verification_option
 @analysis_option
 @path_option(
     "--signed-by",
     metavar="KEY",
-    help="A public key (id_ed25519.pub), or a list of signers: one of them must have signed FILE, "
-    "and what --report, --verification and --analysis name.",
+    help="Public key (id_ed25519.pub), or list of signers. One of them must have signed FILE "
+    "and the files of --report, --verification and --analysis.",
 )
 @click.option(
     "--strict",
     is_flag=True,
-    help="Demand a manifest, a signature of FILE and of the review of each requirement, and of the "
-    "report, proofs and analysis that there are. Files are signed by --signed-by, else by the list "
-    "`allowed_signers` beside the requirements, which also says whose key a reviewer has.",
+    help="Demand a manifest, and signatures of FILE, of each review, and of the report, proofs "
+    "and analysis if they exist. Signers are those of --signed-by, else those of "
+    "allowed_signers beside the requirements, which also says which key belongs to which "
+    "reviewer.",
 )
-@click.option("--no-proofs", is_flag=True, help="Prove nothing again: proofs are not checked.")
-@click.option("--no-analysis", is_flag=True, help="Do not analyze again: that is not checked.")
+@click.option(
+    "--no-proofs", is_flag=True, help="Do not repeat the proofs: they count as not checked."
+)
+@click.option(
+    "--no-analysis", is_flag=True, help="Do not repeat the analysis: it counts as not checked."
+)
 @label_option
 @limit_option
 @jobs_option
@@ -129,14 +133,17 @@ def verify_evidence(
     jobs: int,
     form: str,
 ) -> None:
-    """Make evidence again, and say whether it stands.
+    """Recompute evidence and compare it with what is written.
 
-    FILE must have a result of every requirement in force in each run, every run that the lock
-    beside the requirements names, and every log of the manifest. Of every log the SHA-256 is taken
-    again, every requirement is audited again, every proof is made again, and whether all can be
-    kept together is asked again; what comes out is compared with what is written. Exit status:
-    0 it stands, 1 something differs or is missing (with --strict a signature or a manifest, too),
-    3 something was not checked, 2 bad use or bad input.
+    FILE is the evidence of an audit. It must have a result for every active requirement in each
+    run, every run that the lock names, and every log of the manifest. The command computes the
+    SHA-256 of every log, repeats every audit, proof and analysis, and compares the results with
+    those in FILE.
+
+    Exit status: 0 everything is the same, 1 something differs or is missing (with --strict also
+    a missing signature or manifest), 3 something was not checked, 2 bad usage or bad input.
+
+    Example: fretc verify-evidence --manifest logs.sha256 --report build/report.html
     """
     from fretc.analysis.evidence import default_path as analyzed
     from fretc.audit.store.anywhere import required

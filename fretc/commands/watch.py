@@ -34,49 +34,48 @@ if TYPE_CHECKING:
     from fretc.watch.sources.source import Source
 
 _WATCH = {
-    "Judged by": ("requirements", "bindings"),
-    "What is watched": ("follow",),
-    "Printed and written": ("form", "record", "evidence"),
-    "Done meanwhile": ("publish", "command"),
+    "Input": ("requirements", "bindings", "follow"),
+    "Output": ("form", "record", "evidence"),
+    "Actions": ("publish", "command"),
 }
 
 
 @click.command(
     cls=Grouped,
     headings=_WATCH,
-    short_help="Watch a running robot by all requirements.",
     epilog=extras({"live": "dds, foxglove and --publish"}),
 )
 @click.argument("words", nargs=-1, required=True, type=PATH, metavar="SOURCE...")
 @requirements_option
 @bindings_option
-@click.option("--follow", is_flag=True, help="Wait for what is still to be written to a log.")
+@click.option("--follow", is_flag=True, help="Wait for more data at the end of the MCAP file.")
 @click.option(
     "--format",
     "form",
     type=click.Choice(("text", "jsonl")),
     default="text",
     show_default=True,
-    help="A screen, or lines where there is no terminal; or an object of JSON on each line.",
+    help="Output format. `text`: a screen, or lines where there is no terminal. `jsonl`: one JSON "
+    "object a line.",
 )
-@path_option("--record", metavar="FILE", help="Record what arrives, as an MCAP file.")
+@path_option("--record", metavar="FILE", help="Record all messages to this MCAP file.")
 @path_option(
     "--evidence",
     metavar="FILE",
-    help="At the end write what `fretc audit` says of the recording. Needs --record.",
+    help="At the end, write the evidence of the recording to this file. Needs --record.",
 )
 @click.option(
     "--publish",
     multiple=True,
     metavar="WHERE",
-    help="`diagnostics`: on /diagnostics of the robot. `foxglove[:PORT]`: a Foxglove server with "
-    "the robot's topics and the states of requirements. May be given twice.",
+    help="`diagnostics`: publish the state of each requirement on /diagnostics. "
+    "`foxglove[:PORT]`: serve the robot's topics and these states to Foxglove. Repeatable.",
 )
 @click.option(
     "--on-violation",
     "command",
     metavar="CMD",
-    help="Start CMD at each violation, with the facts on standard input, as JSON.",
+    help="Run CMD at each violation, with the facts as JSON on its standard input.",
 )
 def watch(
     words: tuple[str, ...],
@@ -89,14 +88,18 @@ def watch(
     publish: tuple[str, ...],
     command: str | None,
 ) -> None:
-    """Watch a running robot by all requirements, until Ctrl-C.
+    """Check a running robot against all requirements, until Ctrl-C.
 
-    SOURCE is `dds`: the ROS 2 robot in the domain of ROS_DOMAIN_ID; `ros1`: the robot of the ROS 1
-    master that ROS_MASTER_URI names; `foxglove ws://HOST:PORT`: a Foxglove server, as
-    foxglove_bridge is one; or an MCAP file; with --follow, one that is being recorded.
+    SOURCE is `dds` (ROS 2, domain ROS_DOMAIN_ID), `ros1` (ROS 1, master ROS_MASTER_URI),
+    `foxglove ws://HOST:PORT` (a Foxglove server such as foxglove_bridge), or an MCAP file; with
+    --follow, a file that is still being recorded.
 
-    Verdicts are those that an audit gives of the recording. Exit status: 0 all satisfied, 1 a
-    violation, 2 bad use or bad input, 3 something is not shown.
+    The verdicts are those that `fretc audit` gives to the recording.
+
+    Exit status: 0 all are satisfied, 1 one is violated, 2 bad usage or bad input, 3 none is
+    violated but one is inconclusive, vacuous or has no data.
+
+    Example: fretc watch dds --record run.mcap --evidence build/evidence.json
     """
     from fretc.commands import notify
     from fretc.commands.watch_output import outputs_of, until_stopped, watched

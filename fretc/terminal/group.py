@@ -52,7 +52,22 @@ class Registry(MutableMapping[str, click.Command]):
 
 
 class Commands(click.Group):
-    """Sub-commands, and `FILE...` without one; a word that is neither gets a suggestion."""
+    """Sub-commands, and `FILE...` without one; a word that is neither gets a suggestion.
+
+    Args:
+        summaries: a line for each command, under headings.
+    """
+
+    def __init__(self, *, summaries: Mapping[str, Mapping[str, str]], **attributes: Any) -> None:
+        super().__init__(**attributes)
+        self._summaries = summaries
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """All commands under their headings; no command is imported for its line."""
+        width = max(len(name) for lines in self._summaries.values() for name in lines)
+        for heading, lines in self._summaries.items():
+            with formatter.section(heading):
+                formatter.write_dl([(name.ljust(width), text) for name, text in lines.items()])
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Put the default command before a file."""

@@ -29,7 +29,7 @@ def extras(needed: Mapping[str, str]) -> str:
         needed: of each extra, what needs it.
     """
     parts = "; ".join(f"`{name}` for {what}" for name, what in needed.items())
-    return f"Extras, which `pip install 'fretc[NAME]'` adds: {parts}."
+    return f"Optional packages (`pip install 'fretc[NAME]'`): {parts}."
 
 
 class _Path(click.ParamType[str]):
@@ -92,7 +92,7 @@ def output_option(**attributes: Any) -> Callable[[Command], Command]:
     return path_option("-o", "--output", **attributes)
 
 
-def format_option(*others: str, text: str = "How it is printed.") -> Callable[[Command], Command]:
+def format_option(*others: str, text: str = "Output format.") -> Callable[[Command], Command]:
     """`--format`: text for a person, JSON for a program, and perhaps others."""
     return click.option(
         "--format",
@@ -105,13 +105,16 @@ def format_option(*others: str, text: str = "How it is printed.") -> Callable[[C
 
 
 requirements_option = path_option(
-    "--requirements", default=REQUIREMENTS_FOLDER, show_default=True, help="Folder, or one file."
+    "--requirements",
+    default=REQUIREMENTS_FOLDER,
+    show_default=True,
+    help="Requirement file, or folder of requirement files.",
 )
 bindings_option = path_option(
-    "--bindings", help="bindings.toml; the one in the requirements' folder if not given."
+    "--bindings", help="Bindings file.  [default: bindings.toml beside the requirements]"
 )
 hazards_option = path_option(
-    "--hazards", help="hazards.toml; the one in the requirements' folder if not given."
+    "--hazards", help="Hazards file.  [default: hazards.toml beside the requirements]"
 )
 
 
@@ -133,39 +136,41 @@ def evidence_place(named: str | None) -> str:
 evidence_option = path_option(
     "--evidence",
     callback=lambda _context, _option, named: evidence_place(named),
-    help=f"What `fretc audit` has written; {EVIDENCE} or {STORE}, if not given.",
+    help=f"Evidence, as `fretc audit` writes it.  [default: {EVIDENCE} or {STORE}]",
 )
 verification_option = path_option(
     "--verification",
-    help="What `fretc verify` found; build/verification.json, if it is there and none is given.",
+    help="Proofs, as `fretc verify` writes them.  [default: build/verification.json, if it exists]",
 )
 analysis_option = path_option(
     "--analysis",
-    help="What `fretc analyze` found; build/analysis.json, if it is there and none is given.",
+    help="Analysis of the requirement set, as `fretc analyze` writes it.  [default: "
+    "build/analysis.json, if it exists]",
 )
 tests_option = path_option(
     "--tests",
-    help="What `fretc test` has made; build/tests/suite.json, if it is there and none is given.",
+    help="Tests, as `fretc test` writes them.  [default: build/tests/suite.json, if it exists]",
 )
 label_option = click.option(
     "--label",
     "labels",
     multiple=True,
     metavar="KEY=VALUE",
-    help="A label of all these runs, such as version=2.1; it comes before those of [run.label].",
+    help="Label for all runs, for example version=2.1. It overrides the same label in "
+    "[run.label] of the bindings. Repeatable.",
 )
 jobs_option = click.option(
     "--jobs",
     type=click.IntRange(min=1),
     default=os.cpu_count() or 1,
-    help="Processes that share the work; as many as there are cores, if not given.",
+    help="Number of parallel processes.  [default: one for each CPU core]",
 )
 limit_option = click.option(
     "--limit",
     type=click.IntRange(min=1),
     default=60,
     show_default=True,
-    help="Seconds of a processor for each proof.",
+    help="CPU time limit for each proof, in seconds.",
 )
 
 

@@ -477,15 +477,15 @@ def test_the_options_of_an_audit_stand_under_headings(fretc: Fretc) -> None:
     text = fretc("audit", "--help").out
     headings = [line for line in text.splitlines() if line.endswith(":") and line[0] != " "]
     assert headings == [
-        "Judged by:",
-        "Printed and written:",
-        "Which logs:",
-        "Many logs:",
-        "Questions to tables and evidence: LOG is one of them, nothing is audited:",
+        "Input:",
+        "Output:",
+        "Selection:",
+        "Many logs, performance:",
+        "Queries on existing evidence:",
         "Other:",
     ]
     assert text.index("--requirements") < text.index("--format") < text.index("--jobs")
-    assert "Other:\n  -h, --help  Show this message and exit.\n\n  Extras" in text
+    assert "Other:\n  -h, --help  Show this message and exit.\n\n  Optional packages" in text
 
 
 def test_requirements_come_as_people_count(fretc: Fretc) -> None:

@@ -108,19 +108,19 @@ def _gsn(subject: Subject) -> str:
 FORMS: Mapping[str, Form] = {
     form.name: form
     for form in (
-        Form("html", "One file, offline.", _html, default="build/report.html"),
-        Form("json", "What the report says, for programs.", _json),
-        Form("csv", "A row for each requirement and run, for a spreadsheet.", _csv),
-        Form("junit", "A test case for each requirement and run, for a CI server.", _junit),
-        Form("sarif", "What the runs show, for code scanning.", _sarif),
-        Form("markdown", "A comment for a pull request.", _markdown),
+        Form("html", "HTML page: one file, works offline.", _html, default="build/report.html"),
+        Form("json", "All content of the report, for programs.", _json),
+        Form("csv", "One row for each requirement and run, for spreadsheets.", _csv),
+        Form("junit", "One test case for each requirement and run, for CI servers.", _junit),
+        Form("sarif", "Violations and open results, for code scanning.", _sarif),
+        Form("markdown", "Summary, for a comment on a pull request.", _markdown),
         Form(
             "reqif",
-            "Requirements and verdicts, for a requirements tool.",
+            "Requirements and verdicts, for requirements management tools.",
             _reqif,
             missing=_missing_reqif,
         ),
-        Form("gsn", "The assurance argument, as YAML that gsn2x reads.", _gsn),
+        Form("gsn", "Assurance argument, as YAML for gsn2x.", _gsn),
     )
 }
 """In the order of the help."""

@@ -56,32 +56,33 @@ class Method:
 TABLE = (
     Method(
         Layer.MONITOR,
-        "the text of a monitor means what its sentence says",
+        "the monitor's text means what the sentence says",
         of_requirement=True,
         needs_monitor=True,
     ),
     Method(
         "frama-c",
-        "no input makes a monitor in C do what C leaves undefined",
+        "no input causes undefined behaviour in a monitor in C",
         of_requirement=True,
     ),
     Method(
         Layer.LOOP,
-        "both, and any environment, keep the requirement under the assumptions of the bindings",
+        "monitor, interceptor and any environment together satisfy the requirement, under the "
+        "assumptions of the bindings",
         of_requirement=True,
         needs_monitor=True,
     ),
     Method(
         Layer.BOUNDS,
-        "so they do whatever the times are",
+        "the loop does so for all delays",
         of_requirement=True,
         needs_monitor=True,
     ),
     Method("dafny", "every lemma and method of the file of `--emit dafny`", of_requirement=True),
-    Method(Layer.INTERCEPTOR, "its text keeps its contracts"),
+    Method(Layer.INTERCEPTOR, "the interceptor's text satisfies its contracts"),
     Method("crosshair", "the contracts in the text of the interceptor"),
-    Method(Layer.AGENT, "its text has its properties"),
-    Method(Layer.AJPF, "what AJPF itself has said of it"),
+    Method(Layer.AGENT, "the agent's text has its properties"),
+    Method(Layer.AJPF, "results of AJPF itself"),
 )
 """In the order of the proofs."""
 OF_MONITOR = frozenset(method.name for method in TABLE if method.needs_monitor)
@@ -91,4 +92,4 @@ OF_MONITOR = frozenset(method.name for method in TABLE if method.needs_monitor)
 def in_words() -> str:
     """Each layer with its claim, from the monitor outwards."""
     claims = {method.name: method.claim for method in TABLE}
-    return " ".join(f"{layer}: {claims[layer]}." for layer in Layer)
+    return "Layers: " + "; ".join(f"`{layer}`: {claims[layer]}" for layer in Layer) + "."

@@ -13,8 +13,8 @@ from tests.each import each
 COMMANDS = sorted(cli.commands)
 PRINTING = ("audit", "bind", "check", "diff", "explain", "info", "lock", "verify", "simulate")
 MEANINGS = {
-    "--requirements": "Folder, or one file.",
-    "--hazards": "hazards.toml; the one in the requirements' folder if not given.",
+    "--requirements": "Requirement file, or folder of requirement files.",
+    "--hazards": "Hazards file.  [default: hazards.toml beside the requirements]",
 }
 
 
@@ -44,6 +44,20 @@ def test_an_option_means_the_same_in_each_command(name: str) -> None:
     assert not {"--out", "--evidence-file", "--folder"} & here.keys()
     for spelling, text in MEANINGS.items():
         assert spelling not in here or here[spelling].help == text
+
+
+@each("name", COMMANDS)
+def test_each_option_says_what_it_is_for(name: str) -> None:
+    for spelling, option in options(name).items():
+        text = option.help or ("" if option.hidden else "missing")
+        assert text == "" or re.fullmatch(r"[A-Z`][^\n]*[.\])]", text), (spelling, text)
+
+
+def test_each_command_has_a_line_under_a_heading(fretc: Fretc) -> None:
+    lines = fretc("--help").out.partition("\nWrite requirements:\n")[2].splitlines()
+    names = [line.split()[0] for line in lines if line.startswith("  ")]
+    assert sorted(names) == [name for name in COMMANDS if name != "compile"]
+    assert all(len(line) < 80 and line.endswith((".", ":")) for line in lines if line)
 
 
 @each("name", PRINTING)
