@@ -1,1 +1,5 @@
-"""The compiler: sentences to formulas, formulas to files, evidence to reports, and the command."""
+"""The compiler: FRETish sentences become formulas, and formulas become files.
+
+Input is requirement files and `bindings.toml`. Output is `FormalizedRequirement`s, explanations,
+and the files of `--emit` as `Artifact`s. `emit` has the table of all targets.
+"""

@@ -1,7 +1,7 @@
-"""The product: what people call, from the shell or from Python.
+"""The product that users call, from the shell (`fretc.cli`) or from Python.
 
-The names below are the API; docs/api.md says what they do, and which of their parts stay. A name
-is imported when it is first asked for.
+Input is projects, logs and evidence. Output is verdicts, proofs, tests and reports. The names below
+are the API, which docs/api.md documents; each name is imported when it is first used.
 """
 
 from importlib import import_module

@@ -1,1 +1,4 @@
-"""The language: text, its tree, its meaning in English, and the declarations beside it."""
+"""The FRETish language: parser, syntax tree, printer, and the meaning of a sentence in English.
+
+Input is the text of a requirement file. Output is `Requirement`s, a `Sentence`, or diagnostics.
+"""

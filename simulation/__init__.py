@@ -1,6 +1,7 @@
 """A simulated inspection robot with a safety function, recorded as a ROS log.
 
-Importing this package loads none of its optional packages; `simulation.mission` does.
+Input is a scenario and a seed. Output is an MCAP file, and pictures. Importing this package loads
+none of its optional packages; `simulation.mission` does.
 """
 
 from importlib.util import find_spec

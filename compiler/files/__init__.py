@@ -1,1 +1,4 @@
-"""Text read and written, templates, checked JSON, the settings of a project."""
+"""Files in and out: text files, templates, checked JSON, settings, and the identity of a build.
+
+Input is paths and values. Output is texts, complete files on disk, or a diagnostic.
+"""

@@ -1,1 +1,4 @@
-"""From a sentence to its formulas, its watch and its reference automaton."""
+"""Formalization: a sentence becomes formulas, a monitor specification and a reference automaton.
+
+Input is a `Requirement` and `Declarations`. Output is a `FormalizedRequirement` or diagnostics.
+"""

@@ -1,1 +1,5 @@
-"""The program of a monitor: what it keeps and what it does at each tick, for any language."""
+"""The program of a monitor, independent of any language: typed cells and the steps of a tick.
+
+Input is the monitor specifications of requirements. Output is a `Program`, which targets print and
+the interpreter runs.
+"""

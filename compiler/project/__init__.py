@@ -1,1 +1,5 @@
-"""A requirements folder as one value; import from FRET; formatting."""
+"""A requirements folder as one `Project`, and the tools that work on its files.
+
+Input is `.fret` files, bindings, hazards, settings and parents. Output is a `Project` with all its
+diagnostics, formatted or fixed files, and imports from FRET.
+"""

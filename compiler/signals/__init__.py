@@ -1,1 +1,5 @@
-"""What a robot's samples say of the propositions: policies and comparisons, for any language."""
+"""The truth of propositions from samples of signals, independent of any language.
+
+Input is the policies and expressions of the bindings. Output is expressions that targets print
+beside a monitor.
+"""

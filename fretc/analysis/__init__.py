@@ -1,1 +1,5 @@
-"""Requirement sets: can they be kept together, which fight, which say nothing."""
+"""The analysis of requirement sets: realizability, conflicts, redundancy, vacuity, consistency.
+
+Input is the requirements of a component and its assumptions. Output is findings, with plays,
+repairs and controllers.
+"""

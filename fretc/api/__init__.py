@@ -1,1 +1,4 @@
-"""What `import fretc` offers: each module holds some of its names."""
+"""The functions and classes of `import fretc`; each module holds some of its names.
+
+Input is paths, texts and samples. Output is typed values; bad input raises `Refusal`.
+"""

@@ -1,1 +1,4 @@
-"""One module for each command."""
+"""The commands: one module for each, and helpers for their options and output.
+
+Input is the command line. Output is what is printed and written, and the exit status.
+"""

@@ -1,1 +1,4 @@
-"""The page to play with a trace: what it starts from, and how it is made."""
+"""The page of `fretc play`, on which users edit a trace and see each verdict.
+
+Input is requirements and traces to start from. Output is one HTML file.
+"""

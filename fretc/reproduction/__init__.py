@@ -1,1 +1,5 @@
-"""Evidence and proofs are made again, and compared with the project, the lock and a manifest."""
+"""Reproduction: evidence, proofs and analyses are computed again and compared.
+
+Input is files that fretc wrote, project, lock and manifest. Output says of each item whether it
+stands, differs or was not checked.
+"""

@@ -1,1 +1,5 @@
-"""What all commands share: output, progress, help."""
+"""The terminal: shared options, output, progress, help and completion of all commands.
+
+Input is diagnostics and files to write. Output is text on the terminal, complete files, and the
+exit status.
+"""

@@ -1,1 +1,5 @@
-"""Tests made from requirements: short runs, each with the verdict that it is to get, and why."""
+"""Tests from requirements: short runs, each with its expected verdict and the reason.
+
+Input is `FormalizedRequirement`s. Output is a suite of tests, and which situations and mutants it
+covers.
+"""

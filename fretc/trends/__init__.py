@@ -1,1 +1,4 @@
-"""What is new, fixed, flaky or slower between the rounds of many audits."""
+"""Trends between audits: what is newly violated, fixed, flaky, slower or gone.
+
+Input is the evidence of several audits. Output is one value, shown as text, JSON or an HTML page.
+"""

@@ -1,1 +1,4 @@
-"""Proofs about what the compiler makes: the layers of `fretc verify`."""
+"""Proofs about generated monitors, interceptors and agents: the layers of `fretc verify`.
+
+Input is a `Project` and a `Request`. Output is a `Proof` for each claim.
+"""

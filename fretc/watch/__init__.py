@@ -1,1 +1,5 @@
-"""Verdicts of a robot that runs: arrivals of messages → ticks → standings, screen and recording."""
+"""Live monitoring of a robot.
+
+Input is messages as they arrive. Output is ticks, interim verdicts and findings, on a screen or as
+lines, and a recording whose audit gives the same verdicts.
+"""

@@ -1,6 +1,7 @@
-"""The run time of every generated monitor: the text of these modules is copied into each of them.
+"""The run time of every generated monitor; the text of these modules is copied into each of them.
 
-Standard library only, and of each other the modules import by name only.
+Input is the truth values of propositions. Output is a verdict at each tick, and the outcome of a
+whole trace. The modules use the standard library only, and import from each other by name only.
 """
 
 from monitors.kernel.columns import Column as Column

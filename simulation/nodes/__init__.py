@@ -1,1 +1,4 @@
-"""The parts that hear and say messages."""
+"""The nodes of the simulated system: planner, operator, safety function and interceptor.
+
+Input and output are messages on the topics of a bus.
+"""

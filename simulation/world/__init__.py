@@ -1,1 +1,4 @@
-"""The robot and the room, and what goes wrong in a scenario."""
+"""The simulated world: the robot, its lidar, the room, and the faults of a scenario.
+
+Input is velocity commands and a scenario. Output is the robot's motion and the scans.
+"""

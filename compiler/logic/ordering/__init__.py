@@ -1,1 +1,5 @@
-"""What order alone says of comparisons: of one term by cells of its range."""
+"""Comparisons that cannot be true together, decided by order alone.
+
+Input is comparisons of one term with constants or with each other. Output is the combinations that
+are impossible.
+"""

@@ -1,1 +1,4 @@
-"""How names are written in the languages of targets."""
+"""The words that each target language reserves.
+
+Targets read these tables, so that no generated name is a reserved word.
+"""

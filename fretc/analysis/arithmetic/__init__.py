@@ -1,1 +1,5 @@
-"""Comparisons of numbers as letters of a game, exactly: linear arithmetic by z3."""
+"""Comparisons of numbers as valuations in a game, exact by linear arithmetic in z3.
+
+Input is the comparisons of requirements. Output is an alphabet for the arena: the combinations that
+numbers can make true.
+"""

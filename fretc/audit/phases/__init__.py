@@ -1,1 +1,4 @@
-"""For which phases of the ticks a verdict holds."""
+"""Phases of the tick grid: at which offsets of the grid a verdict holds.
+
+Input is a `Recording` and its monitors. Output is ranges of phases, each with its verdict.
+"""

@@ -1,1 +1,5 @@
-"""MCAP as bytes: records, chunks, index, damage."""
+"""The MCAP format: records, chunks, index and damage.
+
+Input is the bytes of a file. Output is the messages of the wanted topics, and which parts are
+damaged.
+"""

@@ -1,1 +1,4 @@
-"""All runs in one picture."""
+"""Pictures of all runs together: a lane for each run, the used share of bounds, and maps.
+
+Input is assessments and evidence. Output is views with their layout.
+"""

@@ -1,1 +1,4 @@
-"""The front page: how runs are grouped, the decisive sentence, and the five figures."""
+"""The first screen of the report: the decisive sentence, five figures, and groups of runs.
+
+Input is the parts of the report. Output is the `Front` view.
+"""

@@ -1,1 +1,4 @@
-"""The HTML page of the report: selection of details, the argument as a tree, layout."""
+"""The HTML page of the report: selection of details, the matrix, and the argument as a tree.
+
+Input is a `Report` and the evidence behind it. Output is one HTML file.
+"""

@@ -1,1 +1,4 @@
-"""The pictures of the report: what they contain, and where each line goes."""
+"""Pictures of results: timelines, histograms and scales.
+
+Input is the results of a requirement. Output is their content, and a layout for the template.
+"""

@@ -1,1 +1,4 @@
-"""A suite as files: tests for pytest, tables for monitors, traces for FRET's simulator."""
+"""Exports of a suite: pytest files, tables, a self-test in C, and traces for FRET's simulator.
+
+Input is a suite. Output is files.
+"""

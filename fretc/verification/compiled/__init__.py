@@ -1,1 +1,5 @@
-"""Monitors in other languages, compiled and compared with their sentences."""
+"""Proofs about monitors in languages other than Python.
+
+Input is a monitor that was compiled or is run by an interpreter. Output is its comparison with the
+reference and with the monitor in Python.
+"""

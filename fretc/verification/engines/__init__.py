@@ -1,1 +1,4 @@
-"""Other programs and long computations, run with limits."""
+"""Engines: other programs and long computations, each in a process with limits.
+
+Input is a file or a call, and the limits. Output is an `Outcome`, or that it was not checked.
+"""

@@ -1,1 +1,4 @@
-"""Monitors in JavaScript: the form of their text, and Node, which runs it."""
+"""Monitors in JavaScript: the check of their text, and Node, which runs it.
+
+Input is the text of a monitor. Output is a machine that proofs step, or the reason of a refusal.
+"""

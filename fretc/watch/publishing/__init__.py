@@ -1,1 +1,4 @@
-"""Verdicts of a robot that runs, for other programs: diagnostics of ROS, a Foxglove server."""
+"""Publication of live verdicts for other programs: ROS diagnostics, and a Foxglove server.
+
+Input is the state of a watch session. Output is messages.
+"""

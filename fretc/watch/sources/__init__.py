@@ -1,1 +1,5 @@
-"""Where messages come from: a middleware, or a log that is being recorded."""
+"""Sources of live messages: ROS 1, ROS 2 (DDS), Foxglove servers, and growing logs.
+
+Input is the words of the command line. Output is messages as bytes with their definitions, and
+events.
+"""
