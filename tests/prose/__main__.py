@@ -6,6 +6,7 @@ English), by textstat, which `pip install 'fretc[prose]'` adds.
 
 from __future__ import annotations
 
+import inspect
 import sys
 import warnings
 from collections.abc import Iterator
@@ -23,7 +24,10 @@ def texts() -> Iterator[tuple[str, str]]:
         yield page.name, without_code(page.read_text(encoding="utf-8"))
     for name, command in sorted(cli.commands.items()):
         options = [o.help or "" for o in command.params if isinstance(o, click.Option)]
-        yield f"fretc {name} --help", without_code("\n\n".join([command.help or "", *options]))
+        yield (
+            f"fretc {name} --help",
+            without_code("\n\n".join([inspect.cleandoc(command.help or ""), *options])),
+        )
 
 
 def main() -> int:
