@@ -12,9 +12,10 @@ from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import Analysis, Inconsistency
 from fretc.analysis.games.squaring import IterativeSquaring
 from fretc.analysis.implications import inconsistencies
+from tests.effort import FULL
 from tests.requirement_sets import analyzed, drawn, rules, staged, terse
 
-SETS = 50
+SETS = 50 if FULL else 20
 
 
 def formulas(sentences: Sequence[str]) -> dict[str, str]:

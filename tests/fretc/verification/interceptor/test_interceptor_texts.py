@@ -176,7 +176,7 @@ def _there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", TEXTS)
+@each("name", TEXTS)
 def test_the_loop_does_not_take_it(name: str) -> None:
     taken = True
     try:
@@ -192,7 +192,7 @@ def test_the_loop_does_not_take_it(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", TEXTS)
+@each("name", TEXTS)
 def test_the_contracts_are_not_proved_of_it(name: str) -> None:
     proofs = contracts(TEXTS[name], OPTIONS)
     assert not Path("PWNED").exists(), "it was executed"
@@ -437,7 +437,7 @@ STATEMENTS = (
     st.lists(st.sampled_from(PLACES), max_size=3),
     st.sampled_from(STATEMENTS),
 )
-@examples(60)
+@examples(25)
 def test_what_is_not_of_the_language_is_refused_and_not_executed(
     outside: str, places: list[str], statement: str
 ) -> None:
@@ -452,7 +452,7 @@ def test_what_is_not_of_the_language_is_refused_and_not_executed(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("outside", OUTSIDE)
+@each("outside", OUTSIDE)
 def test_each_expression_is_outside_by_itself(outside: str) -> None:
     assert isinstance(head(sub(SCAN, f"    return ({outside}), None\n")), str)
 
@@ -470,13 +470,13 @@ def _never(*_: object) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("place", PLACES[1:])
+@each("place", PLACES[1:])
 def test_the_places_themselves_are_of_the_language(place: str) -> None:
     assert isinstance(head(sub(SCAN, f"    return ({place.format('0')}), None\n")), Head)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
+@each(
     "annotation",
     [
         "print()",

@@ -165,7 +165,7 @@ def _same(wheels: ActuationState, row: Row) -> bool:
 )
 def test_every_simulated_tick_is_a_step_of_the_model(settings: Options, channel: Channel) -> None:
     known = case(WITHIN.format(30), settings, channel)
-    for seed in range(6 if FULL else 2):
+    for seed in range(6) if FULL else (known.channel.cells % 2,):
         simulation = Simulation(known, seed)
         follows(known, [simulation.tick() for _ in range(60)])
 

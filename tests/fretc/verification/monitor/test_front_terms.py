@@ -9,6 +9,8 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Outcome, Result
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor.verifying import verified
+from tests.each import each
+from tests.effort import some
 from tests.monitoring import rule
 
 SENTENCE = "whenever battery < 20 & preReal(0, speed) < 2 the agv shall within 1 ticks satisfy docking | level = 3"
@@ -95,8 +97,9 @@ def test_what_fretc_writes_is_proved() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("old", "new", "expected"), FAULTS)
-def test_a_fault_comes_to_what_is_written_beside_it(old: str, new: str, expected: Result) -> None:
+@each("fault", some(FAULTS, 3))
+def test_a_fault_comes_to_what_is_written_beside_it(fault: tuple[str, str, Result]) -> None:
+    old, new, expected = fault
     outcome = with_fault(old, new)
     assert outcome.result is expected, outcome
 
