@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from itertools import count, product
@@ -18,6 +17,7 @@ from fretc.testing.generation import Batch, batch
 from fretc.testing.suite import Fate, Met, Obligation, Polarity, Test
 from fretc.testing.words import Word, defined, judged, letters
 from tests.each import each
+from tests.effort import FULL, some
 from tests.requirement_sets import rules
 
 SENTENCES = (
@@ -34,7 +34,7 @@ SENTENCES = (
     "whenever a | b the sw shall immediately satisfy x & !a",
     "the sw shall never satisfy a & x",
 )
-MOST = 1 << (12 if os.environ.get("HYPOTHESIS_PROFILE") == "full" else 8)
+MOST = 1 << (12 if FULL else 8)
 """Words that are listed of each length."""
 
 
@@ -115,7 +115,7 @@ def listed(rule: FormalizedRequirement) -> tuple[Mapping[Need, Mapping[int, int]
 
 
 @pytest.mark.slow
-@each("sentence", SENTENCES)
+@each("sentence", some(SENTENCES, 2))
 def test_no_shorter_word_shows_the_same(sentence: str) -> None:
     """What is impossible has no word among those that are listed, what is met no shorter one."""
     (rule,) = rules(sentence)

@@ -132,7 +132,7 @@ def test_the_tick_before_gives_no_wrong_verdict() -> None:
             assert (found.verdict is REALIZABLE) is is_realizable, (sentences, past)
         answers.append(found.verdict)
     for each in (REALIZABLE, UNREALIZABLE):
-        assert answers.count(each) > 1
+        assert answers.count(each) > (1 if FULL else 0)
 
 
 @pytest.mark.slow

@@ -132,10 +132,10 @@ def test_each_requirement_of_a_file_is_compared_for_itself() -> None:
     rules = [rule(f"the agv shall always satisfy x < {n} & p", f"R{n}") for n in (2, 3)]
     text = target.text(*rules)
     wrong = text.replace('exact("3")', 'exact("4")')
-    for each, expected in zip(rules, (SAME, WRONG), strict=True):
-        others = [other for other in rules if other is not each]
-        assert verified(each, text, others=others).result is SAME
-        assert verified(each, wrong, others=others).result is expected
+    for one, expected in zip(rules, (SAME, WRONG), strict=True):
+        others = [other for other in rules if other is not one]
+        assert verified(one, text, others=others).result is SAME
+        assert verified(one, wrong, others=others).result is expected
 
 
 @pytest.mark.slow

@@ -287,12 +287,13 @@ def test_no_payload_takes_the_watch_down(robot: Domain, described: bool) -> None
 
 
 BROKEN = """
+import time
 from fretc.watch.sources.dds_domain import join
 from fretc.watch.sources.dds_types import Offer
 from tests.fretc.watch.sources.test_dds_events import BOOL, DEFINITION, HASH
 writer = join().writer("/stop", Offer(BOOL, HASH), DEFINITION)
 while not writer.readers:
-    pass
+    time.sleep(0.005)
 for _ in range(20):
     writer.write(bytes.fromhex("80ff000000000000"))
 """

@@ -36,10 +36,11 @@ from fretc.watch.sources.source import (
 )
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.command import Fretc
 from tests.each import each
 from tests.foxglove import GREETING, Listened, advertisement, channel, hostile, listened, server
 from tests.fretc.watch.sent import Setting, plan_of
-from tests.fretc.watch.watched import Watched, audited
+from tests.fretc.watch.watched import Watched
 from tests.ros1 import until
 
 ROOT = Path(__file__).parents[4]
@@ -155,7 +156,7 @@ def test_a_server_that_answers_no_more_is_gone() -> None:
 
 @pytest.mark.slow
 def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
-    tmp_path: Path,
+    fretc: Fretc, tmp_path: Path
 ) -> None:
     """A part of a mission, in real time: a stop, and the robot that stands."""
     requirements = ["--requirements", str(ROOT / "requirements/r1.fret")]
@@ -170,8 +171,8 @@ def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
             status = run.end()
         finally:
             run.close()
-    again = audited(tmp_path, "run.mcap", *requirements, "-o", "audit.json")
-    assert again.returncode == status, (again.stderr, run.lines)
+    again = fretc("audit", "run.mcap", *requirements, "-o", "audit.json")
+    assert again.status == status, (again.err, run.lines)
     assert (tmp_path / "audit.json").read_bytes() == (tmp_path / "live.json").read_bytes()
     (result,) = json.loads((tmp_path / "audit.json").read_text())["results"]
     assert run.verdicts() == {"R1": result["verdict"]}
