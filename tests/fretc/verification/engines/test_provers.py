@@ -26,6 +26,7 @@ from tests.compiler.targets.test_dafny import (
 )
 from tests.each import each
 from tests.effort import FULL, full_only
+from tests.loops import edited as replaced
 from tests.programs import needs, needs_package
 from tests.proofs import outcome
 
@@ -245,11 +246,6 @@ def test_dafny_verifies_what_holds() -> None:
         "(x: int)", "(x: nat)\n  requires x != 0"
     )
     assert say(lemmas) == proved("2 parts verified, among them all 2 lemmas and methods")
-
-
-def replaced(text: str, old: str, new: str) -> str:
-    assert text.count(old) == 1, (text.count(old), old)
-    return text.replace(old, new)
 
 
 def only(text: str, *names: str) -> str:

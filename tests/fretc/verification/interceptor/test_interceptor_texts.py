@@ -28,7 +28,7 @@ from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
 from tests.each import each
 from tests.effort import examples
-from tests.loops import interceptor_options
+from tests.loops import edited, interceptor_options
 
 DECLARED = Interception(
     "/gwendolen_control", "/cmd_vel", "/cmd_vel_filtered", None, 50_000_000, 200_000_000
@@ -44,16 +44,21 @@ def step(state, event, options):
         case _:
             return state, state.command
 """
-BODY = '"""Each step computes from its arguments alone."""'
+COMMAND = "        case CommandHeard(command):\n"
 
 
 def sub(old: str, new: str, text: str = BASE) -> str:
-    assert text.count(old) == 1, (old, text.count(old))
-    return text.replace(old, new)
+    return edited(text, old, new)
 
 
 def end(more: str) -> str:
     return sub('if __name__ == "__main__":', more + '\n\nif __name__ == "__main__":')
+
+
+def heard(*cases: str) -> str:
+    """Further cases before that of a command; they pass it on as it is."""
+    passed = "            return state, command\n"
+    return sub(COMMAND, "".join(f"        case {each}:\n{passed}" for each in cases) + COMMAND)
 
 
 def ind(text: str) -> str:
@@ -137,32 +142,16 @@ TEXTS = {
     "coding cookie": "# -*- coding: raw_unicode_escape -*-\n"
     + end("# \\u000astep = lambda s, h, o: (s, s.command)"),
     # what looks into a command
-    "pattern of a velocity": sub(
-        "        case CommandHeard(command):\n",
-        "        case CommandHeard(Velocity() as command):\n            return state, command\n"
-        "        case CommandHeard(command):\n",
+    "pattern of a velocity": heard("CommandHeard(Velocity() as command)"),
+    "pattern of an attribute": heard("CommandHeard(Velocity(vx=0.1) as command)"),
+    "identity by a tuple": heard(
+        "CommandHeard(command) if (command,) != (command,) or (event,) != (event,)",
+        "CommandHeard(command) if state.stop and not (command in (state.command, command))",
     ),
-    "pattern of an attribute": sub(
-        "        case CommandHeard(command):\n",
-        "        case CommandHeard(Velocity(vx=0.1) as command):\n            return state, command\n"
-        "        case CommandHeard(command):\n",
+    "identity by states": heard(
+        "CommandHeard(command) if state.stop and state.held == 0 and event != CommandHeard(state.command)"
     ),
-    "identity by a tuple": sub(
-        "        case CommandHeard(command):\n",
-        "        case CommandHeard(command) if (command,) != (command,) or (event,) != (event,):\n            return state, command\n"
-        "        case CommandHeard(command) if state.stop and not (command in (state.command, command)):\n            return state, command\n"
-        "        case CommandHeard(command):\n",
-    ),
-    "identity by states": sub(
-        "        case CommandHeard(command):\n",
-        "        case CommandHeard(command) if state.stop and state.held == 0 and event != CommandHeard(state.command):\n            return state, command\n"
-        "        case CommandHeard(command):\n",
-    ),
-    "str of a command": sub(
-        "        case CommandHeard(command):\n",
-        "        case CommandHeard(command) if 'Vel' in '%s' % (command,):\n            return state, command\n"
-        "        case CommandHeard(command):\n",
-    ),
+    "str of a command": heard("CommandHeard(command) if 'Vel' in '%s' % (command,)"),
 }
 
 
