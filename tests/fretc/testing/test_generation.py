@@ -115,7 +115,7 @@ def listed(rule: FormalizedRequirement) -> tuple[Mapping[Need, Mapping[int, int]
 
 
 @pytest.mark.slow
-@each("sentence", some(SENTENCES, 2))
+@each("sentence", some(SENTENCES, 3))
 def test_no_shorter_word_shows_the_same(sentence: str) -> None:
     """What is impossible has no word among those that are listed, what is met no shorter one."""
     (rule,) = rules(sentence)

@@ -25,7 +25,7 @@ from tests.requirement_sets import (
     synthesized,
 )
 
-SETS = 5_000 if FULL else 40
+SETS = 5_000 if FULL else 32
 """With `--hypothesis-profile=full` it takes two minutes."""
 ENDLESS = Budget(float("inf"))
 

@@ -31,7 +31,7 @@ from tests.programs import needs
 from tests.requirement_sets import rule as requirement
 from tests.requirement_sets import rules
 
-LONG = 600 if FULL else 60
+LONG = 600 if FULL else 20
 SENTENCES = (
     "upon a the sw shall within 3 ticks satisfy x",
     "in b mode whenever a the sw shall for 2 ticks satisfy x & !y",

@@ -63,7 +63,7 @@ def checker(tongue: Tongue, tmp_path: Path) -> Checker:
 def test_each_requirement_of_one_text_is_proved(tongue: Tongue, checker: Checker) -> None:
     """By default all of them in C; with the full profile also those of drawn templates."""
     drawn = random.Random(tongue.name).sample([*templates((0, 3))], 12 if FULL else 0)
-    own = SENTENCES if tongue.name == "c" else some(SENTENCES, 2)
+    own = SENTENCES if tongue.name == "c" else some(SENTENCES, 3)
     sentences = (*own, *(each.sentence for each in drawn))
     rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
     outcomes = checker.outcomes(tongue.given(*rules), rules)

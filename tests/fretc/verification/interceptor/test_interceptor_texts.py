@@ -27,7 +27,7 @@ from fretc.verification.interceptor.machine import (
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
 from tests.each import each
-from tests.effort import examples
+from tests.effort import examples, some
 from tests.loops import edited, interceptor_options
 
 DECLARED = Interception(
@@ -237,8 +237,11 @@ def test_a_helper_with_a_name_of_its_own_changes_nothing() -> None:
     assert all_proved(with_helper("asks"))
 
 
+NAMES = sorted({*set().union(*map(bound_by_node, NODES)), *dir(builtins)} - {"OPTIONS"})
+
+
 @pytest.mark.slow
-@each("name", sorted({*set().union(*map(bound_by_node, NODES)), *dir(builtins)} - {"OPTIONS"}))
+@each("name", some(NAMES, 5))
 def test_a_core_binds_no_name_that_its_node_binds_or_calls(name: str) -> None:
     """The node below would have it mean something else while it flies, or would call the core's."""
     assert isinstance(head(with_helper(name)), str)

@@ -106,7 +106,7 @@ def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> Non
     assert small.enough.result is Result.PROVED, "under the declared times it is as good as any"
     assert small.answered.result is Result.NOT_CHECKED
     assert small.answered.detail.startswith("the interceptor's core is not the one that fretc")
-    large = Channel(1, latency=2, lost=14 if FULL else 10, braking=4)
+    large = Channel(1, latency=2, lost=14, braking=4) if FULL else Channel(1, lost=10)
     answer = search(question(EVENTUALLY, interceptor_options(hold=1), large, core))
     assert answer.enough.result is not Result.PROVED
 

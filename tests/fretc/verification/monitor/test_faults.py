@@ -157,7 +157,7 @@ def judge(sentence: str) -> tuple[str, Judge]:
 
 
 @pytest.mark.slow
-@each("fault", some(FAULTS, 3))
+@each("fault", some(FAULTS, 4))
 def test_a_fault_comes_to_what_is_written_beside_it(fault: tuple[str, str, str, str]) -> None:
     """What is proved tells the same as the right one on drawn traces: `TOLD` is never right."""
     sentence, old, new, expected = fault
