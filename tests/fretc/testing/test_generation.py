@@ -144,6 +144,7 @@ def test_no_shorter_word_shows_the_same(sentence: str) -> None:
         assert best in known or length > most
 
 
+@pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_verdicts_are_those_of_the_formula(sentence: str) -> None:
     """The formula of finite traces, evaluated as it is defined, shares nothing with the search."""
@@ -183,6 +184,7 @@ def test_a_mutant_is_killed_or_judges_all_words_alike(sentence: str) -> None:
                 assert defined(rule, own)[1] is defined(other, theirs)[1]
 
 
+@pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_what_is_unknown_decides_and_no_shorter_run_depends_on_it(sentence: str) -> None:
     """Both values are tried at the tick; shorter words are listed, with each tick in turn."""

@@ -303,6 +303,7 @@ def planned(folder: Path) -> tuple[bool, str]:
     return plan["has_result"], plan["result"]
 
 
+@pytest.mark.slow
 def test_verify_and_report_read_it_as_the_planned_method(
     ran: Mcapl, fretc: Fretc, tmp_path: Path
 ) -> None:
@@ -332,7 +333,6 @@ def test_a_refutation_of_ajpf_is_red_in_both(ran: Mcapl, fretc: Fretc, tmp_path:
     assert planned(tmp_path)[1].startswith("counterexample: AJPF: ")
 
 
-@pytest.mark.slow
 def test_a_stale_result_is_said_and_does_not_count(
     ran: Mcapl, fretc: Fretc, tmp_path: Path
 ) -> None:

@@ -104,6 +104,7 @@ def test_the_limit_is_counted_from_what_was_taken_before_the_call() -> None:
     assert all(0.9 < left < 2.1 for _, left in found[::2]), "before the work, and after it"
 
 
+@pytest.mark.slow
 def test_the_program_itself_is_not_executed_once_more(tmp_path: Path) -> None:
     script = tmp_path / "program.py"
     script.write_text(

@@ -385,6 +385,7 @@ def test_a_core_that_may_not_be_pure_is_not_executed(case: tuple[str, str, str])
     assert str(refused.value) == message
 
 
+@pytest.mark.slow
 @each(
     "line",
     [

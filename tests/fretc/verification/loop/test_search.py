@@ -92,7 +92,6 @@ def test_a_watchdog_lets_go_where_the_heartbeat_is_faster(timeout: int, released
     assert (results.kept.result, results.released.result) == ("proved", released)
 
 
-@pytest.mark.slow
 def test_a_heartbeat_of_one_tick_speaks_at_every_tick() -> None:
     traces = {
         search(case(WITHIN.format(3), TIMER, channel)).kept

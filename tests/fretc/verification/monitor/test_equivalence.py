@@ -89,7 +89,6 @@ def sentence_within(n: int) -> s.Sentence:
 # Proofs ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("n", [0, 1, 3, LONG])
 def test_a_right_monitor_is_proved_at_its_own_bound(n: int) -> None:
     pairs = n + 2  # before tick 0; nothing waits; something has waited for 1..n ticks
@@ -165,7 +164,6 @@ def test_a_lost_cause_is_told_though_fret_would_still_accept_the_trace() -> None
 # Refutations ----------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("n", [1, 3, LONG])
 @pytest.mark.parametrize("slip", [-1, 1])
 def test_a_deadline_that_is_one_tick_off_is_found(n: int, slip: int) -> None:

@@ -85,7 +85,6 @@ CHANNELS = {
 }
 
 
-@pytest.mark.slow
 def test_channels_and_messages_are_those_that_were_sent() -> None:
     with server() as robot:
         for name, about in list(CHANNELS.items())[:3]:
