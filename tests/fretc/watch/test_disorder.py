@@ -50,12 +50,7 @@ def audited(plan: Plan, log: str) -> tuple[Recording, dict[str, str]]:
     return recording, {each.requirement: each.verdict for each in found}
 
 
-REPORTED = [
-    Sent("/x", 1.0, 80),
-    Sent("/y", 9.0, 44),
-    Sent("/x", 9.0, 0),
-    Sent("/y", 1.0, 60),
-]
+REPORTED = [Sent("/x", 1.0, 80), Sent("/y", 9.0, 44), Sent("/x", 9.0, 0), Sent("/y", 1.0, 60)]
 """Messages of one topic after another, each in a disorder of its own."""
 
 

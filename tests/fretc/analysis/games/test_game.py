@@ -15,15 +15,7 @@ from fretc.analysis.games.game_traces import Counterstrategy, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches
 from fretc.analysis.realizability_problem import RealizabilityProblem
 from tests.effort import FULL
-from tests.requirement_sets import (
-    assumed,
-    drawn,
-    roles,
-    rule,
-    satisfiable,
-    staged,
-    synthesized,
-)
+from tests.requirement_sets import assumed, drawn, roles, rule, satisfiable, staged, synthesized
 
 SETS = 5_000 if FULL else 32
 """With `--hypothesis-profile=full` it takes two minutes."""

@@ -7,13 +7,7 @@ import pytest
 from compiler.logic.claims import Result
 from fretc.verification.compiled.verifying import explored
 from fretc.verification.javascript import language as javascript
-from tests.compiled_monitors import (
-    REFUTED,
-    WITHIN,
-    Checker,
-    edited,
-    given_javascript,
-)
+from tests.compiled_monitors import REFUTED, WITHIN, Checker, edited, given_javascript
 from tests.effort import FULL
 from tests.monitoring import rule
 from tests.node import needs_node

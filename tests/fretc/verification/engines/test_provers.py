@@ -16,14 +16,7 @@ from fretc.verification.engines.crosshair import with_crosshair
 from fretc.verification.engines.dafny import answer as dafny_answer
 from fretc.verification.engines.dafny import with_dafny
 from fretish.diagnostics.extras import install
-from tests.compiler.targets.test_dafny import (
-    BINDINGS,
-    CONDITIONS,
-    TIMINGS,
-    bound,
-    emitted,
-    rule,
-)
+from tests.compiler.targets.test_dafny import BINDINGS, CONDITIONS, TIMINGS, bound, emitted, rule
 from tests.each import each
 from tests.effort import FULL, full_only
 from tests.loops import edited as replaced
@@ -297,7 +290,7 @@ def test_dafny_rejects_mutants_and_nothing_else() -> None:
     )
     assert answer.result is Result.NOT_CHECKED
     assert re.findall(r"`(\w+)` \(line", answer.detail) == [
-        *("CommandCallback", "InvariantHolds", "HeldIsOwed", "NeverViolated"),
+        *("CommandCallback", "InvariantHolds", "HeldIsOwed", "NeverViolated")
     ]
 
 

@@ -162,10 +162,7 @@ def test_an_interruption_ends_the_process(tmp_path: Path) -> None:
         "from waits import wait\n"
         f"confined(DEFAULT, wait, {str(tmp_path / 'pid')!r})\n"
     )
-    environment = {
-        **os.environ,
-        "PYTHONPATH": f"{Path(__file__).parents[4]}{os.pathsep}{tmp_path}",
-    }
+    environment = {**os.environ, "PYTHONPATH": f"{Path(__file__).parents[4]}{os.pathsep}{tmp_path}"}
     command = [sys.executable, str(script)]
     running = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE)
     pid = tmp_path / "pid"

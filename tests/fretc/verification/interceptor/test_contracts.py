@@ -389,16 +389,11 @@ def test_a_core_that_may_not_be_pure_is_not_executed(case: tuple[str, str, str])
 @each(
     "line",
     [
-        "step = print",
-        "def step(*_): pass",
-        "import os as ring",
-        "globals()['step'] = print",
-        "OPTIONS = Options(0, 0, 0, 0)",
-        "for halted in (): pass",
-        "sys.modules[__name__].step = print",
-        "if (step := print): pass",
+        "step = print", "def step(*_): pass", "import os as ring", "globals()['step'] = print",
+        "OPTIONS = Options(0, 0, 0, 0)", "for halted in (): pass",
+        "sys.modules[__name__].step = print", "if (step := print): pass",
     ],
-)
+)  # fmt: skip
 def test_a_node_that_changes_the_core_is_told(line: str) -> None:
     changed = mutant(("\n\nclass Gate:", f"\n\n{line}\n\nclass Gate:"))
     assert "the node below it" in reason(changed)
@@ -424,11 +419,7 @@ def test_a_node_that_changes_the_core_is_told(line: str) -> None:
         (SCANNED, "    return replace(state, age=0), None", "a step fails: TypeError"),
         (SCANNED, "    return None", "a step gives no state and command"),
         (GROWS, "stop_age=state.stop_age + 1", f"it has more than {MOST} states"),
-        (
-            "    held: int\n",
-            "    hold: int\n",
-            "its core is not as fretc can read it",
-        ),
+        ("    held: int\n", "    hold: int\n", "its core is not as fretc can read it"),
         ("def halted(", "def halted((", "it is no Python"),
     ],
 )

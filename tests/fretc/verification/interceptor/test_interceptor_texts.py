@@ -19,11 +19,7 @@ from compiler.targets.python import interceptor
 from fretc.verification.engines.crosshair import contract_texts
 from fretc.verification.interceptor.contracts import contracts
 from fretc.verification.interceptor.file import Head, core, head, otherwise
-from fretc.verification.interceptor.machine import (
-    Event,
-    InterceptorMachine,
-    NotAnInterceptorError,
-)
+from fretc.verification.interceptor.machine import Event, InterceptorMachine, NotAnInterceptorError
 from fretish.bindings.declarations import Form, Interception
 from monitors.interceptor import Options
 from tests.each import each
@@ -271,10 +267,7 @@ def test_neither_engine_takes_a_core_that_shadows_its_node(name: str) -> None:
             "    vx: float = 0.0\n    vy: float = 0.0\n",
             "    vy: float = 0.0\n    vx: float = 0.0\n",
         ),
-        (
-            "class Velocity(NamedTuple):",
-            "@dataclass(frozen=True, slots=True)\nclass Velocity:",
-        ),
+        ("class Velocity(NamedTuple):", "@dataclass(frozen=True, slots=True)\nclass Velocity:"),
     ],
 )
 def test_a_velocity_has_its_six_numbers_and_no_others(old: str, new: str) -> None:
@@ -320,91 +313,28 @@ def test_the_core_and_comments_may_differ() -> None:
 
 SCAN = "    return replace(state, scan_age=0), None\n"
 OUTSIDE = (
-    "min(0, 1, key='{0.real}'.format)",
-    "max(state.held, 1, key=halted)",
-    "max(state.held, 1, default=0)",
-    "max(state.held)",
-    "'{0.__class__}'.format",
-    "(0).real",
-    "0 .bit_length",
-    "(1 + 1).real",
-    "halted(state, options).real",
-    "state.held.real",
-    "state.held.bit_length",
-    "state.command.count",
-    "state.undeclared",
-    "halted",
-    "Velocity",
-    "replace",
-    "max",
-    "len",
-    "OPTIONS",
-    "options.__class__",
-    "step(state=state, event=0, options=options)",
-    "replace(state, **options)",
-    "replace(*options)",
-    "replace()",
-    "replace(state, _held=0)",
-    "Velocity(*state)",
-    "Velocity(_x=0)",
-    "print(state)",
-    "isfinite(0)",
-    "bool(state.command)",
-    "state.held(0)",
-    "(lambda: 0)()",
-    "lambda: 0",
-    "[0]",
-    "{0}",
-    "{0: 0}",
-    "(*options, 0)",
-    "[0 for _ in state]",
-    "(0 for _ in state)",
-    "(here := 0)",
-    "f'{state}'",
-    "'text'",
-    "b'text'",
-    "...",
-    "1j",
-    "1e999",
-    "state.held * 2",
-    "state.held ** 2",
-    "state.held % 2",
-    "state.held // 2",
-    "state.held @ 2",
-    "state.held << 2",
-    "state.held | 2",
-    "state.held & 2",
-    "state.held ^ 2",
-    "~state.held",
-    "+state.held",
-    "state[0]",
-    "state is options",
-    "state is not options",
-    "state.held in (0, 1)",
-    "state.held not in (0, 1)",
-    "(yield state)",
-    "(yield from state)",
-)
+    "min(0, 1, key='{0.real}'.format)", "max(state.held, 1, key=halted)",
+    "max(state.held, 1, default=0)", "max(state.held)", "'{0.__class__}'.format", "(0).real",
+    "0 .bit_length", "(1 + 1).real", "halted(state, options).real", "state.held.real",
+    "state.held.bit_length", "state.command.count", "state.undeclared", "halted", "Velocity",
+    "replace", "max", "len", "OPTIONS", "options.__class__",
+    "step(state=state, event=0, options=options)", "replace(state, **options)",
+    "replace(*options)", "replace()", "replace(state, _held=0)", "Velocity(*state)",
+    "Velocity(_x=0)", "print(state)", "isfinite(0)", "bool(state.command)", "state.held(0)",
+    "(lambda: 0)()", "lambda: 0", "[0]", "{0}", "{0: 0}", "(*options, 0)", "[0 for _ in state]",
+    "(0 for _ in state)", "(here := 0)", "f'{state}'", "'text'", "b'text'", "...", "1j",
+    "1e999", "state.held * 2", "state.held ** 2", "state.held % 2", "state.held // 2",
+    "state.held @ 2", "state.held << 2", "state.held | 2", "state.held & 2", "state.held ^ 2",
+    "~state.held", "+state.held", "state[0]", "state is options", "state is not options",
+    "state.held in (0, 1)", "state.held not in (0, 1)", "(yield state)", "(yield from state)",
+)  # fmt: skip
 """Expressions that are not of the language, each for one reason."""
 PLACES = (
-    "{0}",
-    "replace(state, scan_age={0})",
-    "0 if {0} else 1",
-    "{0} if state.stop else 0",
-    "not {0}",
-    "-{0}",
-    "state.stop and {0}",
-    "({0}) == 0",
-    "0 < 1 < ({0})",
-    "({0}) + 1",
-    "1 - ({0})",
-    "min(0, {0})",
-    "expired({0}, 1)",
-    "(0, {0})",
-    "Velocity({0})",
-    "Velocity(vx={0})",
-    "ScanHeard({0})",
-)
+    "{0}", "replace(state, scan_age={0})", "0 if {0} else 1", "{0} if state.stop else 0",
+    "not {0}", "-{0}", "state.stop and {0}", "({0}) == 0", "0 < 1 < ({0})", "({0}) + 1",
+    "1 - ({0})", "min(0, {0})", "expired({0}, 1)", "(0, {0})", "Velocity({0})",
+    "Velocity(vx={0})", "ScanHeard({0})",
+)  # fmt: skip
 STATEMENTS = (
     "    return {0}, None\n",
     "    found = {0}\n    return state, None\n",
@@ -471,22 +401,11 @@ def test_the_places_themselves_are_of_the_language(place: str) -> None:
 @each(
     "annotation",
     [
-        "print()",
-        "'print()'",
-        "Annotated[int, print()]",
-        "list[int]",
-        "state.held",
-        "tuple[int, print()]",
-        "[int]",
-        "int if state else int",
-        "lambda: int",
-        "(int := bool)",
-        "Literal[1]",
-        "int & bool",
-        "ClassVar",
-        "builtins",
+        "print()", "'print()'", "Annotated[int, print()]", "list[int]", "state.held",
+        "tuple[int, print()]", "[int]", "int if state else int", "lambda: int", "(int := bool)",
+        "Literal[1]", "int & bool", "ClassVar", "builtins",
     ],
-)
+)  # fmt: skip
 @pytest.mark.parametrize(
     ("old", "new"),
     [

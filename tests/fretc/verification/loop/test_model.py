@@ -188,12 +188,7 @@ def test_a_run_says_what_is_heard_in_its_order() -> None:
         for tick, after in loop.steps(loop.initial)
         if after.wheels.still < 0 and tick.letter == (False, True)
     )
-    assert loop.word(loop.initial, tick, after) == (
-        Event.RELEASE,
-        Event.MOVE,
-        Event.RING,
-        None,
-    )
+    assert loop.word(loop.initial, tick, after) == (Event.RELEASE, Event.MOVE, Event.RING, None)
 
 
 def test_an_environment_chooses_no_comparisons_that_contradict_each_other() -> None:

@@ -11,12 +11,7 @@ from compiler.formalization.letters import Valuation, meanings
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.logic.definition import holds
-from fretc.verification.monitor.equivalence import (
-    Difference,
-    Equivalence,
-    Judgement,
-    compare,
-)
+from fretc.verification.monitor.equivalence import Difference, Equivalence, Judgement, compare
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.diagnostics.source import Source

@@ -14,14 +14,7 @@ from compiler.logic.claims import Result
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor.verifying import verified
 from monitors.loading import load
-from tests.compiler.formalization.test_mutants import (
-    DIFFERS,
-    MARK,
-    REFUSED,
-    REFUTED,
-    SAME,
-    Judge,
-)
+from tests.compiler.formalization.test_mutants import DIFFERS, MARK, REFUSED, REFUTED, SAME, Judge
 from tests.each import each
 from tests.effort import some
 from tests.monitoring import rule, with_step, without_step
@@ -188,10 +181,7 @@ def test_a_step_that_has_another_tick_in_it_than_its_rail_is_refused(old: str, n
 
 
 @pytest.mark.slow
-@each(
-    "name",
-    "row tick doubt known must may rows refused Signals since other_name".split(),
-)
+@each("name", "row tick doubt known must may rows refused Signals since other_name".split())
 def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: str) -> None:
     """`row` hid unknown values: it is what a step calls the values of a tick."""
     formalized = rule("in m mode whenever longname the sw shall within 3 ticks satisfy q")

@@ -179,10 +179,7 @@ VIOLATED = "violated (false if it ended there)"
     ],
 )
 def test_a_wrong_step_is_refuted_by_a_shortest_trace(
-    edits: list[tuple[str, str]],
-    word: tuple[Valuation, ...],
-    expected: str,
-    actual: str,
+    edits: list[tuple[str, str]], word: tuple[Valuation, ...], expected: str, actual: str
 ) -> None:
     assert check(WITHIN, edited(emitted(WITHIN), *edits)) == refuted(
         f"the shortest trace that shows it has {len(word)} ticks; after it, {actual}, and should "

@@ -34,10 +34,7 @@ TOPICS = ("/odom", "/scan")
 FIRST, LAST = 8.0, 32.0
 """Seconds of a mission that are played: a first obstacle, or somebody who walks into the path."""
 
-pytestmark = [
-    pytest.mark.slow,
-    needs_package("cyclonedds"),
-]
+pytestmark = [pytest.mark.slow, needs_package("cyclonedds")]
 
 
 @contextmanager

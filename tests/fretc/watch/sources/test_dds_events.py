@@ -50,10 +50,7 @@ while True:
     time.sleep(0.005)
 """
 
-pytestmark = [
-    pytest.mark.slow,
-    needs_package("cyclonedds"),
-]
+pytestmark = [pytest.mark.slow, needs_package("cyclonedds")]
 
 
 @pytest.fixture

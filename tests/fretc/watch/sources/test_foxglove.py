@@ -26,14 +26,7 @@ from fretc.watch.session import Session
 from fretc.watch.sources import foxglove
 from fretc.watch.sources.foxglove import Foxglove
 from fretc.watch.sources.foxglove_protocol import address
-from fretc.watch.sources.source import (
-    Arrival,
-    Channel,
-    Interrupted,
-    Opened,
-    Problem,
-    Reconnected,
-)
+from fretc.watch.sources.source import Arrival, Channel, Interrupted, Opened, Problem, Reconnected
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc
@@ -414,17 +407,10 @@ def certificate(folder: Path) -> tuple[Path, Path]:
 @each(
     "url",
     [
-        "",
-        "robot:8765",
-        "http://robot",
-        "ws://",
-        "ws://r:x",
-        "ws://r:0",
-        "ws://r/\x1b",
-        "ws://[",
-        "ws://r/#a",
+        "", "robot:8765", "http://robot", "ws://", "ws://r:x", "ws://r:0", "ws://r/\x1b",
+        "ws://[", "ws://r/#a",
     ],
-)
+)  # fmt: skip
 def test_what_is_no_url_is_bad_usage(url: str) -> None:
     found = address(url)
     assert isinstance(found, Diagnostic)
