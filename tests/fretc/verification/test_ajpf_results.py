@@ -135,6 +135,7 @@ def test_a_result_about_other_texts_is_stale(ran: Mcapl, name: str) -> None:
     assert only(ran).result is Result.NOT_CHECKED
 
 
+@pytest.mark.slow
 def test_a_result_of_the_requirement_as_it_was_is_stale(ran: Mcapl) -> None:
     now = rule(R1.replace("whenever", "upon"))
     result = outcome(only(ran, now))
@@ -333,6 +334,7 @@ def test_a_refutation_of_ajpf_is_red_in_both(ran: Mcapl, fretc: Fretc, tmp_path:
     assert planned(tmp_path)[1].startswith("counterexample: AJPF: ")
 
 
+@pytest.mark.slow
 def test_a_stale_result_is_said_and_does_not_count(
     ran: Mcapl, fretc: Fretc, tmp_path: Path
 ) -> None:

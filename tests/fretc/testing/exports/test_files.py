@@ -104,6 +104,7 @@ def test_emitted_tests_pass(sentence: str, tmp_path: Path) -> None:
     assert failures(tmp_path / "test_r1.py") == []
 
 
+@pytest.mark.slow
 def test_long_bounds_stay_short(tmp_path: Path) -> None:
     found, _ = written(tmp_path, Form.PYTEST, SENTENCES[3])
     assert max(test.ticks for test in found.tests) > LONG

@@ -66,6 +66,7 @@ def test_what_was_made_is_taken_however_long_its_names_are(length: int) -> None:
     assert names.issuperset(name for each in written.obligations for name in each.tests)
 
 
+@pytest.mark.slow
 def test_what_is_about_another_sentence_is_left_out(made: Made) -> None:
     changed = (rule(WITHIN.replace("2", "3"), "R1"), made.rules[1])
     found = saved(decoded(made.document, Suite), changed)

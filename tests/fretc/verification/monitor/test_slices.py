@@ -77,6 +77,7 @@ def test_what_looks_at_another_proposition_is_not_taken_for_independent() -> Non
     assert check(2, text).result is not Result.COUNTEREXAMPLE
 
 
+@pytest.mark.slow
 def test_a_wrong_requirement_is_refuted_by_a_trace_that_the_file_can_step() -> None:
     text = broken(emitted(*SENTENCES), ">= 3", ">= 4")
     outcome = check(0, text)
