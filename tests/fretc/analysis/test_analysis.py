@@ -156,7 +156,6 @@ def _renamed(sentence: str, other: dict[str, str]) -> str:
     )
 
 
-@pytest.mark.slow
 def test_a_further_requirement_never_helps() -> None:
     for seed in range(60 if FULL else 25):
         (more, *rest) = drawn(("more", seed), most=4)
@@ -164,7 +163,6 @@ def test_a_further_requirement_never_helps() -> None:
             assert analyzed(*rest, more).verdict is UNREALIZABLE
 
 
-@pytest.mark.slow
 def test_a_conjunction_may_be_split() -> None:
     for seed in range(20 if FULL else 8):
         rest = drawn(("split", seed), most=2)

@@ -206,7 +206,6 @@ def test_a_cell_has_no_name_that_something_else_has(name: str) -> None:
     assert examiner.kind(text[:place] + re.sub(r"\boldest_1\b", name, text[place:])) == REFUSED
 
 
-@pytest.mark.slow
 def test_a_cell_may_have_a_name_of_its_own() -> None:
     text, examiner = judge(WITHIN)
     place = text.index(MARK)

@@ -97,7 +97,7 @@ def test_what_fretc_writes_is_proved() -> None:
 
 
 @pytest.mark.slow
-@each("fault", some(FAULTS, 5, 1))
+@each("fault", some(FAULTS, 5, 4))
 def test_a_fault_comes_to_what_is_written_beside_it(fault: tuple[str, str, Result]) -> None:
     old, new, expected = fault
     outcome = with_fault(old, new)
