@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import wraps
 from pathlib import Path
 from tempfile import mkdtemp
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Outcome, Result
@@ -21,6 +22,24 @@ from fretc.verification.javascript import language as javascript
 from fretc.verification.rust import language as rust
 from tests import c_monitors, node, rust_monitors
 from tests.c_monitors import Reading, Rows, Source
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def once(function: Callable[P, R]) -> Callable[P, R]:
+    """Call it once for the same objects: requirements have no hash, and `rule` gives the same."""
+    known: dict[tuple[int, ...], tuple[object, R]] = {}
+
+    @wraps(function)
+    def called(*args: P.args, **kwargs: P.kwargs) -> R:
+        key = tuple(map(id, args))
+        if key not in known:
+            known[key] = args, function(*args, **kwargs)  # kept, so that no other has their ids
+        return known[key][1]
+
+    return called
+
 
 WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
 FOR = "upon p the sw shall for 2 ticks satisfy q & !m"
@@ -53,6 +72,7 @@ class Checker:
     language: Language
     folder: Path
 
+    @once
     def prepared(
         self, monitor: SourceText, *rules: FormalizedRequirement
     ) -> tuple[ParsedSource, Executable]:
@@ -123,6 +143,7 @@ _BITWISE = ((r"(?<!word) & (?!bit|~)", " | "), (r" \| (?!bit)", " & "))
 """Not of rings, which are as fretc writes them."""
 
 
+@once
 def given_c(*rules: FormalizedRequirement) -> SourceText:
     """What `--emit c` writes for them."""
     source = Source.of(*rules)
@@ -138,6 +159,7 @@ def _told_by_c(
     return program.run((0, rows))[1][0]
 
 
+@once
 def given_rust(*rules: FormalizedRequirement) -> SourceText:
     """What `--emit rust` writes for them."""
     return SourceText("lib.rs", rust_monitors.library(rust_monitors.crate(*rules)))
@@ -151,6 +173,7 @@ def _told_by_rust(
     )[0]
 
 
+@once
 def given_javascript(*rules: FormalizedRequirement) -> SourceText:
     """What `--emit js` writes for them."""
     return SourceText("monitor.mjs", in_javascript(*rules))

@@ -56,6 +56,7 @@ def rule(sentence: str, id: str = "R1", clock: Clock | None = None) -> Formalize
     return result
 
 
+@lru_cache(maxsize=512)
 def emitted(*sentences: str, clock: Clock | None = None) -> str:
     """The text of one monitor for all of them; they are called R1, R2, ..."""
     rules = [rule(sentence, f"R{i}", clock) for i, sentence in enumerate(sentences, 1)]

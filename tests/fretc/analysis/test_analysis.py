@@ -16,6 +16,8 @@ from fretc.analysis.findings import Conflict, OpenQuestion, Verdict
 from fretc.analysis.games.squaring import IterativeSquaring
 from fretc.analysis.verdicts import Completeness
 from fretish.bindings.declarations import Role
+from tests.each import each
+from tests.effort import FULL
 from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, roles, rule, staged
 from tests.requirement_sets import named as named_true
 
@@ -107,7 +109,7 @@ def test_who_chooses_a_mode_decides(chooser: Role, verdict: Verdict) -> None:
 def test_conflicts_are_minimal_and_all_there_are() -> None:
     """Each set of requirements fights just where it holds one of them."""
     fought = 0
-    for seed in range(60):
+    for seed in range(60 if FULL else 24):
         sentences = drawn(("cores", seed), most=5)
         found = analyzed(*sentences)
         cores = [set(each) for each in conflicts(found)]
@@ -121,12 +123,12 @@ def test_conflicts_are_minimal_and_all_there_are() -> None:
                 assert game.solution().is_realizable is not fights, (sentences, members)
         assert (found.verdict is UNREALIZABLE) is bool(cores)
         fought += bool(cores)
-    assert fought > 15
+    assert fought > (15 if FULL else 6)
 
 
 @pytest.mark.slow
 def test_names_order_and_form_change_nothing() -> None:
-    for seed in range(40):
+    for seed in range(40 if FULL else 12):
         sentences = list(drawn(("same", seed), most=4))
         found = analyzed(*sentences)
         turned = analyzed(*reversed(sentences))
@@ -154,17 +156,15 @@ def _renamed(sentence: str, other: dict[str, str]) -> str:
     )
 
 
-@pytest.mark.slow
 def test_a_further_requirement_never_helps() -> None:
-    for seed in range(60):
+    for seed in range(60 if FULL else 25):
         (more, *rest) = drawn(("more", seed), most=4)
         if rest and analyzed(*rest).verdict is UNREALIZABLE:
             assert analyzed(*rest, more).verdict is UNREALIZABLE
 
 
-@pytest.mark.slow
 def test_a_conjunction_may_be_split() -> None:
-    for seed in range(20):
+    for seed in range(20 if FULL else 8):
         rest = drawn(("split", seed), most=2)
         whole = analyzed(*rest, "whenever a the sw shall immediately satisfy x & (y | b)")
         parts = analyzed(
@@ -176,7 +176,7 @@ def test_a_conjunction_may_be_split() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scale", [1, 7, 30])
+@each("scale", [1, 7, 30] if FULL else [1, 5])
 def test_scaled_durations_give_the_same_answers(scale: int) -> None:
     answered = (
         f"whenever a the sw shall within {4 * scale} ticks satisfy x",

@@ -12,9 +12,10 @@ from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import Analysis, Inconsistency
 from fretc.analysis.games.squaring import IterativeSquaring
 from fretc.analysis.implications import inconsistencies
+from tests.effort import FULL, some
 from tests.requirement_sets import analyzed, drawn, rules, staged, terse
 
-SETS = 50
+SETS = range(50) if FULL else range(33, 48)
 
 
 def formulas(sentences: Sequence[str]) -> dict[str, str]:
@@ -41,9 +42,9 @@ def assert_implications(sentences: Sequence[str], found: Analysis) -> None:
     for id, formula in known.items():
         others = [other for other in known if other != id]
         assert (id in by) is implies([known[other] for other in others], formula), (sentences, id)
-    for id, some in by.items():
-        assert implies([known[other] for other in some], known[id])
-        for fewer in combinations(some, len(some) - 1) if some else ():
+    for id, least in by.items():
+        assert implies([known[other] for other in least], known[id])
+        for fewer in combinations(least, len(least) - 1) if least else ():
             assert not implies([known[other] for other in fewer], known[id])
     left = [known[id] for id in known if id not in found.removable]
     assert all(implies(left, known[id]) for id in found.removable)
@@ -55,22 +56,22 @@ def assert_implications(sentences: Sequence[str], found: Analysis) -> None:
 @pytest.mark.slow
 def test_consistency_and_redundancy_are_spot_s() -> None:
     redundant = inconsistent = 0
-    for seed in range(SETS):
+    for seed in SETS:
         sentences = (terse if seed % 2 else drawn)(("say", seed), most=4)
         found = analyzed(*sentences)
         assert_implications(sentences, found)
         redundant += any(each.by for each in found.redundant)
         inconsistent += found.consistent is False
-    assert redundant > SETS / 20
-    assert inconsistent > 0
+    assert redundant > len(SETS) / 20
+    assert inconsistent > 0 or not FULL
 
 
 @pytest.mark.slow
 def test_a_trigger_is_excluded_where_spot_says_so() -> None:
     excluded = 0
-    for seed in range(SETS):
+    for seed in SETS:
         others = (terse if seed % 2 else drawn)(("never", seed), most=2)
-        for p in ("a", "!a & x", "x & y"):
+        for p in some(("a", "!a & x", "x & y"), 3, seed % 3):
             found = analyzed(*others, f"whenever {p} the sw shall eventually satisfy x | b")
             known = [*formulas(others).values()]
             id = f"R{len(others) + 1}"
@@ -142,7 +143,7 @@ def _origins(walk: Any, together: Any, alone: Sequence[Any]) -> dict[int, int]:
 @pytest.mark.slow
 def test_pairs_clash_where_spot_s_automata_part() -> None:
     clashes = 0
-    for seed in range(SETS):
+    for seed in SETS:
         sentences = (terse if seed % 2 else drawn)(("clash", seed), most=3)
         found = {each.requirements: len(each.play) for each in analyzed(*sentences).inconsistent}
         known = formulas(sentences)
@@ -188,7 +189,7 @@ def test_a_scope_that_never_is_is_told_with_what_excludes_it() -> None:
 
 @pytest.mark.slow
 def test_leaps_over_many_ticks_change_no_finding(monkeypatch: pytest.MonkeyPatch) -> None:
-    for seed in range(SETS):
+    for seed in SETS:
         sentences = (terse if seed % 2 else drawn)(("leaps", seed), most=3)
         before = analyzed(*sentences)
         with monkeypatch.context() as patched:

@@ -35,10 +35,7 @@ from tests.requirement_sets import analyzed, terse
             "tick 0",
         ),
         (
-            (
-                "whenever a the sw shall eventually satisfy x",
-                "the sw shall never satisfy x",
-            ),
+            ("whenever a the sw shall eventually satisfy x", "the sw shall never satisfy x"),
             "R1 (since tick 0) is never met, because R2 forbids `x`: the environment repeats "
             "tick 1 for ever",
         ),

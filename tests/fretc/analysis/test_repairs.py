@@ -130,14 +130,14 @@ def changed(
 @pytest.mark.slow
 def test_spot_proves_each_suggestion() -> None:
     shown = 0
-    for seed in range(150):
+    for seed in range(150 if FULL else 60):
         sentences = terse(("repair", seed))
         for repair in fixed(*sentences).repairs:
             if any("preBool" in each for each in repair.sentences):
                 continue
             assert synthesized(*changed(sentences, repair)), (sentences, repair)
             shown += 1
-    assert shown > 5
+    assert shown > (5 if FULL else 2)
 
 
 def test_comparisons_of_the_environment_can_be_assumed_apart() -> None:

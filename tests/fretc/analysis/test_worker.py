@@ -12,6 +12,7 @@ from fretc.analysis.analysis import Finding, Job
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.findings import OpenQuestion
 from fretc.analysis.worker import Stopped, findings
+from tests.effort import FULL
 
 
 def job(name: str, do: Callable[[], None] = lambda: None) -> Job:
@@ -46,7 +47,11 @@ def test_a_process_that_dies_is_replaced() -> None:
 
 
 @pytest.mark.slow
-def test_a_question_that_hangs_is_ended() -> None:
+def test_a_question_that_hangs_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A second after its time is over; by default a part of one."""
+    if not FULL:
+        timer = signal.setitimer
+        monkeypatch.setattr(signal, "setitimer", lambda which, after: timer(which, after / 5))
     jobs = [job("a", hang), job("b")]
     assert told(jobs) == [
         ("a", "0 before"), ("a", "lost: it took longer than it may"),

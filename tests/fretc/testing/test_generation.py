@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from itertools import count, product
@@ -18,6 +17,7 @@ from fretc.testing.generation import Batch, batch
 from fretc.testing.suite import Fate, Met, Obligation, Polarity, Test
 from fretc.testing.words import Word, defined, judged, letters
 from tests.each import each
+from tests.effort import FULL, some
 from tests.requirement_sets import rules
 
 SENTENCES = (
@@ -34,7 +34,7 @@ SENTENCES = (
     "whenever a | b the sw shall immediately satisfy x & !a",
     "the sw shall never satisfy a & x",
 )
-MOST = 1 << (12 if os.environ.get("HYPOTHESIS_PROFILE") == "full" else 8)
+MOST = 1 << (12 if FULL else 8)
 """Words that are listed of each length."""
 
 
@@ -115,7 +115,7 @@ def listed(rule: FormalizedRequirement) -> tuple[Mapping[Need, Mapping[int, int]
 
 
 @pytest.mark.slow
-@each("sentence", SENTENCES)
+@each("sentence", some(SENTENCES, 3))
 def test_no_shorter_word_shows_the_same(sentence: str) -> None:
     """What is impossible has no word among those that are listed, what is met no shorter one."""
     (rule,) = rules(sentence)
@@ -144,6 +144,7 @@ def test_no_shorter_word_shows_the_same(sentence: str) -> None:
         assert best in known or length > most
 
 
+@pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_verdicts_are_those_of_the_formula(sentence: str) -> None:
     """The formula of finite traces, evaluated as it is defined, shares nothing with the search."""
@@ -183,6 +184,7 @@ def test_a_mutant_is_killed_or_judges_all_words_alike(sentence: str) -> None:
                 assert defined(rule, own)[1] is defined(other, theirs)[1]
 
 
+@pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_what_is_unknown_decides_and_no_shorter_run_depends_on_it(sentence: str) -> None:
     """Both values are tried at the tick; shorter words are listed, with each tick in turn."""

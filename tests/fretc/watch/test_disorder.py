@@ -5,7 +5,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fretc.audit.one_log import audit
@@ -17,7 +17,7 @@ from fretc.watch.sources.log import Log
 from fretc.watch.sources.source import Idle
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Code
-from tests.effort import FULL
+from tests.effort import examples
 from tests.fretc.logs.logs import Sent as Written
 from tests.fretc.logs.logs import write
 from tests.fretc.watch.sent import Sent, Setting, plan_of, settings_
@@ -50,19 +50,14 @@ def audited(plan: Plan, log: str) -> tuple[Recording, dict[str, str]]:
     return recording, {each.requirement: each.verdict for each in found}
 
 
-REPORTED = [
-    Sent("/x", 1.0, 80),
-    Sent("/y", 9.0, 44),
-    Sent("/x", 9.0, 0),
-    Sent("/y", 1.0, 60),
-]
+REPORTED = [Sent("/x", 1.0, 80), Sent("/y", 9.0, 44), Sent("/x", 9.0, 0), Sent("/y", 1.0, 60)]
 """Messages of one topic after another, each in a disorder of its own."""
 
 
 @pytest.mark.slow
 @example(BY_ARRIVAL, REPORTED, None, True)
 @given(settings_, messages, st.sampled_from([None, 1, 3, 100]), st.booleans())
-@settings(max_examples=2000 if FULL else 10)
+@examples(6)
 def test_what_is_shown_at_the_end_is_what_the_evidence_says(
     setting: Setting, some: list[Sent], per_chunk: int | None, records: bool
 ) -> None:
@@ -92,7 +87,7 @@ def test_what_is_shown_at_the_end_is_what_the_evidence_says(
 
 @pytest.mark.slow
 @given(messages)
-@settings(max_examples=2000 if FULL else 12)
+@examples(6)
 def test_by_arrival_in_order_nothing_is_late_and_nothing_judged_again(some: list[Sent]) -> None:
     if not bound(some, BY_ARRIVAL):
         return

@@ -5,7 +5,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from fretc.audit.one_log import audit, examined
@@ -17,7 +17,7 @@ from fretc.watch.recording import Recorder
 from fretc.watch.session import Ended, Jump, Session
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.kernel.verdicts import Truth
-from tests.effort import FULL
+from tests.effort import examples
 from tests.fretc.watch.sent import MS, Sent, Setting, plan_of, settings_
 
 messages = st.lists(
@@ -93,7 +93,7 @@ LATE_FIRST = [
 @pytest.mark.slow
 @example(Setting(time="publish_time", slow="z < 5 for 25 ms", lateness=20), LATE_FIRST, 40)
 @given(settings_, messages, st.sampled_from([0, 3, 40]))
-@settings(max_examples=2000 if FULL else 10)
+@examples(6)
 def test_rows_and_verdicts_are_those_of_the_audit(
     setting: Setting, some: list[Sent], idle: int
 ) -> None:
@@ -116,7 +116,7 @@ BY_STAMP = Setting(slow="y < 5")
 
 @pytest.mark.slow
 @given(messages, st.sets(st.integers(0, 24), min_size=1))
-@settings(max_examples=2000 if FULL else 15)
+@examples(10)
 def test_what_was_missed_satisfies_nothing_live_and_audited(
     some: list[Sent], missed: set[int]
 ) -> None:
@@ -136,7 +136,7 @@ def test_what_was_missed_satisfies_nothing_live_and_audited(
 
 @pytest.mark.slow
 @given(messages, st.data())
-@settings(max_examples=2000 if FULL else 12)
+@examples(6)
 def test_nothing_is_judged_while_the_source_is_gone(some: list[Sent], data: st.DataObject) -> None:
     """By arrival both know when it was, so the audit says the same; some messages still came."""
     setting = Setting(time="log_time", slow="y < 5")

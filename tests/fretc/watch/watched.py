@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -68,14 +67,3 @@ class Watched:
         self._thread.join(5)
         assert self.process.stdout is not None
         self.process.stdout.close()
-
-
-def audited(folder: Path, *words: str) -> subprocess.CompletedProcess[bytes]:
-    """`fretc audit` in the folder."""
-    return subprocess.run(
-        [*FRETC, "audit", *words],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        check=False,
-        capture_output=True,
-    )

@@ -40,7 +40,7 @@ TIMINGS = (
     "at the next timepoint",
     "for 1 tick",
 )
-SETS = range(16) if FULL else range(6, 16)
+SETS = range(16) if FULL else range(6, 16, 2)
 """Seeds of drawn sets; those that are left out by default take longest."""
 
 
@@ -121,7 +121,7 @@ def setting(seed: int) -> RealizabilityProblem:
 def test_the_tick_before_gives_no_wrong_verdict() -> None:
     """`p` is the value that i or o had; for Spot an output whose bits are linked to theirs."""
     answers = []
-    for seed in range(8) if FULL else (0, 1, 2, 6, 7):
+    for seed in range(8) if FULL else (0, 2, 6, 7):
         sentences, meant = drawn(seed, "ioup")
         of = "io"[seed % 2]
         links = " & ".join(f"!p{k} & G(X p{k} <-> {of}{k})" for k in range(2))
@@ -132,7 +132,7 @@ def test_the_tick_before_gives_no_wrong_verdict() -> None:
             assert (found.verdict is REALIZABLE) is is_realizable, (sentences, past)
         answers.append(found.verdict)
     for each in (REALIZABLE, UNREALIZABLE):
-        assert answers.count(each) > 1
+        assert answers.count(each) > (1 if FULL else 0)
 
 
 @pytest.mark.slow
@@ -220,7 +220,7 @@ def test_a_play_has_numbers() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ticks", [10, 5_000])
+@pytest.mark.parametrize("ticks", [10, 5_000 if FULL else 1000])
 def test_a_long_play_has_numbers_as_a_short_one_has(ticks: int) -> None:
     """The longer one is of requirements that are looked at by themselves, and leaps."""
     sentences = (

@@ -21,6 +21,7 @@ from fretish.bindings.declarations import Declarations, Role
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors.kernel.columns import truths
+from tests.effort import FULL
 from tests.fretc.logs.logs import declare
 
 TICK = 10
@@ -138,7 +139,7 @@ def every_bit(transition: Transition) -> list[int]:
 
 
 @pytest.mark.slow
-@settings(max_examples=settings().max_examples // 4)
+@settings(max_examples=settings().max_examples // (4 if FULL else 7))
 @given(texts(), st.data())
 def test_what_samples_make_true_together_is_a_letter(
     tables: tuple[str, ...], data: st.DataObject
@@ -165,7 +166,7 @@ def test_what_samples_make_true_together_is_a_letter(
 
 
 @pytest.mark.slow
-@settings(max_examples=settings().max_examples // 4)
+@settings(max_examples=settings().max_examples // (4 if FULL else 7))
 @given(texts(), st.integers(0, 2**32))
 def test_what_is_a_letter_for_certain_some_samples_make_true(
     tables: tuple[str, ...], seed: int

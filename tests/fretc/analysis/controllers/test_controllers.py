@@ -80,7 +80,7 @@ def machines(
 @pytest.mark.parametrize("given", [False, True])
 def test_no_run_of_an_automaton_breaks_a_requirement(given: bool) -> None:
     shown = 0
-    count = 120 if FULL else 40
+    count = 120 if FULL else 20
     for setting, assumptions, found in machines(count, given=given):
         automaton = spot.automaton(hoa(found))
         wrong = f"({formula(assumptions)}) & !({formula(setting.rules)})"
@@ -91,7 +91,7 @@ def test_no_run_of_an_automaton_breaks_a_requirement(given: bool) -> None:
 
 
 def test_the_program_does_as_the_automaton_and_breaks_nothing() -> None:
-    for number, (setting, _, found) in enumerate(machines(60 if FULL else 30, given=False)):
+    for number, (setting, _, found) in enumerate(machines(60 if FULL else 12, given=False)):
         choose = random.Random(number)
         states, state = mealy(found, ["R1"], ENDLESS).states, 0
         step = program(found, setting)().step
@@ -130,7 +130,7 @@ PATTERNS: Sequence[Callable[[int], bool]] = (
 
 @pytest.mark.slow
 def test_generated_monitors_find_nothing_whatever_comes() -> None:
-    for number, (setting, _, found) in enumerate(machines(25, given=False)):
+    for number, (setting, _, found) in enumerate(machines(25 if FULL else 12, given=False)):
         sentences = [rule.requirement.wording.text for rule in setting.rules]
         watching = monitor(*sentences)
         choose = random.Random(number)
@@ -157,15 +157,16 @@ def test_two_goals_take_turns() -> None:
 
 @pytest.mark.slow
 def test_long_bounds_need_no_states() -> None:
+    bound = 100_000 if FULL else 20_000
     setting = staged(
-        "upon a the sw shall for 100000 ticks satisfy x",
+        f"upon a the sw shall for {bound} ticks satisfy x",
         "whenever b the sw shall immediately satisfy y",
     )
     found = made(setting)
     assert found is not None
     step = program(found, setting)().step
     assert step({"a": True, "b": False}) == {"x": True, "y": False}
-    for _ in range(100_000):
+    for _ in range(bound):
         assert step({"a": False, "b": False})["x"]
     assert step({"a": False, "b": False}) == {"x": False, "y": False}
     with pytest.raises(NoMachineError, match=f"more than {moves.MOST_STATES} states"):

@@ -42,7 +42,7 @@ def test_a_right_program_conforms(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@each("fault", some(FAULTS, 4))
+@each("fault", some(FAULTS, 8))
 def test_each_planted_fault_is_found(fault: str) -> None:
     found = seen_of(program(fault))
     assert found.failures, fault

@@ -10,6 +10,7 @@ from compiler.project.folder import Project, load
 from fretc.analysis.assumptions import assumptions
 from fretc.testing.assembly import jobs, suite
 from fretc.testing.log_synthesis.logs import StagedTest, logs
+from tests.effort import some
 
 BINDINGS = """
 [clock]
@@ -93,11 +94,14 @@ def read(sentence: str, folder: Path) -> Project:
 
 @pytest.mark.parametrize(
     "sentence",
-    [
-        "whenever too_close the robot shall within 300 milliseconds satisfy speed = 0",
-        "whenever mode = dock the robot shall immediately satisfy absReal(speed) <= 0.3 m/s",
-        "upon button the robot shall for 200 milliseconds satisfy speed < 1 m/s & gap >= 0.2 m",
-    ],
+    some(
+        [
+            "upon button the robot shall for 200 milliseconds satisfy speed < 1 m/s & gap >= 0.2 m",
+            "whenever too_close the robot shall within 300 milliseconds satisfy speed = 0",
+            "whenever mode = dock the robot shall immediately satisfy absReal(speed) <= 0.3 m/s",
+        ],
+        2,
+    ),
 )
 @pytest.mark.slow
 def test_each_test_is_a_log_whose_audit_says_what_it_expects(sentence: str, tmp_path: Path) -> None:

@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from random import Random
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -18,7 +17,6 @@ from simulation.mission import possible
 from simulation.world.scenario import Expectations, Scenario, load
 
 
-@pytest.mark.slow
 @given(st.integers(0, 10**6))
 def test_a_variation_can_be_written_read_and_run(seed: int) -> None:
     chance = Random(seed)

@@ -11,11 +11,7 @@ from fretc.verification.compiled.text import UnexpectedLayoutError
 from fretc.verification.compiled.tools import ToolError, compiled
 from fretc.verification.compiled.verifying import verified
 from fretc.verification.engines.sandbox import Limits
-from tests.compiled_monitors import (
-    WITHIN,
-    edited,
-    given_c,
-)
+from tests.compiled_monitors import WITHIN, edited, given_c
 from tests.each import each
 from tests.monitoring import rule
 from tests.programs import needs

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -13,7 +12,7 @@ from fretc.verification.compiled.delays import FreeLetter, FreeWindow
 from fretc.verification.compiled.verifying import explored
 from monitors.kernel.stepping import Window
 from tests.compiled_monitors import TONGUES, Checker, Tongue
-from tests.effort import some
+from tests.effort import FULL, some
 from tests.monitoring import rule
 from tests.programs import installed
 
@@ -45,20 +44,23 @@ def test_so_is_one_without_a_guard(lo: int, more: int, drawn: list[bool]) -> Non
         assert free.step(True, witness) == window.step(True, witness)
 
 
-@pytest.fixture(params=["c", "rust"])
+@pytest.fixture(scope="module")
 def tongue(request: pytest.FixtureRequest) -> Tongue:
     found = TONGUES[request.param]
     installed(found.program)
     return found
 
 
-@pytest.fixture
-def checker(tongue: Tongue, tmp_path: Path) -> Checker:
-    return Checker(tongue.language, tmp_path)
+@pytest.fixture(scope="module")
+def checker(tongue: Tongue, tmp_path_factory: pytest.TempPathFactory) -> Checker:
+    return Checker(tongue.language, tmp_path_factory.mktemp(tongue.name))
+
+
+CASES = [*product(("c", "rust"), RINGED)] if FULL else [("c", RINGED[0]), ("rust", RINGED[2])]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sentence", some(RINGED, 2))
+@pytest.mark.parametrize(("tongue", "sentence"), CASES, indirect=["tongue"])
 def test_both_ways_prove_what_fretc_writes(tongue: Tongue, checker: Checker, sentence: str) -> None:
     one = rule(sentence, "R1")
     checked, executable = checker.prepared(tongue.given(one), one)
@@ -73,6 +75,7 @@ def test_both_ways_prove_what_fretc_writes(tongue: Tongue, checker: Checker, sen
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("tongue", some(["c", "rust"], 2), indirect=True)
 def test_a_line_of_another_kind_proves_nothing(tongue: Tongue, checker: Checker) -> None:
     """A library whose lines are no such lines is compared with all of their bits."""
     one = rule(RINGED[0], "R1")

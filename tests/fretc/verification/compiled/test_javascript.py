@@ -7,13 +7,8 @@ import pytest
 from compiler.logic.claims import Result
 from fretc.verification.compiled.verifying import explored
 from fretc.verification.javascript import language as javascript
-from tests.compiled_monitors import (
-    REFUTED,
-    WITHIN,
-    Checker,
-    edited,
-    given_javascript,
-)
+from tests.compiled_monitors import REFUTED, WITHIN, Checker, edited, given_javascript
+from tests.effort import FULL
 from tests.monitoring import rule
 from tests.node import needs_node
 
@@ -26,7 +21,7 @@ def test_a_counter_without_end_has_too_many_states(tmp_path: Path) -> None:
         given_javascript(one), "rail.oldest_1 < 3 ? rail.oldest_1 + 1 : 3;", "rail.oldest_1 + 1;"
     )
     checked, executable = Checker(javascript, tmp_path).prepared(endless, one)
-    outcome = explored(one, executable, checked.plan(one), 200)
+    outcome = explored(one, executable, checked.plan(one), 200 if FULL else 40)
     assert outcome.result is Result.NOT_CHECKED
 
 

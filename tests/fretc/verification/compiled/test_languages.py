@@ -61,9 +61,10 @@ def checker(tongue: Tongue, tmp_path: Path) -> Checker:
 
 @pytest.mark.slow
 def test_each_requirement_of_one_text_is_proved(tongue: Tongue, checker: Checker) -> None:
-    """Also those of drawn templates."""
-    drawn = random.Random(tongue.name).sample([*templates((0, 3))], 12 if FULL else 2)
-    sentences = (*SENTENCES, *(each.sentence for each in drawn))
+    """By default all of them in C; with the full profile also those of drawn templates."""
+    drawn = random.Random(tongue.name).sample([*templates((0, 3))], 12 if FULL else 0)
+    own = SENTENCES if tongue.name == "c" else some(SENTENCES, 3)
+    sentences = (*own, *(each.sentence for each in drawn))
     rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
     outcomes = checker.outcomes(tongue.given(*rules), rules)
     for one, outcome in zip(rules, outcomes, strict=True):
@@ -71,7 +72,7 @@ def test_each_requirement_of_one_text_is_proved(tongue: Tongue, checker: Checker
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("tongue", some(TONGUES, 2), indirect=True)
+@pytest.mark.parametrize("tongue", some(TONGUES, 3), indirect=True)
 def test_a_long_bound_is_proved_as_it_is(tongue: Tongue, checker: Checker) -> None:
     bound = 1000 if FULL else 300
     one = rule(f"whenever p the sw shall within {bound} ticks satisfy q")
@@ -106,6 +107,7 @@ def test_what_takes_too_long_is_not_proved(tongue: Tongue, monkeypatch: pytest.M
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("tongue", some(TONGUES, 3), indirect=True)
 def test_too_many_states_are_not_proved(tongue: Tongue, checker: Checker) -> None:
     one = rule("whenever p the sw shall within 100 ticks satisfy q")
     checked, executable = checker.prepared(tongue.given(one), one)
@@ -117,12 +119,17 @@ def test_too_many_states_are_not_proved(tongue: Tongue, checker: Checker) -> Non
 def test_comments_and_layout_are_free(tongue: Tongue, checker: Checker) -> None:
     one = rule(WITHIN)
     monitor = tongue.given(one)
-    loose = re.sub(*tongue.comments, monitor.text).replace("    ", "\t")
-    assert loose != monitor.text
-    assert checker.outcome(replace(monitor, text=loose), one).result is Result.PROVED
+    text = re.sub(*tongue.comments, monitor.text).replace("    ", "\t")
+    assert text != monitor.text
+    loose = replace(monitor, text=text)
+    if FULL or tongue.name != "rust":  # it takes longest to compile
+        assert checker.outcome(loose, one).result is Result.PROVED
+    else:
+        assert tongue.language.checked(loose, [one]).is_original
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("tongue", some(TONGUES, 3, 1), indirect=True)
 def test_what_is_made_of_a_text_is_the_same_each_time(tongue: Tongue, tmp_path: Path) -> None:
     one = rule(WITHIN)
     monitor, program = tongue.given(one), tongue.language.tool()
@@ -165,8 +172,8 @@ def edits(tongue: Tongue) -> Edits:
 def test_a_fault_comes_to_what_is_written_beside_it(
     tongue: Tongue, checker: Checker, edits: Edits
 ) -> None:
-    """By default all of those in C: what is made of the text is explored alike in each language."""
-    faults = edits.faults if tongue.name == "c" else some(edits.faults, 3)
+    """By default most in C: what is made of the text is explored alike in each language."""
+    faults = some(edits.faults, 2 if tongue.name == "c" else 4)
     for sentence, old, new, expected in faults:
         one = rule(sentence)
         assert checker.kind(edited(tongue.given(one), old, new), one) == expected, (old, new)

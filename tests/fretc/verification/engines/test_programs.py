@@ -41,6 +41,7 @@ def test_a_program_that_takes_too_much_memory_fails(tmp_path: Path) -> None:
     assert "MemoryError" in ran.text
 
 
+@pytest.mark.slow
 def test_endless_output_ends(tmp_path: Path) -> None:
     ran = run(["/bin/sh", "-c", "exec yes"], tmp_path, seconds=20, memory=MEMORY)
     assert ran.status not in (0, None)

@@ -8,10 +8,12 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from fretc.verification.engines.sandbox import DEFAULT, Limits, Session, Stopped, confined
+from tests.effort import full_only
 
 
 def twice(number: int) -> int:
@@ -47,39 +49,20 @@ def die() -> None:
 
 
 @pytest.mark.slow
-def test_the_result_comes_back() -> None:
-    assert confined(DEFAULT, twice, 21) == 42
-    assert multiprocessing.active_children() == []
-
-
-@pytest.mark.slow
-def test_what_the_function_raises_is_raised() -> None:
-    with pytest.raises(ValueError, match="no"):
-        confined(DEFAULT, fail)
-
-
-@pytest.mark.slow
-def test_an_error_that_cannot_be_sent_is_raised_in_words() -> None:
-    with pytest.raises(RuntimeError, match="LocalError: no"):
-        confined(DEFAULT, fail_with_what_cannot_be_sent)
-
-
-@pytest.mark.slow
 def test_time_on_the_wall_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Limits, "wall", 1.0)
-    assert confined(DEFAULT, sleep) == Stopped("out of time: no answer within 1 s")
+    monkeypatch.setattr(Limits, "wall", 0.7)
+    assert confined(DEFAULT, sleep) == Stopped("out of time: no answer within 0.7 s")
     assert multiprocessing.active_children() == []
 
 
-@pytest.mark.slow
-def test_memory_is_limited() -> None:
-    assert confined(Limits(memory=2**30), fill) == Stopped("out of memory: more than 1 GiB")
+def pretend(seconds: float) -> None:
+    """Have the process believe that it has taken so many seconds of a processor."""
+    resource.getrusage = lambda who: SimpleNamespace(ru_utime=seconds, ru_stime=0.0)  # type: ignore[assignment,return-value]
 
 
-@pytest.mark.slow
-def test_a_crash_is_told() -> None:
-    answer = confined(DEFAULT, die)
-    assert answer == Stopped("the process crashed (signal 11); it may have had too little memory")
+def limit() -> tuple[int, int]:
+    """The process, and after how many seconds of a processor it is stopped."""
+    return os.getpid(), resource.getrlimit(resource.RLIMIT_CPU)[0]
 
 
 def work(seconds: float) -> tuple[int, float]:
@@ -92,21 +75,38 @@ def work(seconds: float) -> tuple[int, float]:
 
 @pytest.mark.slow
 def test_calls_of_a_session_share_a_process_and_each_has_its_limits() -> None:
-    with Session(Limits(seconds=1)) as session:
+    with Session(Limits(seconds=1, memory=2**30)) as session:
+        session.call(pretend, 0.0)
         assert session.call(spin) == Stopped("out of time: more than 1 s of a processor")
         assert session.call(twice, 21) == 42
-        answers = [session.call(work, seconds) for seconds in (0, 1.2, 0)]
-        found = [each for each in answers if not isinstance(each, Stopped)]
-        assert len(found) == 3, answers
-        assert len({process for process, _ in found}) == 1
-        assert all(0.9 < left < 2.1 for _, left in found[::2]), "before the work, and after it"
-        assert isinstance(session.call(die), Stopped)
+        session.call(pretend, 41.5)
+        first, second = session.call(limit), session.call(limit)
+        assert first == second
+        assert not isinstance(first, Stopped)
+        assert first[1] == 43, "counted from what was taken before the call"
         with pytest.raises(ValueError, match="no"):
             session.call(fail)
+        with pytest.raises(RuntimeError, match="LocalError: no"):
+            session.call(fail_with_what_cannot_be_sent)
+        assert session.call(fill) == Stopped("out of memory: more than 1 GiB")
+        crashed = "the process crashed (signal 11); it may have had too little memory"
+        assert session.call(die) == Stopped(crashed)
         assert session.call(twice, 4) == 8
     assert multiprocessing.active_children() == []
 
 
+@full_only("seconds of a processor")
+def test_the_limit_is_counted_from_what_was_taken_before_the_call() -> None:
+    with Session(Limits(seconds=1)) as session:
+        assert session.call(spin) == Stopped("out of time: more than 1 s of a processor")
+        answers = [session.call(work, seconds) for seconds in (0, 1.2, 0)]
+    found = [each for each in answers if not isinstance(each, Stopped)]
+    assert len(found) == 3, answers
+    assert len({process for process, _ in found}) == 1
+    assert all(0.9 < left < 2.1 for _, left in found[::2]), "before the work, and after it"
+
+
+@pytest.mark.slow
 def test_the_program_itself_is_not_executed_once_more(tmp_path: Path) -> None:
     script = tmp_path / "program.py"
     script.write_text(
@@ -164,10 +164,7 @@ def test_an_interruption_ends_the_process(tmp_path: Path) -> None:
         "from waits import wait\n"
         f"confined(DEFAULT, wait, {str(tmp_path / 'pid')!r})\n"
     )
-    environment = {
-        **os.environ,
-        "PYTHONPATH": f"{Path(__file__).parents[4]}{os.pathsep}{tmp_path}",
-    }
+    environment = {**os.environ, "PYTHONPATH": f"{Path(__file__).parents[4]}{os.pathsep}{tmp_path}"}
     command = [sys.executable, str(script)]
     running = subprocess.Popen(command, env=environment, stderr=subprocess.PIPE)
     pid = tmp_path / "pid"

@@ -165,7 +165,7 @@ def _same(wheels: ActuationState, row: Row) -> bool:
 )
 def test_every_simulated_tick_is_a_step_of_the_model(settings: Options, channel: Channel) -> None:
     known = case(WITHIN.format(30), settings, channel)
-    for seed in range(6 if FULL else 2):
+    for seed in range(6) if FULL else (known.channel.cells % 2,):
         simulation = Simulation(known, seed)
         follows(known, [simulation.tick() for _ in range(60)])
 
@@ -188,12 +188,7 @@ def test_a_run_says_what_is_heard_in_its_order() -> None:
         for tick, after in loop.steps(loop.initial)
         if after.wheels.still < 0 and tick.letter == (False, True)
     )
-    assert loop.word(loop.initial, tick, after) == (
-        Event.RELEASE,
-        Event.MOVE,
-        Event.RING,
-        None,
-    )
+    assert loop.word(loop.initial, tick, after) == (Event.RELEASE, Event.MOVE, Event.RING, None)
 
 
 def test_an_environment_chooses_no_comparisons_that_contradict_each_other() -> None:

@@ -11,12 +11,7 @@ from compiler.formalization.letters import Valuation, meanings
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.logic.definition import holds
-from fretc.verification.monitor.equivalence import (
-    Difference,
-    Equivalence,
-    Judgement,
-    compare,
-)
+from fretc.verification.monitor.equivalence import Difference, Equivalence, Judgement, compare
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.diagnostics.source import Source
@@ -24,6 +19,7 @@ from fretish.parser import parse
 from tests.effort import FULL
 from tests.strategies import sentences
 
+LONG = 10_000 if FULL else 1000
 PENDING, VIOLATED = ("pending", True), ("violated", False)
 
 
@@ -88,8 +84,7 @@ def sentence_within(n: int) -> s.Sentence:
 # Proofs ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("n", [0, 1, 3, 10_000])
+@pytest.mark.parametrize("n", [0, 1, 3, LONG])
 def test_a_right_monitor_is_proved_at_its_own_bound(n: int) -> None:
     pairs = n + 2  # before tick 0; nothing waits; something has waited for 1..n ticks
     assert compare(within(n), sentence_within(n), n, ("p", "q")) == Equivalence(pairs, 4 * pairs)
@@ -164,8 +159,7 @@ def test_a_lost_cause_is_told_though_fret_would_still_accept_the_trace() -> None
 # Refutations ----------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("n", [1, 3, 10_000])
+@pytest.mark.parametrize("n", [1, 3, LONG])
 @pytest.mark.parametrize("slip", [-1, 1])
 def test_a_deadline_that_is_one_tick_off_is_found(n: int, slip: int) -> None:
     result = compare(within(n + slip), sentence_within(n), n, ("p", "q"))
@@ -182,7 +176,7 @@ def test_a_trigger_that_restarts_the_clock_is_found() -> None:
 @pytest.mark.slow
 def test_a_trigger_that_restarts_a_long_clock_is_found() -> None:
     """There are millions of pairs, but some thousand states decide."""
-    n, most = (10_000, 10**6) if FULL else (2000, 10**5)
+    n, most = (10_000, 10**6) if FULL else (500, 25_000)
     result = compare(within(n, restarts=True), sentence_within(n), n, ("p", "q"), most)
     assert isinstance(result, Difference)
     assert len(result.word) == n + 1

@@ -14,14 +14,9 @@ from compiler.logic.claims import Result
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor.verifying import verified
 from monitors.loading import load
-from tests.compiler.formalization.test_mutants import (
-    DIFFERS,
-    MARK,
-    REFUSED,
-    REFUTED,
-    SAME,
-    Judge,
-)
+from tests.compiler.formalization.test_mutants import DIFFERS, MARK, REFUSED, REFUTED, SAME, Judge
+from tests.each import each
+from tests.effort import some
 from tests.monitoring import rule, with_step, without_step
 
 WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
@@ -155,11 +150,10 @@ def judge(sentence: str) -> tuple[str, Judge]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("sentence", "old", "new", "expected"), FAULTS)
-def test_a_fault_comes_to_what_is_written_beside_it(
-    sentence: str, old: str, new: str, expected: str
-) -> None:
+@each("fault", some(FAULTS, 4))
+def test_a_fault_comes_to_what_is_written_beside_it(fault: tuple[str, str, str, str]) -> None:
     """What is proved tells the same as the right one on drawn traces: `TOLD` is never right."""
+    sentence, old, new, expected = fault
     text, examiner = judge(sentence)
     place = text.index(MARK)
     own = without_step(text)[place:]
@@ -187,10 +181,7 @@ def test_a_step_that_has_another_tick_in_it_than_its_rail_is_refused(old: str, n
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name",
-    "row tick doubt known must may rows refused Signals since other_name".split(),
-)
+@each("name", "row tick doubt known must may rows refused Signals since other_name".split())
 def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: str) -> None:
     """`row` hid unknown values: it is what a step calls the values of a tick."""
     formalized = rule("in m mode whenever longname the sw shall within 3 ticks satisfy q")
@@ -204,7 +195,7 @@ def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: s
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
+@each(
     "name",
     "known rows boolean tick doubt self advance signals marks CELLS p not_q r1_last __hidden".split(),
 )
@@ -213,5 +204,10 @@ def test_a_cell_has_no_name_that_something_else_has(name: str) -> None:
     text, examiner = judge(WITHIN)
     place = text.index(MARK)
     assert examiner.kind(text[:place] + re.sub(r"\boldest_1\b", name, text[place:])) == REFUSED
+
+
+def test_a_cell_may_have_a_name_of_its_own() -> None:
+    text, examiner = judge(WITHIN)
+    place = text.index(MARK)
     renamed = re.sub(r"\boldest_1\b", "count", text[place:])
     assert examiner.kind(text[:place] + renamed) == SAME

@@ -9,6 +9,8 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Outcome, Result
 from compiler.targets.python import monitor as target
 from fretc.verification.monitor.verifying import verified
+from tests.each import each
+from tests.effort import some
 from tests.monitoring import rule
 
 SENTENCE = "whenever battery < 20 & preReal(0, speed) < 2 the agv shall within 1 ticks satisfy docking | level = 3"
@@ -95,8 +97,9 @@ def test_what_fretc_writes_is_proved() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("old", "new", "expected"), FAULTS)
-def test_a_fault_comes_to_what_is_written_beside_it(old: str, new: str, expected: Result) -> None:
+@each("fault", some(FAULTS, 5, 4))
+def test_a_fault_comes_to_what_is_written_beside_it(fault: tuple[str, str, Result]) -> None:
+    old, new, expected = fault
     outcome = with_fault(old, new)
     assert outcome.result is expected, outcome
 
@@ -129,10 +132,10 @@ def test_each_requirement_of_a_file_is_compared_for_itself() -> None:
     rules = [rule(f"the agv shall always satisfy x < {n} & p", f"R{n}") for n in (2, 3)]
     text = target.text(*rules)
     wrong = text.replace('exact("3")', 'exact("4")')
-    for each, expected in zip(rules, (SAME, WRONG), strict=True):
-        others = [other for other in rules if other is not each]
-        assert verified(each, text, others=others).result is SAME
-        assert verified(each, wrong, others=others).result is expected
+    for one, expected in zip(rules, (SAME, WRONG), strict=True):
+        others = [other for other in rules if other is not one]
+        assert verified(one, text, others=others).result is SAME
+        assert verified(one, wrong, others=others).result is expected
 
 
 @pytest.mark.slow

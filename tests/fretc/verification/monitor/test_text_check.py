@@ -9,6 +9,7 @@ import pytest
 from fretc.verification.monitor.text_check import strange
 from fretish.reading.text_encoding import is_utf8
 from monitors.source_text import kernel
+from tests.each import each
 from tests.effort import FULL
 from tests.monitoring import emitted
 
@@ -59,7 +60,7 @@ def told_of(tree: ast.Module) -> str | None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(60 if FULL else 15))
+@each("seed", range(60 if FULL else 5))
 def test_whatever_is_left_out_of_a_text_or_swapped_it_is_told_in_words(seed: int) -> None:
     """Nothing, everything, the first or the last of any list; or one part for another."""
     choose = random.Random(seed)

@@ -19,10 +19,7 @@ from tests.fretc.watch.sent import Sent, Setting, plan_of
 from tests.programs import needs_package
 from tests.ros1 import until
 
-pytestmark = [
-    pytest.mark.slow,
-    needs_package("cyclonedds"),
-]
+pytestmark = [pytest.mark.slow, needs_package("cyclonedds")]
 
 
 class Listening:

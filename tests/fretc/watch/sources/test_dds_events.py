@@ -39,21 +39,21 @@ ROOT = Path(__file__).parents[4]
 BOOL = "std_msgs/msg/Bool"
 TRUE, FALSE = b"\0\1\0\0\1\0\0\0", b"\0\1\0\0\0\0\0\0"
 HASH, DEFINITION = [*definitions(BOOL).items()][-1]
-ROBOT = """
-import sys, time
+_WRITER = f"""
+import time
+from fretc.logs.messages.ros2_types import definitions
 from fretc.watch.sources.dds_domain import join
-from tests.fretc.watch.sources.test_dds_events import BOOL, DEFINITION, HASH, TRUE
 from fretc.watch.sources.dds_types import Offer
-writer = join().writer("/stop", Offer(BOOL, HASH, reliable=False), DEFINITION)
+digest, definition = [*definitions({BOOL!r}).items()][-1]
+writer = join().writer("/stop", Offer({BOOL!r}, digest, reliable=False), definition)
+"""
+ROBOT = f"""{_WRITER}
 while True:
-    writer.write(TRUE)
+    writer.write({TRUE!r})
     time.sleep(0.005)
 """
 
-pytestmark = [
-    pytest.mark.slow,
-    needs_package("cyclonedds"),
-]
+pytestmark = [pytest.mark.slow, needs_package("cyclonedds")]
 
 
 @pytest.fixture
@@ -286,13 +286,9 @@ def test_no_payload_takes_the_watch_down(robot: Domain, described: bool) -> None
     assert not listening.problems()
 
 
-BROKEN = """
-from fretc.watch.sources.dds_domain import join
-from fretc.watch.sources.dds_types import Offer
-from tests.fretc.watch.sources.test_dds_events import BOOL, DEFINITION, HASH
-writer = join().writer("/stop", Offer(BOOL, HASH), DEFINITION)
+BROKEN = f"""{_WRITER}
 while not writer.readers:
-    pass
+    time.sleep(0.005)
 for _ in range(20):
     writer.write(bytes.fromhex("80ff000000000000"))
 """

@@ -26,20 +26,14 @@ from fretc.watch.session import Session
 from fretc.watch.sources import foxglove
 from fretc.watch.sources.foxglove import Foxglove
 from fretc.watch.sources.foxglove_protocol import address
-from fretc.watch.sources.source import (
-    Arrival,
-    Channel,
-    Interrupted,
-    Opened,
-    Problem,
-    Reconnected,
-)
+from fretc.watch.sources.source import Arrival, Channel, Interrupted, Opened, Problem, Reconnected
 from fretc.watch.watch import Watch
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.command import Fretc
 from tests.each import each
 from tests.foxglove import GREETING, Listened, advertisement, channel, hostile, listened, server
 from tests.fretc.watch.sent import Setting, plan_of
-from tests.fretc.watch.watched import Watched, audited
+from tests.fretc.watch.watched import Watched
 from tests.ros1 import until
 
 ROOT = Path(__file__).parents[4]
@@ -84,7 +78,6 @@ CHANNELS = {
 }
 
 
-@pytest.mark.slow
 def test_channels_and_messages_are_those_that_were_sent() -> None:
     with server() as robot:
         for name, about in list(CHANNELS.items())[:3]:
@@ -155,7 +148,7 @@ def test_a_server_that_answers_no_more_is_gone() -> None:
 
 @pytest.mark.slow
 def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
-    tmp_path: Path,
+    fretc: Fretc, tmp_path: Path
 ) -> None:
     """A part of a mission, in real time: a stop, and the robot that stands."""
     requirements = ["--requirements", str(ROOT / "requirements/r1.fret")]
@@ -170,8 +163,8 @@ def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
             status = run.end()
         finally:
             run.close()
-    again = audited(tmp_path, "run.mcap", *requirements, "-o", "audit.json")
-    assert again.returncode == status, (again.stderr, run.lines)
+    again = fretc("audit", "run.mcap", *requirements, "-o", "audit.json")
+    assert again.status == status, (again.err, run.lines)
     assert (tmp_path / "audit.json").read_bytes() == (tmp_path / "live.json").read_bytes()
     (result,) = json.loads((tmp_path / "audit.json").read_text())["results"]
     assert run.verdicts() == {"R1": result["verdict"]}
@@ -414,17 +407,10 @@ def certificate(folder: Path) -> tuple[Path, Path]:
 @each(
     "url",
     [
-        "",
-        "robot:8765",
-        "http://robot",
-        "ws://",
-        "ws://r:x",
-        "ws://r:0",
-        "ws://r/\x1b",
-        "ws://[",
-        "ws://r/#a",
+        "", "robot:8765", "http://robot", "ws://", "ws://r:x", "ws://r:0", "ws://r/\x1b",
+        "ws://[", "ws://r/#a",
     ],
-)
+)  # fmt: skip
 def test_what_is_no_url_is_bad_usage(url: str) -> None:
     found = address(url)
     assert isinstance(found, Diagnostic)

@@ -18,6 +18,7 @@ from fretc.watch.sources.foxglove_protocol import (
 )
 from fretc.watch.sources.source import Channel
 from tests.each import each
+from tests.effort import examples
 from tests.foxglove import advertisement, channel
 
 values = st.recursive(
@@ -37,6 +38,7 @@ texts = st.text() | st.fixed_dictionaries(
 ).map(json.dumps)
 
 
+@examples(10)
 @given(texts | st.binary() | st.binary().map(lambda data: b"\x01" + data))
 def test_nothing_that_a_stranger_says_is_more_than_an_error(message: str | bytes) -> None:
     with suppress(SchemaError):

@@ -15,7 +15,9 @@ from fretc.watch.sources.ros1 import Ros1
 from fretc.watch.sources.source import Interrupted, Opened, Problem, Reconnected
 from fretish.diagnostics.diagnostic import Code
 from monitors.guard import ERROR, OK
-from tests.fretc.watch.watched import Watched, audited
+from tests.command import Fretc
+from tests.effort import full_only
+from tests.fretc.watch.watched import Watched
 from tests.programs import DEBIANS_PYTHON, debians_python
 from tests.ros1 import Ros, ros, ros1_or_skip, until
 
@@ -61,26 +63,36 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
-    here: Ros, folder: Path, tmp_path: Path
+    here: Ros, folder: Path, fretc: Fretc, tmp_path: Path
 ) -> None:
+    """And other nodes read them as diagnostics; the levels are those of `monitors/guard.py`."""
+    debians_python("diagnostic_msgs.msg")
     here.master()
     robot = here.world("robot")
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    reader = here.start(DEBIANS_PYTHON, "-c", _READER, **pipes)
+    assert reader.stdout is not None
     run = Watched(
         here.environment, tmp_path, "ros1", "--requirements", "requirements",
-        "--record", "run.mcap", "--evidence", "live.json",
+        "--record", "run.mcap", "--evidence", "live.json", "--publish", "diagnostics",
     )  # fmt: skip
     try:
         until("it moves", lambda: run.verdict("GO") == "satisfied", 30)
         assert run.verdict("HALT") != "violated"
+        _until_level(reader.stdout, "GO", OK)
         robot.ask(True)
         until("it goes on in spite of a stop", lambda: run.verdict("HALT") == "violated", 30)
+        stamp, found = _until_level(reader.stdout, "HALT", ERROR)
+        assert stamp > 0
+        assert found["HALT"][1]["verdict"] == "violated"
+        assert int(found["sources"][1]["messages of /stop"]) > 0
         here.world("second", drives=True, stop=None)
         until("two publishers are told of", lambda: Code.SEVERAL_PUBLISHERS.number in run.codes())
         assert run.end() == 1
     finally:
         run.close()
-    again = audited(tmp_path, "run.mcap", "--requirements", "requirements", "-o", "audit.json")
-    assert again.returncode == 1, again.stderr
+    again = fretc("audit", "run.mcap", "--requirements", "requirements", "-o", "audit.json")
+    assert again.status == 1, again.err
     assert (tmp_path / "audit.json").read_bytes() == (tmp_path / "live.json").read_bytes()
     assert run.verdicts() == {"GO": "satisfied", "HALT": "violated"}
 
@@ -100,28 +112,6 @@ sys.stdin.read()
 """
 
 
-def test_diagnostics_are_read_back_on_the_robot(here: Ros, folder: Path, tmp_path: Path) -> None:
-    """As any node reads them; the levels are those of `monitors/guard.py`."""
-    debians_python("diagnostic_msgs.msg")
-    here.master()
-    robot = here.world("robot")
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
-    reader = here.start(DEBIANS_PYTHON, "-c", _READER, **pipes)
-    words = ("ros1", "--requirements", "requirements", "--publish", "diagnostics")
-    run = Watched(here.environment, tmp_path, *words)
-    assert reader.stdout is not None
-    try:
-        _until_level(reader.stdout, "GO", OK)
-        robot.ask(True)
-        stamp, found = _until_level(reader.stdout, "HALT", ERROR)
-        assert stamp > 0
-        assert found["HALT"][1]["verdict"] == "violated"
-        assert int(found["sources"][1]["messages of /stop"]) > 0
-        assert run.end() == 1
-    finally:
-        run.close()
-
-
 def _until_level(stream: IO[str], name: str, level: int) -> tuple[int, dict[str, Any]]:
     """The first message in which a status has this level."""
     for line in stream:
@@ -134,39 +124,45 @@ def _until_level(stream: IO[str], name: str, level: int) -> tuple[int, dict[str,
     raise AssertionError("the reader has ended")
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGSTOP])
-def test_a_master_that_is_gone_or_silent_is_sought_again(
-    here: Ros, monkeypatch: pytest.MonkeyPatch, number: int
+def test_a_master_that_is_silent_or_gone_is_sought_again(
+    here: Ros, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """It says besides that the clock is a simulated one."""
     for name, value in here.environment.items():
         monkeypatch.setenv(name, value)
     master = here.master()
+    with ServerProxy(here.uri) as known:
+        known.setParam("/test", "/use_sim_time", True)
     source = Ros1()
     found: list[object] = []
     thread = Thread(target=lambda: found.extend(source.arrivals(["/stop"])), daemon=True)
     thread.start()
 
-    def has(kind: type) -> bool:
-        return any(isinstance(item, kind) for item in tuple(found))
+    def has(kind: type, count: int = 1) -> bool:
+        return sum(isinstance(item, kind) for item in tuple(found)) == count
 
     try:
         until("it is opened", lambda: has(Opened))
-        master.send_signal(number)
+        master.send_signal(signal.SIGSTOP)
         until("it is interrupted", lambda: has(Interrupted), 30)
-        if number == signal.SIGSTOP:
-            master.send_signal(signal.SIGCONT)
-        else:
-            master.wait(10)
-            here.master()
+        master.send_signal(signal.SIGCONT)
         until("it is connected again", lambda: has(Reconnected), 30)
+        master.terminate()
+        until("it is interrupted again", lambda: has(Interrupted, 2), 30)
+        master.wait(10)
+        here.master()
+        until("it is connected once more", lambda: has(Reconnected, 2), 30)
     finally:
         source.close()
         thread.join(10)
     assert not thread.is_alive()
-    (gap,) = [item for item in found if isinstance(item, Reconnected)]
-    (before,) = [item for item in found if isinstance(item, Interrupted)]
-    assert before.since == gap.since < gap.until
-    assert before.problem.code == Code.ROBOT_NOT_REACHED
+    gaps = [item for item in found if isinstance(item, Reconnected)]
+    losses = [item for item in found if isinstance(item, Interrupted)]
+    for before, gap in zip(losses, gaps, strict=True):
+        assert before.since == gap.since < gap.until
+        assert before.problem.code == Code.ROBOT_NOT_REACHED
+    problems = [item.diagnostic.code for item in found if isinstance(item, Problem)]
+    assert Code.SIMULATED_TIME in problems
 
 
 def test_without_a_master_there_is_one_error(here: Ros, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -185,6 +181,7 @@ def test_without_rospy_the_package_is_named(tmp_path: Path) -> None:
     assert str(tmp_path / "python") in absent.diagnostic.message
 
 
+@full_only("each by itself is told of by default")
 def test_another_type_than_bound_and_a_simulated_clock_are_told_of(
     here: Ros, folder: Path, tmp_path: Path
 ) -> None:
