@@ -69,18 +69,22 @@ PROJECTS: dict[str, Callable[[Fretc], None]] = {
     **{f"drawn {seed}": at_random(seed) for seed in range(200 if FULL else 8)},
 }
 LINES = command_lines()
-SMALL = [place for place, name in enumerate(PROJECTS) if name not in ("agv", "mission", "FRET")]
-COSTLY = ("analyze", "test", "verify", "verify-evidence", "mutate", "check")
-"""Searches and proofs: without the full profile they are asked of small projects alone."""
+LARGE = ("shipped", "agv", "mission", "FRET")
+SMALL = [place for place, name in enumerate(PROJECTS) if name not in LARGE]
+COSTLY = {"analyze": 3, "test": 5, "verify": 5, "verify-evidence": 3, "mutate": 3, "check": 3,
+          "audit": 1, "watch": 1, "sbom": 2}  # fmt: skip
+"""Searches, proofs, and what reads the whole log: without the full profile one in so many of these
+lines is tried, and with small projects alone."""
 
 
 def places(number: int, line: tuple[str, ...]) -> list[int]:
     """The projects that a line is tried with: all with the full profile, else one at most."""
     if FULL:
         return [*range(len(PROJECTS))]
-    if line[0] in COSTLY:
-        return [SMALL[number // 3 % len(SMALL)]] if number % 3 == 0 else []
-    return [number % len(PROJECTS)]
+    step = COSTLY.get(line[0])
+    if step is None:
+        return [number % len(PROJECTS)]
+    return [SMALL[number // step % len(SMALL)]] if number % step == 0 else []
 
 
 def prepared(fretc: Fretc, write: Callable[[Fretc], None]) -> dict[str, str]:
