@@ -83,6 +83,7 @@ def test_the_evidence_is_that_of_an_audit_of_the_recording(fretc: Fretc) -> None
     assert "F432" in fretc("audit", "seen.mcap", "-o", "later.json").err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stops", [True, False])
 def test_each_line_for_a_program_fits_the_schema(fretc: Fretc, *, stops: bool) -> None:
     run = fretc("watch", recorded("run.mcap", stops=stops), "--format", "jsonl")
