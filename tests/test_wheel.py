@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.command import PROCESS
+
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parent.parent
@@ -60,7 +62,7 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def ran(installed: Path, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """Run the installed command in a folder."""
     return subprocess.run(
-        [sys.executable, "-c", "from fretc.cli import main; main()", *words],
+        [*PROCESS, *words],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(installed)},
         capture_output=True,

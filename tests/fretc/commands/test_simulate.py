@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from tests.command import Fretc, write
+from tests.command import PROCESS, Fretc, write
 from tests.effort import some
 
 ROOT = Path(__file__).parents[3]
@@ -131,7 +131,7 @@ def test_a_campaign_that_is_stopped_leaves_nothing_half_written(tmp_path: Path) 
     for where in some((["--out", "logs"], []), 2):
         words = ["simulate", "nominal", "walker", "--campaign", "4", "--jobs", "2", *where]
         process = subprocess.Popen(
-            [sys.executable, "-c", "from fretc.cli import main; main()", *words],
+            [*PROCESS, *words],
             cwd=tmp_path,
             env={"PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path / "temporary")},
             stderr=subprocess.PIPE,

@@ -3,6 +3,7 @@
 import io
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -17,11 +18,10 @@ from fretc.terminal.output import say
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from tests.command import Fretc
+from tests.command import PROCESS, Fretc
 from tests.effort import some
 
 ROOT = Path(__file__).parents[3]
-FRETC = [sys.executable, "-c", "from fretc.cli import main; main()"]
 LOG = str(ROOT / "traces/mission-seed15.mcap")
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped\n"
 
@@ -37,7 +37,7 @@ def in_shell(
     folder: Path, arguments: str, shell: str, encoding: str = "utf-8"
 ) -> subprocess.CompletedProcess[str]:
     """Run a line in a shell; `{}` in `shell` stands for the command."""
-    command = f"'{sys.executable}' -c 'from fretc.cli import main; main()' {arguments}"
+    command = f"{shlex.join(PROCESS)} {arguments}"
     done = subprocess.run(
         ["bash", "-c", shell.format(command)],
         cwd=folder,
@@ -178,7 +178,7 @@ def test_a_termination_leaves_no_temporary_file(folder: Path) -> None:
     ids = "".join(f'+++\nid = "R{i}"\n+++\n{R1}' for i in range(300))
     (folder / "many.fret").write_text(ids, "utf-8")
     run = subprocess.Popen(
-        [*FRETC, "many.fret", "--emit", "monitor"],
+        [*PROCESS, "many.fret", "--emit", "monitor"],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stderr=subprocess.DEVNULL,

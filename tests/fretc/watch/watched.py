@@ -6,14 +6,14 @@ import json
 import os
 import signal
 import subprocess
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from threading import Thread
 from typing import Any
 
+from tests.command import PROCESS
+
 ROOT = Path(__file__).parents[3]
-FRETC = [sys.executable, "-c", "from fretc.cli import main; main()"]
 
 
 class Watched:
@@ -21,7 +21,7 @@ class Watched:
 
     def __init__(self, environment: Mapping[str, str], folder: Path, *words: str) -> None:
         self.process: subprocess.Popen[str] = subprocess.Popen(
-            [*FRETC, "watch", *words, "--format", "jsonl"],
+            [*PROCESS, "watch", *words, "--format", "jsonl"],
             cwd=folder,
             env={**environment, "PYTHONPATH": str(ROOT)},
             stdout=subprocess.PIPE,
@@ -73,7 +73,7 @@ class Watched:
 def audited(folder: Path, *words: str) -> subprocess.CompletedProcess[bytes]:
     """`fretc audit` in the folder."""
     return subprocess.run(
-        [*FRETC, "audit", *words],
+        [*PROCESS, "audit", *words],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         check=False,
