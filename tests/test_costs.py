@@ -20,6 +20,7 @@ from tests.fretc.logs.logs import S
 pytestmark = pytest.mark.slow
 
 N = 90_000
+LEVELS = N // 2 if FULL else N // 8
 FRET = "the sw shall always satisfy q\n"
 BINDINGS = """[clock]
 time = "log_time"
@@ -52,7 +53,7 @@ TEXTS: dict[str, Mapping[str, str]] = {
     "spaces in a list of several lines": header("zz = [1" + " " * N + "2,\n]"),
     "tables within each other": header("id = " + "{a=" * (N // 3)),
     "a number of many digits": header("id = " + "9" * N),
-    "parentheses": {"r.fret": FRET.replace("q", "(" * (N // 2) + "q" + ")" * (N // 2))},
+    "parentheses": {"r.fret": FRET.replace("q", "(" * LEVELS + "q" + ")" * LEVELS)},
     "a probability of a huge exponent": {
         "r.fret": "the s shall with probability > 1e-999999999 satisfy x"
     },
