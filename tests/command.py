@@ -13,6 +13,9 @@ from fretc import cli
 from fretc.audit import pool
 from fretc.verification.engines import sandbox
 
+PROCESS = (sys.executable, "-c", "from fretc.cli import main; main()")
+"""The command in a process of its own, where that is what is tested."""
+
 
 @dataclass(frozen=True)
 class Run:

@@ -64,10 +64,33 @@ def pytest_xdist_auto_num_workers() -> int:
     return (os.cpu_count() or 1) + 1
 
 
+def pytest_collectstart() -> None:
+    """Let the collector of garbage rest: what is loaded and collected stays to the end."""
+    gc.disable()
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let each worker begin with files that have slow tests, and end with quick ones.
+
+    A worker has the next so many items, and takes some of the last ones of another when it has no
+    more: where those are quick, none waits for another's last test.
+    """
+    workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    kinds = [[item for item in items if (item.path in slow) is first] for first in (True, False)]
+    items[:] = [
+        item
+        for worker in range(workers)
+        for kind in kinds
+        for item in kind[len(kind) * worker // workers : len(kind) * (worker + 1) // workers]
+    ]
+
+
 def pytest_collection_finish() -> None:
-    """Keep the collector of garbage from what is loaded by now: it stays, and it is large."""
-    gc.collect()
+    """Keep the collector of garbage from what is loaded by now: it is large."""
     gc.freeze()
+    gc.enable()
     gc.set_threshold(20_000, 20, 20)
 
 

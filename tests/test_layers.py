@@ -5,6 +5,7 @@ The order below is the architecture: a package imports only what stands above it
 
 import ast
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -152,35 +153,36 @@ def within(package: str, room: str) -> bool:
     return package == room or package.startswith(room + ".")
 
 
-def imported(module: Path) -> set[str]:
-    """The packages of ours that it imports from, wherever in it."""
-    found = set()
+@cache
+def names(module: Path) -> frozenset[str]:
+    """Everything that it imports, wherever in it."""
+    found = set[str]()
     for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            names = [alias.name for alias in node.names]
+            found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{module}: imports are absolute"
-            names = [f"{node.module}.{alias.name}" for alias in node.names]
-        else:
-            continue
-        for name in names:
-            if name.partition(".")[0] in ROOMS:
-                parts = name.split(".")
-                while not (ROOT.joinpath(*parts).is_dir() and ".".join(parts) in ORDER):
-                    parts.pop()
-                found.add(".".join(parts))
-    return found
+            found |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return frozenset(found)
+
+
+def imported(module: Path) -> set[str]:
+    """The packages of ours that it imports from."""
+    return {package(name) for name in names(module) if name.partition(".")[0] in ROOMS}
+
+
+@cache
+def package(name: str) -> str:
+    """The innermost one that the name is in."""
+    parts = name.split(".")
+    while not (ROOT.joinpath(*parts).is_dir() and ".".join(parts) in ORDER):
+        parts.pop()
+    return ".".join(parts)
 
 
 def libraries(module: Path) -> set[str]:
-    """The top-level names of everything that it imports, wherever in it."""
-    names: set[str] = set()
-    for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            names |= {alias.name.partition(".")[0] for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            names.add((node.module or "").partition(".")[0])
-    return names
+    """The top-level names of everything that it imports."""
+    return {name.partition(".")[0] for name in names(module)}
 
 
 @pytest.mark.slow
@@ -188,9 +190,9 @@ def libraries(module: Path) -> set[str]:
 def test_a_module_imports_only_from_packages_before_its_own(module: Path) -> None:
     here = package_of(module)
     forbidden = {one for room, others in NOT.items() if within(here, room) for one in others}
-    for package in imported(module):
-        assert ORDER.index(package) <= ORDER.index(here), f"{here} -> {package}"
-        assert not any(within(package, one) for one in forbidden), f"{here} -> {package}"
+    for there in imported(module):
+        assert ORDER.index(there) <= ORDER.index(here), f"{here} -> {there}"
+        assert not any(within(there, one) for one in forbidden), f"{here} -> {there}"
 
 
 @pytest.mark.slow

@@ -9,8 +9,19 @@ from pathlib import Path
 
 import pytest
 
+from tests.each import each
 from tests.effort import FULL
-from tests.readers import Reader, command, fuzzed, put, readers
+from tests.readers import (
+    AJPF,
+    EXPORT,
+    NEEDS,
+    STRICTDOC,
+    Reader,
+    command,
+    fuzzed,
+    put,
+    readers,
+)
 
 _SLOW = {"monitor", "interceptor", "psl", "Gwendolen"}
 """Their proofs run in processes of their own."""
@@ -35,5 +46,31 @@ def test_mutations_get_an_answer_from_every_reader(
     known: Mapping[str, Reader], tmp_path: Path
 ) -> None:
     for number, (name, reader) in enumerate(known.items()):
-        count = (3 if name in _SLOW else 30) if FULL else (1 if name in _SLOW else 8)
+        count = (3 if name in _SLOW else 30) if FULL else (1 if name in _SLOW else 4)
         fuzzed(name, reader, tmp_path / str(number), count, seed=16)
+
+
+TWICE = {
+    "FRET's JSON": EXPORT.replace(
+        '"fulltext":', '"fulltext": "the sw shall satisfy q", "fulltext":'
+    ),
+    "needs.json": NEEDS.replace('"title":', '"title": "u", "title":'),
+    "StrictDoc": STRICTDOC.replace('"STATEMENT":', '"STATEMENT": "u", "STATEMENT":'),
+    "Doorstop": "HAZ-1: {active: true, level: 1.0, text: a}\n" * 2,
+    "AJPF's result": AJPF.replace('"told": "HOLDS"', '"told": "VIOLATED", "told": "HOLDS"'),
+}
+
+
+@pytest.mark.slow
+@each("kind", TWICE)
+def test_a_key_that_comes_twice_is_refused(
+    known: Mapping[str, Reader], tmp_path: Path, kind: str
+) -> None:
+    """Of two values by one key no reader takes one: another reader would take the other."""
+    reader, folder = known[kind], tmp_path / kind
+    put(folder, reader.beside)
+    for text, refused in ((reader.sound.decode(), False), (TWICE[kind], True)):
+        put(folder, {reader.file: text})
+        status, said, _ = command(folder, *reader.args)
+        assert ("twice" in said) is refused, said
+        assert status == 2 or not refused

@@ -8,6 +8,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.command import PROCESS
+
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parent.parent
 
 
@@ -24,7 +28,6 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return built
 
 
-@pytest.mark.slow
 def test_the_top_level_is_exactly_our_packages(wheel: Path) -> None:
     names = {name.partition("/")[0] for name in zipfile.ZipFile(wheel).namelist()}
     assert {name for name in names if not name.endswith(".dist-info")} == {
@@ -49,36 +52,33 @@ def test_every_module_grammar_and_template_is_inside(wheel: Path) -> None:
     assert sentence == (ROOT / "requirements/r1.fret").read_bytes()
 
 
-@pytest.mark.slow
-def test_it_makes_a_monitor_far_from_the_checkout(wheel: Path, tmp_path: Path) -> None:
-    installed = tmp_path / "installed"
-    zipfile.ZipFile(wheel).extractall(installed)
-    sentence = tmp_path / "r.fret"
-    sentence.write_text("whenever p the rover shall eventually satisfy q", encoding="utf-8")
-    run = subprocess.run(
-        [sys.executable, "-c", "from fretc.cli import main; main()", str(sentence)]
-        + ["--emit", "monitor", "-o", str(tmp_path / "out")],
-        cwd=tmp_path,
+@pytest.fixture(scope="module")
+def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("installed")
+    zipfile.ZipFile(wheel).extractall(folder)
+    return folder
+
+
+def ran(installed: Path, folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run the installed command in a folder."""
+    return subprocess.run(
+        [*PROCESS, *words],
+        cwd=folder,
         env={**os.environ, "PYTHONPATH": str(installed)},
         capture_output=True,
         text=True,
         check=False,
     )
+
+
+def test_it_makes_a_monitor_far_from_the_checkout(installed: Path, tmp_path: Path) -> None:
+    sentence = tmp_path / "r.fret"
+    sentence.write_text("whenever p the rover shall eventually satisfy q", encoding="utf-8")
+    run = ran(installed, tmp_path, "r.fret", "--emit", "monitor", "-o", "out")
     assert (run.returncode, run.stdout) == (0, "")
     assert (tmp_path / "out" / "r_monitor.py").is_file()
 
 
-@pytest.mark.slow
-def test_it_simulates_far_from_the_checkout(wheel: Path, tmp_path: Path) -> None:
-    installed = tmp_path / "installed"
-    zipfile.ZipFile(wheel).extractall(installed)
-    run = subprocess.run(
-        [sys.executable, "-c", "from fretc.cli import main; main()", "simulate", "walker"]
-        + ["--duration", "1", "--out", "run.mcap"],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(installed)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+def test_it_simulates_far_from_the_checkout(installed: Path, tmp_path: Path) -> None:
+    run = ran(installed, tmp_path, "simulate", "walker", "--duration", "0.1", "--out", "run.mcap")
     assert (run.returncode, run.stderr) == (0, "wrote run.mcap\n")

@@ -4,7 +4,6 @@ import json
 import os
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -12,7 +11,7 @@ import pytest
 from fretc.cli import cli
 from fretc.terminal.group import DEFAULT
 from monitors.loading import load
-from tests.command import Fretc, Run, runner, write
+from tests.command import PROCESS, Fretc, Run, runner, write
 
 ROOT = Path(__file__).parents[2]
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
@@ -229,8 +228,7 @@ def test_an_output_that_cannot_be_written_leaves_nothing_behind(fretc: Fretc) ->
 @pytest.mark.slow
 def test_requirements_are_read_from_standard_input() -> None:
     run = subprocess.run(
-        [sys.executable, "-c", "from fretc.cli import main; main()", "-", "--emit", "ajpf"]
-        + ["-o", "-"],
+        [*PROCESS, "-", "--emit", "ajpf", "-o", "-"],
         cwd=ROOT,
         input=R1,
         capture_output=True,

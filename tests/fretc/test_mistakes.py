@@ -408,10 +408,11 @@ def _is_read(mistake: Mistake, command: Command) -> bool:
 def test_a_mistake_refuses_what_reads_it_and_nothing_else(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:
-    """Each target with a kind of mistakes, the rest with two; with all with the full profile."""
+    """Each target, and what draws tests, with one mistake; the rest with one of a requirement and
+    with one of the other files; with all with the full profile."""
     if not FULL:
         without_processes(monkeypatch)
-    step = 15 if command.startswith("--emit") else 8
+    step = len(MISTAKES) if command.startswith(("--emit", "test")) else 10
     for kind in some(MISTAKES, step, [*COMMANDS].index(command) % step):
         for folder in ("now", "then"):
             shutil.rmtree(folder, ignore_errors=True)

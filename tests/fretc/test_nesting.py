@@ -1,14 +1,14 @@
 """What a command costs grows with an expression, not with the square of its depth or width."""
 
 from collections.abc import Callable
-from itertools import product
+from itertools import cycle, product
 from pathlib import Path
 
 import pytest
 
 from tests.calls import calls
 from tests.command import Fretc, runner, write
-from tests.effort import some
+from tests.effort import FULL, some
 
 BINDINGS = """[clock]
 tick = "100 ms"
@@ -52,9 +52,13 @@ def fretc(
     return runner(monkeypatch, capsys)
 
 
+COMMANDS = ("check", "explain", "json")
+EACH_SHAPE_ONCE = [*zip(SHAPES, cycle(COMMANDS))]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("shape", "command"), some(product(SHAPES, ["check", "explain", "json"]), 2)
+    ("shape", "command"), [*product(SHAPES, COMMANDS)] if FULL else EACH_SHAPE_ONCE
 )
 def test_twice_the_size_costs_twice_as_much(fretc: Fretc, shape: str, command: str) -> None:
     options = [command] if command != "json" else ["--emit", "json"]
@@ -70,7 +74,7 @@ def test_twice_the_size_costs_twice_as_much(fretc: Fretc, shape: str, command: s
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("command", "shape"), some(product(["check", "explain"], ["and, or", "xor", "arithmetic"]), 2)
+    ("command", "shape"), some(product(["check", "explain"], ["and, or", "xor", "arithmetic"]), 4)
 )
 def test_a_deep_sentence_needs_no_more_room_than_there_is(
     fretc: Fretc, command: str, shape: str

@@ -10,8 +10,6 @@ from cryptography.hazmat.primitives.asymmetric import dsa
 from cryptography.hazmat.primitives.serialization import Encoding, PrivateFormat, PublicFormat
 from hypothesis import given
 from hypothesis import strategies as st
-from securesystemslib.dsse import Envelope
-from securesystemslib.signer import SSlibKey
 
 from compiler.files.checked_json import SchemaError
 from fretc.attestation.keys import (
@@ -134,7 +132,11 @@ def test_the_name_of_a_key_makes_no_signature_of_it() -> None:
     assert not verifies(json.dumps(content))
 
 
+@pytest.mark.slow
 def test_the_library_itself_reads_and_verifies_the_envelope() -> None:
+    from securesystemslib.dsse import Envelope  # which imports botocore
+    from securesystemslib.signer import SSlibKey
+
     envelope = Envelope.from_dict(json.loads(ENVELOPE))
     mine = public_key(keys.public(MINE))
     key = SSlibKey.from_crypto(MINE.public_key(), mine.fingerprint)

@@ -275,7 +275,6 @@ def test_other_commands_count_what_is_accepted(fretc: Fretc) -> None:
     assert (run.status, run.err) == (0, "1 warning is accepted: `fretc check` lists the reasons\n")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("emit", [(), ("--emit", "monitor"), ("--emit", "json")])
 def test_a_file_whose_header_accepts_its_warning_is_shown_without_it(
     fretc: Fretc, emit: tuple[str, ...]

@@ -271,7 +271,6 @@ def test_an_export_of_fret_is_analyzed_straight(fretc: Fretc, tmp_path: Path) ->
     assert [each["requirements"] for each in found["conflicts"]] == [["R1", "R2"]]
 
 
-@pytest.mark.slow
 def test_components_of_an_export_are_told_apart(fretc: Fretc, tmp_path: Path) -> None:
     """What is an output of one component is an input of the other one, which has to bear it."""
     sentences = {
@@ -346,7 +345,6 @@ def test_the_mission_cannot_be_kept_without_scans(fretc: Fretc, tmp_path: Path) 
     assert [n for n, tick in enumerate(play) if tick["moving"]] in ([], [len(play) - 1])
 
 
-@pytest.mark.slow
 def test_an_answer_says_without_which_requirements_it_is(fretc: Fretc) -> None:
     """That others can be kept is no claim about all; a component is named in the other's file."""
     write("requirements/bindings.toml", '[variable.p]\nrole = "output"\n')

@@ -16,6 +16,7 @@ from fretc.audit.outputs.totals import severity, sign_of, word_of
 from fretc.commands.audit_table import MOST_NAMES, MOST_REQUIREMENTS, MOST_RUNS, table
 from fretc.terminal.screen import Screen, width
 from tests.command import Fretc, untimed, write
+from tests.effort import examples
 from tests.fretc.audit.outputs.test_totals import audits
 from tests.fretc.audit.outputs.test_totals import marks as marks_of
 from tests.fretc.audit.results import result
@@ -44,6 +45,7 @@ def left_out(lines: list[str]) -> Counter[str]:
     return words
 
 
+@examples(10)
 @given(audits(), st.integers(40, 120))
 def test_each_result_has_its_mark(results: list[Result], columns: int) -> None:
     expected = Counter(sign_of(word_of(each)).glyph for each in results)
@@ -51,6 +53,7 @@ def test_each_result_has_its_mark(results: list[Result], columns: int) -> None:
 
 
 @pytest.mark.slow
+@examples(10)
 @given(
     st.lists(st.text(max_size=60), min_size=2, max_size=30, unique=True),
     st.lists(st.text(min_size=1, max_size=60), min_size=1, max_size=3, unique=True),

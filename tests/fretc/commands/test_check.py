@@ -7,6 +7,7 @@ import pytest
 
 from fretish.reading.natural_order import natural
 from tests.command import Fretc, write
+from tests.each import each
 from tests.fretc.report import cases
 
 GOOD = cases.R1.replace("shall eventually", "shall within 300 milliseconds")
@@ -82,43 +83,49 @@ def test_a_trigger_that_the_component_itself_commands_is_told(good: Fretc) -> No
     )
 
 
-def test_comparisons_that_contradict_each_other_are_told(good: Fretc) -> None:
-    edited("r1.fret", "whenever near", "whenever near & vx < 1 & vx > 2")
+TOLD: dict[str, tuple[dict[str, str], list[str], list[str]]] = {
+    "comparisons that contradict each other": (
+        {"whenever near": "whenever near & vx < 1 & vx > 2"},
+        ["F210 warning: `near & vx < 1 & vx > 2` of R1 is never true, whatever is measu"],
+        [],
+    ),
+    "a plan that can give no result": (
+        {'["audit"]': '["audit", "ajpf"]'},
+        ["F525 warning: R1 plans `ajpf`, and there can be no result: AJPF cannot"],
+        [],
+    ),
+    "a remark of a planned method": (
+        {"within 300 milliseconds": "eventually"},
+        ["F203 warning"],
+        [],
+    ),
+    "missing links, in both directions": (
+        {'parents = ["HAZ-1"]\n': ""},
+        [
+            "F522 warning: no requirement in force names HAZ-1 (The robot hits something)",
+            "F523 warning: R1 names no parent",
+        ],
+        [],
+    ),
+    "a retired requirement, which covers no hazard and is not looked at": (
+        {'"approved"': '"retired"', '["audit"]': '["ajpf"]'},
+        ["F522"],
+        ["F525"],
+    ),
+}
+"""Edits of the requirement, what is told then, and what is not."""
+
+
+@each("kind", TOLD)
+def test_what_is_wrong_with_a_requirement_is_told(good: Fretc, kind: str) -> None:
+    edits, told, untold = TOLD[kind]
+    write("requirements/r1.fret", GOOD)
+    for old, new in edits.items():
+        edited("r1.fret", old, new)
     run = good("check")
     assert run.status == 3
-    assert (
-        "F210 warning: `near & vx < 1 & vx > 2` of R1 is never true, whatever is measu" in run.err
-    )
-
-
-def test_a_plan_that_can_give_no_result_is_told(good: Fretc) -> None:
-    edited("r1.fret", '["audit"]', '["audit", "ajpf"]')
-    run = good("check")
-    assert run.status == 3
-    assert "F525 warning: R1 plans `ajpf`, and there can be no result: AJPF cannot" in run.err
-
-
-def test_a_remark_of_a_planned_method_is_told(good: Fretc) -> None:
-    edited("r1.fret", "within 300 milliseconds", "eventually")
-    run = good("check")
-    assert (run.status, "F203 warning" in run.err) == (3, True)
-
-
-def test_missing_links_are_told_in_both_directions(good: Fretc) -> None:
-    edited("r1.fret", 'parents = ["HAZ-1"]\n', "")
-    run = good("check")
-    assert run.status == 3
-    assert "F522 warning: no requirement in force names HAZ-1 (The robot hits something)" in run.err
-    assert "F523 warning: R1 names no parent" in run.err
-
-
-def test_a_retired_requirement_covers_no_hazard_and_is_not_looked_at(good: Fretc) -> None:
-    edited("r1.fret", '"approved"', '"retired"')
-    edited("r1.fret", '["audit"]', '["ajpf"]')
-    run = good("check")
-    assert run.status == 3
-    assert "F522" in run.err
-    assert "F525" not in run.err
+    assert all(text in run.err for text in told)
+    assert not any(text in run.err for text in untold)
 
 
 def test_what_changed_since_its_review_is_told(good: Fretc) -> None:
@@ -213,30 +220,28 @@ def test_hazards_that_are_nowhere_are_one_message(good: Fretc) -> None:
     assert "the parent `HAZ-1` of R1 is declared nowhere (1 more parent is, too)" in run.err
 
 
-@pytest.mark.parametrize(
-    ("method", "near"),
-    [
-        ("auditt", "audit"),
-        ("adit", "audit"),
-        ("monitr", "monitor"),
-        ("proofs", "proof"),
-        ("dafni", "dafny"),
-        ("ajfp", "ajpf"),
-    ],
-)
-def test_a_misspelt_method_gets_a_suggestion(good: Fretc, method: str, near: str) -> None:
-    edited("r1.fret", '["audit"]', f'["{method}"]')
+NEAR = {
+    "auditt": "audit",
+    "adit": "audit",
+    "monitr": "monitor",
+    "proofs": "proof",
+    "dafni": "dafny",
+    "ajfp": "ajpf",
+}
+
+
+@each("method", NEAR)
+def test_a_misspelt_method_gets_a_suggestion(good: Fretc, method: str) -> None:
+    write("requirements/r1.fret", GOOD.replace('["audit"]', f'["{method}"]'))
     run = good("check")
     assert run.status == 3
     assert f"F528 warning: R1 plans `{method}`" in run.err
-    assert f"help: did you mean `{near}`?" in run.err
+    assert f"help: did you mean `{NEAR[method]}`?" in run.err
 
 
-@pytest.mark.parametrize(
-    "method", ["review", "inspection", "test", "analysis", "simulation", "field trial", "audit"]
-)
+@each("method", ["review", "inspection", "test", "analysis", "simulation", "field trial", "audit"])
 def test_a_method_of_ones_own_is_no_mistake(good: Fretc, method: str) -> None:
-    edited("r1.fret", '["audit"]', f'["{method}"]')
+    write("requirements/r1.fret", GOOD.replace('["audit"]', f'["{method}"]'))
     assert good("check").status == 0
 
 

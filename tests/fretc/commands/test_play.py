@@ -11,6 +11,7 @@ import pytest
 from tests.command import Fretc
 from tests.fretc.logs.logs import MS, S, chunk_starts, damaged, number
 from tests.fretc.logs.logs import write as log_of
+from tests.simulation.missions import Missions, cut_off
 
 ROOT = Path(__file__).parents[3]
 NEAR = "whenever near the robot shall within 2 ticks satisfy stopped"
@@ -170,9 +171,8 @@ def test_what_a_damaged_run_has_lost_is_said(fretc: Fretc) -> None:
 
 
 @pytest.mark.slow
-def test_a_violation_of_a_recorded_run_is_a_start(fretc: Fretc, tmp_path: Path) -> None:
-    log = tmp_path / "off.mcap"
-    assert fretc("simulate", "safety-silent", "--duration", "25", "-o", str(log)).status == 0
+def test_a_violation_of_a_recorded_run_is_a_start(fretc: Fretc, missions: Missions) -> None:
+    log = missions(cut_off("safety-silent")).path
     folder = str(ROOT / "requirements/mission")
     run = fretc("play", folder, "--log", str(log))
     assert run.status == 0, run.err

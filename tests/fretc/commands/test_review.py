@@ -111,7 +111,6 @@ def test_a_requirement_that_was_deleted_and_one_that_is_new_are_told(
     assert "R1  not there any more; there is the review of 2026-11-22 by A. Meier\n" in run.out
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [

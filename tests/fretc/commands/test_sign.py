@@ -16,6 +16,7 @@ from fretc.attestation.statement import TYPE
 from fretish.diagnostics import extras
 from tests import keys
 from tests.command import Fretc, made_once, write
+from tests.effort import FULL
 from tests.fretc.commands.test_verify_evidence import BINDINGS, R1, log
 
 R2 = "whenever q the sw shall within 2 ticks satisfy q"
@@ -146,7 +147,9 @@ def test_evidence_that_nobody_has_signed_is_not_signed(project: Fretc) -> None:
     assert "asks for: nobody signed it\n" in run.err
 
 
-@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=25 if FULL else 10, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(data=st.data())
 def test_evidence_with_another_byte_is_not_signed(project: Fretc, data: st.DataObject) -> None:
     """Of any log, verdict, hash or number."""

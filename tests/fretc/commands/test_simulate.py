@@ -1,5 +1,4 @@
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -9,45 +8,21 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from tests.command import Fretc
+from tests.command import PROCESS, Fretc, write
 from tests.effort import some
 
 ROOT = Path(__file__).parents[3]
 
 
-def simulate(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-c", "from fretc.cli import main; main()", "simulate", *words],
-        cwd=folder,
-        env={"PYTHONPATH": str(ROOT), "PATH": os.environ["PATH"]},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-
-
 @pytest.mark.slow
-def test_a_mission_is_recorded_and_drawn(tmp_path: Path) -> None:
-    words = (
-        "walker",
-        "--seed",
-        "3",
-        "--duration",
-        "2",
-        "--out",
-        "a.mcap",
-        "--png",
-        "a.png",
-        "--gif",
-        "a.gif",
-    )
-    ran = simulate(tmp_path, *words)
-    assert ran.returncode == 0, ran.stderr
-    assert ran.stderr == "wrote a.mcap\nwrote a.png\nwrote a.gif\n"
-    assert ran.stdout.startswith("walker, seed 3: 2.0 s, 0 of 4 goals, 0 stops, 0 contacts, least ")
-    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
-    assert (tmp_path / "a.gif").read_bytes().startswith(b"GIF89a")
-    with (tmp_path / "a.mcap").open("rb") as stream:
+def test_a_mission_is_recorded_and_drawn(fretc: Fretc) -> None:
+    words = "walker --seed 3 --duration 2 --out a.mcap --png a.png --gif a.gif"
+    ran = fretc("simulate", *words.split())
+    assert (ran.status, ran.err) == (0, "wrote a.mcap\nwrote a.png\nwrote a.gif\n")
+    assert ran.out.startswith("walker, seed 3: 2.0 s, 0 of 4 goals, 0 stops, 0 contacts, least ")
+    assert Path("a.png").read_bytes().startswith(b"\x89PNG")
+    assert Path("a.gif").read_bytes().startswith(b"GIF89a")
+    with Path("a.mcap").open("rb") as stream:
         reader = make_reader(stream)
         assert reader.get_header().profile == "ros2"
         (about,) = (entry.metadata for entry in reader.iter_metadata())
@@ -56,37 +31,33 @@ def test_a_mission_is_recorded_and_drawn(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_folders_are_made_and_a_mission_can_be_a_log_of_ros_1(tmp_path: Path) -> None:
-    words = ("--duration", "1", "--encoding", "ros1", "--out", "a/b/c.mcap", "--png", "d/e.png")
-    ran = simulate(tmp_path, *words)
-    assert ran.returncode == 0, ran.stderr
-    assert (tmp_path / "d/e.png").is_file()
-    with (tmp_path / "a/b/c.mcap").open("rb") as stream:
+def test_folders_are_made_and_a_mission_can_be_a_log_of_ros_1(fretc: Fretc) -> None:
+    words = "--duration 1 --encoding ros1 --out a/b/c.mcap --png d/e.png"
+    ran = fretc("simulate", *words.split())
+    assert ran.status == 0, ran.err
+    assert Path("d/e.png").is_file()
+    with Path("a/b/c.mcap").open("rb") as stream:
         assert make_reader(stream).get_header().profile == "ros1"
 
 
-@pytest.mark.slow
-def test_the_scenarios_are_named(tmp_path: Path) -> None:
-    ran = simulate(tmp_path, "--list")
-    assert ran.returncode == 0
-    assert "\nnominal          Nominal mission\n" in ran.stdout
-    assert len(ran.stdout.splitlines()) == 19
+def test_the_scenarios_are_named(fretc: Fretc) -> None:
+    ran = fretc("simulate", "--list")
+    assert ran.status == 0
+    assert "\nnominal          Nominal mission\n" in ran.out
+    assert len(ran.out.splitlines()) == 19
 
 
 @pytest.mark.slow
-def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(tmp_path: Path) -> None:
-    (tmp_path / "mine.toml").write_text(
-        'title = "Mine"\nduration = 3\n[expect]\ninconclusive = ["R12"]\n', encoding="utf-8"
-    )
-    ran = simulate(tmp_path, "mine.toml", "--campaign", "2", "--jobs", "2")
-    assert ran.returncode == 0, ran.stderr
-    assert ran.stdout.splitlines()[1].startswith("mine      2/2        0/2 ")
-    (tmp_path / "mine.toml").write_text(
-        'title = "Mine"\nduration = 3\n[expect]\nsatisfied = ["R12"]\n', encoding="utf-8"
-    )
-    ran = simulate(tmp_path, "mine.toml", "--campaign", "1", "--format", "json")
-    assert ran.returncode == 1
-    (run,) = json.loads(ran.stdout)
+def test_a_campaign_ends_in_a_table_and_tells_what_is_not_as_stated(fretc: Fretc) -> None:
+    stated = 'title = "Mine"\nduration = 2\n[expect]\n'
+    write("mine.toml", f'{stated}inconclusive = ["R12"]\n')
+    ran = fretc("simulate", "mine.toml", "--campaign", "2", "--jobs", "2")
+    assert ran.status == 0, ran.err
+    assert ran.out.splitlines()[1].startswith("mine      2/2        0/2 ")
+    write("mine.toml", f'{stated}satisfied = ["R12"]\n')
+    ran = fretc("simulate", "mine.toml", "--campaign", "1", "--format", "json")
+    assert ran.status == 1
+    (run,) = json.loads(ran.out)
     assert run["wrong"] == {"R12": "satisfied"}
     assert run["verdicts"]["R12"] == "inconclusive"
 
@@ -160,7 +131,7 @@ def test_a_campaign_that_is_stopped_leaves_nothing_half_written(tmp_path: Path) 
     for where in some((["--out", "logs"], []), 2):
         words = ["simulate", "nominal", "walker", "--campaign", "4", "--jobs", "2", *where]
         process = subprocess.Popen(
-            [sys.executable, "-c", "from fretc.cli import main; main()", *words],
+            [*PROCESS, *words],
             cwd=tmp_path,
             env={"PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path / "temporary")},
             stderr=subprocess.PIPE,

@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +13,7 @@ import pytest
 from fretc.verification.c.build import FLAGS as C_FLAGS
 from fretc.verification.javascript.node import FLAGS as NODE_FLAGS
 from fretc.verification.rust.build import FLAGS as RUST_FLAGS
-from tests.command import Fretc, write
+from tests.command import PROCESS, Fretc, write
 from tests.compiled_monitors import TONGUES
 from tests.effort import some
 from tests.programs import installed, needs
@@ -157,15 +156,7 @@ def test_ctrl_c_leaves_no_file_and_no_process(fretc: Fretc, made: Made, tmp_path
     temporary = tmp_path / "temporary"
     temporary.mkdir()
     running = subprocess.Popen(
-        [
-            sys.executable,
-            "-c",
-            "from fretc.cli import main; main()",
-            "verify",
-            "--file",
-            made.file,
-            "r1.fret",
-        ],
+        [*PROCESS, "verify", "--file", made.file, "r1.fret"],
         env={**os.environ, "TMPDIR": str(temporary)},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

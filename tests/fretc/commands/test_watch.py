@@ -16,7 +16,7 @@ from fretc.logs.signals.samples import Recording
 from fretc.terminal.screen import Screen, width
 from fretc.watch.session import Session
 from fretc.watch.text_output import rows
-from tests.command import Fretc, write
+from tests.command import PROCESS, Fretc, write
 from tests.fretc.logs.logs import MS, S, Sent, number
 from tests.fretc.logs.logs import write as log_of
 from tests.fretc.watch.sent import SENTENCES, Setting, plan_of
@@ -24,7 +24,6 @@ from tests.fretc.watch.sent import Sent as Message
 from tests.json_schemas import validate
 
 ROOT = Path(__file__).parents[3]
-MAIN = "from fretc.cli import main; main()"
 FRET = """+++
 id = "R1"
 title = "Stops near obstacles"
@@ -83,6 +82,7 @@ def test_the_evidence_is_that_of_an_audit_of_the_recording(fretc: Fretc) -> None
     assert "F432" in fretc("audit", "seen.mcap", "-o", "later.json").err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stops", [True, False])
 def test_each_line_for_a_program_fits_the_schema(fretc: Fretc, *, stops: bool) -> None:
     run = fretc("watch", recorded("run.mcap", stops=stops), "--format", "jsonl")
@@ -247,7 +247,7 @@ def test_a_watch_that_is_stopped_leaves_a_whole_recording_and_its_evidence(numbe
     Path("run.mcap").write_bytes(data[: summary - 9])  # within the head of its last record
     options = ("--record", "seen.mcap", "--evidence", "e.json", "--format", "jsonl", "--follow")
     with subprocess.Popen(
-        [sys.executable, "-c", MAIN, "watch", "run.mcap", *options],
+        [*PROCESS, "watch", "run.mcap", *options],
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stdout=subprocess.PIPE,
         text=True,

@@ -3,11 +3,13 @@
 import io
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
 import sys
 import time
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -16,10 +18,10 @@ from fretc.terminal.output import say
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from tests.command import Fretc
+from tests.command import PROCESS, Fretc
+from tests.effort import some
 
 ROOT = Path(__file__).parents[3]
-FRETC = [sys.executable, "-c", "from fretc.cli import main; main()"]
 LOG = str(ROOT / "traces/mission-seed15.mcap")
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped\n"
 
@@ -35,7 +37,7 @@ def in_shell(
     folder: Path, arguments: str, shell: str, encoding: str = "utf-8"
 ) -> subprocess.CompletedProcess[str]:
     """Run a line in a shell; `{}` in `shell` stands for the command."""
-    command = f"'{sys.executable}' -c 'from fretc.cli import main; main()' {arguments}"
+    command = f"{shlex.join(PROCESS)} {arguments}"
     done = subprocess.run(
         ["bash", "-c", shell.format(command)],
         cwd=folder,
@@ -98,14 +100,19 @@ def test_evidence_never_replaces_what_is_read(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["bindings.toml", "hazards.toml", "fretc.lock"])
 @pytest.mark.parametrize(
-    "line",
-    [
-        "audit run.mcap --evidence requirements/{}",
-        "report --csv requirements/{}",
-        "verify requirements/r1.fret --monitor -o requirements/{}",
-    ],
+    ("name", "line"),
+    some(
+        product(
+            ["bindings.toml", "hazards.toml", "fretc.lock"],
+            [
+                "audit run.mcap --evidence requirements/{}",
+                "report --csv requirements/{}",
+                "verify requirements/r1.fret --monitor -o requirements/{}",
+            ],
+        ),
+        4,
+    ),
 )
 def test_what_stands_beside_requirements_is_never_replaced(
     folder: Path, fretc: Fretc, line: str, name: str
@@ -168,10 +175,10 @@ def test_what_is_no_regular_file_is_never_replaced(folder: Path, fretc: Fretc) -
 
 @pytest.mark.slow
 def test_a_termination_leaves_no_temporary_file(folder: Path) -> None:
-    ids = "".join(f'+++\nid = "R{i}"\n+++\n{R1}' for i in range(1000))
+    ids = "".join(f'+++\nid = "R{i}"\n+++\n{R1}' for i in range(300))
     (folder / "many.fret").write_text(ids, "utf-8")
     run = subprocess.Popen(
-        [*FRETC, "many.fret", "--emit", "monitor"],
+        [*PROCESS, "many.fret", "--emit", "monitor"],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
         stderr=subprocess.DEVNULL,

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from threading import Thread
 from typing import Any
 
+from tests.command import PROCESS
+
 ROOT = Path(__file__).parents[3]
-FRETC = [sys.executable, "-c", "from fretc.cli import main; main()"]
 
 
 class Watched:
@@ -20,7 +20,7 @@ class Watched:
 
     def __init__(self, environment: Mapping[str, str], folder: Path, *words: str) -> None:
         self.process: subprocess.Popen[str] = subprocess.Popen(
-            [*FRETC, "watch", *words, "--format", "jsonl"],
+            [*PROCESS, "watch", *words, "--format", "jsonl"],
             cwd=folder,
             env={**environment, "PYTHONPATH": str(ROOT)},
             stdout=subprocess.PIPE,
