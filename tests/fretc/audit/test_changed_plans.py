@@ -101,6 +101,7 @@ def test_of_a_store_that_somebody_else_vouches_for_nothing_is_taken_over(
     assert len(judged) == len(LOGS) * 4
 
 
+@pytest.mark.confined
 @pytest.mark.slow
 def test_processes_take_over_the_same(tmp_path: Path, judged: list[tuple[str, str]]) -> None:
     before = plan(tmp_path / "r", PROJECT)

@@ -119,6 +119,7 @@ def stop_after(logs: int) -> None:
 # The same from nothing ---------------------------------------------------------------------------
 
 
+@pytest.mark.confined
 @pytest.mark.slow
 def test_a_store_depends_on_no_engine_and_no_order(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch

@@ -207,6 +207,7 @@ def test_without_bindings_nothing_can_be_audited(fretc: Fretc) -> None:
     assert run.err.startswith("F304 no bindings say what the propositions mean in the messages\n")
 
 
+@pytest.mark.confined
 @pytest.mark.slow
 def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fretc) -> None:
     for name in ("a", "b", "deep/c"):
@@ -249,6 +250,7 @@ def test_results_can_be_read_by_other_tools(fretc: Fretc) -> None:
     assert github.out.startswith("::notice file=requirements/r1.fret,line=")
 
 
+@pytest.mark.confined
 @pytest.mark.slow
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audited(

@@ -311,6 +311,7 @@ def test_runs_that_differ_in_a_value_or_a_time_are_no_copies(fretc: Fretc) -> No
     assert estimate()["logs"]["counted"] == 3
 
 
+@pytest.mark.confined
 @pytest.mark.slow
 def test_the_order_of_the_logs_changes_nothing(fretc: Fretc) -> None:
     chance = random.Random(3)

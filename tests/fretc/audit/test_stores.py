@@ -119,6 +119,7 @@ def robot(fretc: Fretc, bucket: Put) -> Fretc:
     return fretc
 
 
+@pytest.mark.confined
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_an_audit_of_a_prefix_is_that_of_its_files(robot: Fretc, jobs: str) -> None:
     there = robot("audit", "s3://fleet/night/", "--jobs", jobs, "-o", "there.json")
