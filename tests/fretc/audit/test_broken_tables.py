@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from fretc.audit.plan import Plan, planned
 from fretc.terminal.output import BAD, SHOWN, VIOLATION
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
-from tests.command import Fretc, write
+from tests.command import Fretc, made_once, write
 from tests.effort import FULL, some
 
 MS, START = 10**6, 10**9
@@ -171,17 +172,23 @@ def verdicts_of(plan: Plan) -> dict[str, Any]:
     return verdicts
 
 
+@cache
+def good_verdicts() -> dict[str, Any]:
+    """The same of bindings without a mistake."""
+    plan = planned(project())
+    assert isinstance(plan, Plan)
+    return verdicts_of(plan)
+
+
 def check(cases: Sequence[Case]) -> None:
     """The law: what is refused, why, and that all else is what it was."""
+    good = good_verdicts()
     flawed = project(broken(cases))
-    good_plan, plan = planned(project()), planned(flawed)
-    assert isinstance(good_plan, Plan)
+    plan = planned(flawed)
     assert isinstance(plan, Plan)
     refused_ids = refused(cases)
     assert {each.id for each in plan.refused} == refused_ids
-    assert verdicts_of(plan) == {
-        id: what for id, what in verdicts_of(good_plan).items() if id not in refused_ids
-    }
+    assert verdicts_of(plan) == {id: good[id] for id in good if id not in refused_ids}
     codes = {kind.split()[0] for _, _, kind in cases}
     errors = [each.code.number for each in flawed.diagnostics if each.is_error]
     assert {why.code.number for why in plan.refusals} <= {*errors} <= codes
@@ -240,6 +247,17 @@ def test_an_audit_judges_the_others_as_before(fretc: Fretc, place: int) -> None:
         assert id not in refused_ids or result["reason"].startswith(f"not judged: {codes[0]} ")
 
 
+def audited(fretc: Fretc) -> None:
+    """A project without a mistake, its log, and the evidence."""
+
+    def make() -> None:
+        project()
+        log()
+        assert fretc("audit", "l.mcap").status == VIOLATION
+
+    made_once("an audit of sound tables", make)
+
+
 COMMANDS = [
     ("check",),
     ("report",),
@@ -261,9 +279,7 @@ COMMANDS = [
 def test_every_command_names_all_mistakes_and_makes_nothing_of_what_reads_them(
     fretc: Fretc, command: tuple[str, ...]
 ) -> None:
-    project()
-    log()
-    assert fretc("audit", "l.mcap").status == VIOLATION
+    audited(fretc)
     project(broken([("signal", "bx", "F306"), ("proposition", "idle", "F302")]))
     before = {path for path in Path().rglob("*") if path.is_file()}
     run = fretc(*command)
@@ -279,9 +295,7 @@ def test_every_command_names_all_mistakes_and_makes_nothing_of_what_reads_them(
 def test_a_report_takes_no_earlier_verdict_on_what_reads_a_broken_table(
     fretc: Fretc, case: Case
 ) -> None:
-    project()
-    log()
-    fretc("audit", "l.mcap")
+    audited(fretc)
     assert suspect(fretc) == (SHOWN, set())
     project(broken([case]))
     assert suspect(fretc) == (BAD, refused([case]))

@@ -56,6 +56,7 @@ def payload(type_: str, encoding: str = "cdr", **fields: Any) -> bytes:
     return bytes(types.serialize_ros1(message, name))
 
 
+@cache
 def definition(type_: str, encoding: str) -> bytes:
     name = type_ if "/msg/" in type_ else type_.replace("/", "/msg/")
     text, _ = store(encoding).generate_msgdef(name, ros_version=2 if encoding == "cdr" else 1)
