@@ -17,6 +17,7 @@ from fretc.audit.store.reader import Store, opened
 from fretc.audit.store.tables import TABLES, TableName, tabled
 from fretc.audit.store.writer import is_store, remove, write_document
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.command import made_once
 from tests.fretc.audit.results import result
 from tests.fretc.audit.store.test_law import document
 
@@ -30,9 +31,13 @@ RESULTS = (
 @pytest.fixture
 def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
+    made_once("a store of two runs", _written)
+    return Path("store")
+
+
+def _written() -> None:
     assert isinstance(write_document(Path("store"), document(*RESULTS)), str)
     assert not isinstance(read("store"), Diagnostic)
-    return Path("store")
 
 
 def refused(path: Path) -> str:

@@ -163,7 +163,7 @@ def test_times_of_a_damaged_log_are_kept(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @settings(
-    max_examples=200 if FULL else 8,
+    max_examples=200 if FULL else 5,
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )
