@@ -4,6 +4,7 @@ from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
 from fretc.logs.mcap.container import Stream
+from fretc.logs.messages import probes
 from fretc.logs.messages.decoding import decoder, shape
 from fretc.logs.messages.definitions import types
 from fretc.logs.messages.layouts import Shape
@@ -81,12 +82,14 @@ def test_a_shape_of_other_fields_than_the_decoder_has_is_not_trusted(
     assert not trusted(known, decode)
 
 
-@pytest.mark.slow
-def test_a_message_too_large_to_be_made_up_is_not_trusted() -> None:
-    sent = stream("one/A[1000] a\n===\nMSG: one/A\nfloat64[1000] b", ros1=False)
+def test_a_message_too_large_to_be_made_up_is_not_trusted(monkeypatch: pytest.MonkeyPatch) -> None:
+    sent = stream("one/A[5] a\n===\nMSG: one/A\nfloat64[100] b", ros1=False)
     known, decode = shape(sent), decoder(sent)
     assert known is not None
     assert callable(decode)
+    assert trusted(known, decode)
+    monkeypatch.setattr(probes, "_LARGEST", 499)
+    trusted.cache_clear()
     assert not trusted(known, decode)
 
 

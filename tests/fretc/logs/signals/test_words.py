@@ -15,6 +15,7 @@ from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
 from fretc.logs.signals.words import words
 from fretc.logs.stream import End, Stream
+from tests.effort import examples
 from tests.fretc.logs.logs import MS, S, Sent, codes, declare, payload, recorded, times, write
 from tests.fretc.logs.messages.test_idl import LINE
 from tests.fretc.logs.messages.test_protobuf import STATE
@@ -283,7 +284,7 @@ values = ["drive", "docking", "idle"]
 
 
 @pytest.mark.slow
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(examples(15), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.lists(
         st.tuples(*2 * [st.sampled_from(["drive", "docking", "idle", "fly", "", None, 3])]),
@@ -358,7 +359,7 @@ ROWS = st.tuples(
 
 
 @pytest.mark.slow
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(examples(15), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.tuples(st.sampled_from([40, 100, 300]), ROWS), min_size=1, max_size=8))
 def test_a_stream_sees_what_a_log_of_the_same_messages_shows(
     tmp_path: Path, rows: list[tuple[int, tuple[object, object, object]]]

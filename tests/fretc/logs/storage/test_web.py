@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from itertools import count, pairwise
+from itertools import count, cycle, pairwise, product
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,6 +17,7 @@ import pytest
 from fretc.logs.storage import inputs, web
 from fretc.logs.storage.inputs import opened
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.effort import FULL
 
 LENGTH = 5 * 2**20
 
@@ -194,6 +195,10 @@ ANSWERS: dict[str, Answer] = {
 }
 
 
+WAYS = (True, False)
+"""As a whole, or by its index."""
+
+
 @pytest.fixture
 def endless(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     monkeypatch.setattr(web, "PATIENCE", 0.3)
@@ -211,8 +216,9 @@ def endless(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("whole", [True, False], ids=["whole", "by its index"])
-@pytest.mark.parametrize("path", ANSWERS)
+@pytest.mark.parametrize(
+    ("path", "whole"), [*product(ANSWERS, WAYS)] if FULL else [*zip(ANSWERS, cycle(WAYS))]
+)
 def test_reading_ends_whatever_a_server_sends_for_ever(
     endless: str, path: str, whole: bool
 ) -> None:
