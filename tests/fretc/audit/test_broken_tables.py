@@ -14,7 +14,6 @@ import pytest
 import tomli_w
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mcap.writer import Writer
 
 from compiler.emit import TARGETS
 from compiler.project.folder import Project, load
@@ -26,8 +25,9 @@ from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from tests.command import Fretc, made_once, write
 from tests.effort import FULL, some
+from tests.fretc.logs.logs import MS, S, said
+from tests.fretc.logs.logs import write as write_log
 
-MS, START = 10**6, 10**9
 BINDINGS = """\
 [clock]
 tick = "100 ms"
@@ -137,18 +137,12 @@ def refused(cases: Iterable[Case]) -> set[str]:
 
 def log() -> str:
     """Five values of each topic, 100 ms apart, all from the same time on."""
-    with Path("l.mcap").open("wb") as file:
-        writer = Writer(file)
-        writer.start()
-        schema = writer.register_schema("A", "jsonschema", b"{}")
-        for topic in ("/a", "/b"):
-            channel = writer.register_channel(topic, "json", schema)
-            for number in range(5):
-                time = START + number * 100 * MS
-                data = json.dumps({"x": number, "y": 5 - number}).encode()
-                writer.add_message(channel, time, data, time)
-        writer.finish()  # type: ignore[no-untyped-call]
-    return "l.mcap"
+    messages = [
+        said(topic, S + number * 100 * MS, x=number, y=5 - number)
+        for topic in ("/a", "/b")
+        for number in range(5)
+    ]
+    return str(write_log(Path("l.mcap"), messages))
 
 
 def project(bindings: str = BINDINGS) -> Project:

@@ -30,7 +30,7 @@ from monitors.loading import load
 from tests.effort import FULL
 from tests.fretc.logs.logs import LZ4, MS, NONE, ZSTD, S, Sent, number, payload, scan, write
 
-MANY = settings(max_examples=200 if FULL else 4)
+MANY = settings(max_examples=200 if FULL else 2)
 BINDINGS = """
 [clock]
 time = "log_time"

@@ -19,9 +19,9 @@ from fretc.audit.store.anywhere import read
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, Run, untimed
 from tests.json_schemas import validate
+from tests.traces import MISSION, part
 
 ROOT = Path(__file__).parents[3]
-MISSION = ROOT / "traces/mission-seed15.mcap"
 
 
 @pytest.fixture
@@ -109,8 +109,8 @@ def test_a_log_that_ends_in_the_middle_shows_what_is_whole_and_satisfies_nothing
     fretc: Fretc,
 ) -> None:
     data = Path("run.mcap").read_bytes()
-    for part in (0.2, 0.5, 0.9, 0.999):
-        Path("cut.mcap").write_bytes(data[: int(len(data) * part)])
+    for share in (0.2, 0.5, 0.9, 0.999):
+        Path("cut.mcap").write_bytes(data[: int(len(data) * share)])
         run = fretc("audit", "cut.mcap")
         assert run.status == 3
         assert run.err.startswith("F403 warning: the log breaks off after byte ")
@@ -213,7 +213,7 @@ def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fre
     for name in ("a", "b", "deep/c"):
         target = Path(f"runs/{name}.mcap")
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(Path("run.mcap").read_bytes())
+        target.write_bytes(part())
     Path("runs/bad.mcap").write_bytes(b"no log")
     texts = []
     for jobs in ("1", "2", "7"):
@@ -264,8 +264,8 @@ def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audit
         return real(plan, log, *rest)
 
     monkeypatch.setattr(auditing, "audited", deadly)
-    shutil.copy("run.mcap", "bad.mcap")
-    shutil.copy("run.mcap", "other.mcap")
+    for name in ("run", "bad", "other"):
+        Path(f"{name}.mcap").write_bytes(part())
     run = fretc("audit", "run.mcap", "bad.mcap", "other.mcap", "--jobs", jobs)
     assert run.status == 2
     assert run.err == (

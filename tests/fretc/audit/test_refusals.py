@@ -5,12 +5,12 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from mcap.writer import Writer
 
 from tests.command import Fretc, write
+from tests.fretc.logs.logs import MS, S, said
+from tests.fretc.logs.logs import write as write_log
 from tests.json_schemas import validate
 
-MS = 10**6
 BINDINGS = """\
 [clock]
 tick = "100 ms"
@@ -56,16 +56,9 @@ REFUSED = {
 
 def log(path: str, values: list[float]) -> str:
     """A value of `/a.x` every 100 ms."""
-    with Path(path).open("wb") as file:
-        writer = Writer(file)
-        writer.start()
-        schema = writer.register_schema("A", "jsonschema", b"{}")
-        channel = writer.register_channel("/a", "json", schema)
-        for number, value in enumerate(values):
-            time = 10**9 + number * 100 * MS
-            writer.add_message(channel, time, json.dumps({"x": value}).encode(), time)
-        writer.finish()  # type: ignore[no-untyped-call]
-    return path
+    times = range(S, 9 * S, 100 * MS)
+    messages = [said("/a", time, x=value) for time, value in zip(times, values, strict=False)]
+    return str(write_log(Path(path), messages))
 
 
 def project(sentence: str, header: str, bindings: str) -> None:

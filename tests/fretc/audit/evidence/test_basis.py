@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mcap.writer import Writer
 
 from compiler.files.records import decoded
 from compiler.project.folder import load_folder
@@ -33,8 +32,9 @@ from fretc.report.traceability.lock import text as lock_text
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
 from tests.effort import FULL, some
+from tests.fretc.logs.logs import MS, S, said
+from tests.fretc.logs.logs import write as write_log
 
-MS, START = 10**6, 10**9
 IDS = ("R1", "R2", "R3")
 FILES = {
     "requirements/r1.fret": """\
@@ -383,20 +383,16 @@ PROPOSITIONS = [
 def log(path: str, *values: float) -> None:
     """x, y and z as they are, 100 ms apart, on three topics."""
     Path(path).parent.mkdir(exist_ok=True)
-    with Path(path).open("wb") as file:
-        writer = Writer(file)
-        writer.start()
-        schema = writer.register_schema("S", "jsonschema", b"{}")
-        channels = {t: writer.register_channel(t, "json", schema) for t in ("/a", "/b", "/c")}
-        for i, value in enumerate(values):
-            time = START + i * 100 * MS
-            for topic, fields in (
-                ("/a", {"x": value, "z": 1, "u": 0}),
-                ("/b", {"y": value}),
-                ("/c", {"x": value}),
-            ):
-                writer.add_message(channels[topic], time, json.dumps(fields).encode(), time)
-        writer.finish()  # type: ignore[no-untyped-call]
+    messages = [
+        replace(said(topic, S + i * 100 * MS, **fields), type="S")
+        for i, value in enumerate(values)
+        for topic, fields in (
+            ("/a", {"x": value, "z": 1, "u": 0}),
+            ("/b", {"y": value}),
+            ("/c", {"x": value}),
+        )
+    ]
+    write_log(Path(path), messages)
 
 
 def logged(path: str, *values: float) -> Callable[[], None]:

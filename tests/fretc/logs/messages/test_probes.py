@@ -10,6 +10,7 @@ from fretc.logs.messages.definitions import types
 from fretc.logs.messages.layouts import Shape
 from fretc.logs.messages.probes import probe, trusted
 from tests.fretc.logs.logs import definition
+from tests.fretc.logs.messages.test_definitions import stream
 
 BOTH = pytest.mark.parametrize("ros1", [False, True])
 
@@ -30,11 +31,6 @@ SEPARATED = st.builds("{}\n{}".format, st.just("=" * 80), st.sampled_from(
     ["MSG: one/A", "MSG: two/A", "MSG: one/B", "MSG: std_msgs/Header", "MSG: one/Header"]
 ))  # fmt: skip
 TEXTS = st.lists(st.one_of(LINES, LINES, SEPARATED), max_size=9).map("\n".join)
-
-
-def stream(text: str, *, ros1: bool) -> Stream:
-    schema = Schema(1, text.encode(), "ros1msg" if ros1 else "ros2msg", "one/T")
-    return Stream(Channel(1, "/x", "ros1" if ros1 else "cdr", {}, 1), schema)
 
 
 @pytest.mark.slow
