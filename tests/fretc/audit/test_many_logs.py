@@ -18,6 +18,7 @@ from fretc.audit.plan import Plan
 from fretc.audit.store.anywhere import read
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, Run, untimed
+from tests.effort import some
 from tests.json_schemas import validate
 from tests.traces import MISSION, part
 
@@ -216,12 +217,12 @@ def test_a_folder_of_logs_gives_the_same_with_any_number_of_processes(fretc: Fre
         target.write_bytes(part())
     Path("runs/bad.mcap").write_bytes(b"no log")
     texts = []
-    for jobs in ("1", "2", "7"):
+    for jobs in ("1", *some(("7", "2"), 2)):
         run = fretc("audit", "runs", "--jobs", jobs)
         assert run.status == 2
         texts.append((untimed(run.out), evidence()))
         shutil.rmtree("build")
-    assert texts[0] == texts[1] == texts[2]
+    assert all(one == texts[0] for one in texts)
     assert [result["run"] for result in texts[0][1]["results"]] == [
         "runs/a.mcap",
         "runs/b.mcap",
@@ -252,7 +253,7 @@ def test_results_can_be_read_by_other_tools(fretc: Fretc) -> None:
 
 @pytest.mark.confined
 @pytest.mark.slow
-@pytest.mark.parametrize("jobs", ["1", "2"])
+@pytest.mark.parametrize("jobs", some(["2", "1"], 2))
 def test_a_log_whose_audit_kills_its_process_is_no_data_and_the_others_are_audited(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch, jobs: str
 ) -> None:

@@ -224,7 +224,6 @@ def test_no_sentence_with_a_probability_ends_an_audit_and_each_is_counted(fretc:
         assert triggers[id] == numbers, id
 
 
-@pytest.mark.slow
 def test_what_no_run_can_meet_is_failed_at_each_trigger(fretc: Fretc) -> None:
     require("whenever c the robot shall with probability >= 0.9 finally satisfy false")
     logs(3, "1010", "0000")
@@ -342,7 +341,6 @@ def test_a_log_that_is_written_anew_counts_anew(fretc: Fretc) -> None:
     assert counts() == (2, 1, 0)
 
 
-@pytest.mark.slow
 def test_without_a_trigger_nothing_is_known(fretc: Fretc) -> None:
     logs(2, "0000", "0100")
     run = fretc("audit", "runs", "-v")
@@ -414,7 +412,6 @@ def test_the_monitor_of_one_run_is_refused_still(fretc: Fretc) -> None:
 # Other forms -----------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
 def test_json_has_runs_and_probabilities_by_name(fretc: Fretc) -> None:
     logs(2, "1000", "0100")
     content = json.loads(fretc("audit", "runs", "--format", "json").out)

@@ -559,7 +559,7 @@ def test_a_change_reaches_what_is_made_of_it_and_nothing_else(reviewed: Fretc, n
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("names", some(TOGETHER, 2), ids="; ".join)
+@pytest.mark.parametrize("names", some(TOGETHER, 4), ids="; ".join)
 def test_what_changes_nothing_reaches_nothing(reviewed: Fretc, names: tuple[str, ...]) -> None:
     for name in names:
         CHANGES[name].make()

@@ -191,7 +191,6 @@ def test_the_exit_status_is_that_of_the_audit(fretc: Fretc, results: list[dict[s
         assert fretc("audit", "--summary", f"{name}.parquet").status == status
 
 
-@pytest.mark.slow
 def test_only_the_worst_of_many_runs_are_listed(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
@@ -215,7 +214,6 @@ def test_two_versions_of_a_requirement_are_not_counted_as_one_in_silence(
     assert run.err.startswith("F504 warning: R1 was audited as 2 different requirements: ")
 
 
-@pytest.mark.slow
 def test_a_query_is_answered_for_a_person_and_for_a_program(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:

@@ -90,7 +90,6 @@ def test_links_and_pipes_are_not_followed(store: Path) -> None:
     assert "does not fit its manifest" in refused(store)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("table", TABLES)
 def test_a_folder_of_tables_that_is_a_link_is_neither_read_nor_cleared(
     store: Path, table: TableName
@@ -103,7 +102,6 @@ def test_a_folder_of_tables_that_is_a_link_is_neither_read_nor_cleared(
     assert any(Path("elsewhere").iterdir())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -125,7 +123,6 @@ def test_a_manifest_that_is_none_or_contradicts_itself_is_refused(
     refused(store)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("text", ["", "[]", "{", "\0", '{"schema": "fretc-store-1"}'])
 def test_what_is_no_manifest_is_refused(store: Path, text: str) -> None:
     (store / "manifest.json").write_text(text)

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from itertools import count, cycle, pairwise, product
+from itertools import count, pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,7 +17,7 @@ import pytest
 from fretc.logs.storage import inputs, web
 from fretc.logs.storage.inputs import opened
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from tests.effort import FULL
+from tests.effort import by_turns
 
 LENGTH = 5 * 2**20
 
@@ -195,10 +195,6 @@ ANSWERS: dict[str, Answer] = {
 }
 
 
-WAYS = (True, False)
-"""As a whole, or by its index."""
-
-
 @pytest.fixture
 def endless(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     monkeypatch.setattr(web, "PATIENCE", 0.3)
@@ -216,9 +212,7 @@ def endless(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("path", "whole"), [*product(ANSWERS, WAYS)] if FULL else [*zip(ANSWERS, cycle(WAYS))]
-)
+@pytest.mark.parametrize(("path", "whole"), by_turns(ANSWERS, True, False))
 def test_reading_ends_whatever_a_server_sends_for_ever(
     endless: str, path: str, whole: bool
 ) -> None:
