@@ -43,7 +43,6 @@ def test_most_types_are_in_the_stores_that_they_are_checked_with() -> None:
     }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("store", "type_", "quantity"), QUANTITIES_OF_TYPES)
 def test_each_field_is_one_of_the_type(store: Any, type_: str, quantity: Quantity) -> None:
     field = quantity.field.removesuffix("[:]")

@@ -21,7 +21,6 @@ def test_parts_are_neither_many_nor_large() -> None:
     assert AVERAGE / 2 < len(NAMES) / len(sizes) < MOST
 
 
-@pytest.mark.slow
 @given(st.integers(0, len(NAMES)))
 def test_a_new_log_changes_the_part_that_it_is_in_and_few_behind_it(at: int) -> None:
     names = [*NAMES[:at], "new.mcap", *NAMES[at:]]
