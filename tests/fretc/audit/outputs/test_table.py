@@ -96,7 +96,6 @@ def test_what_a_run_does_not_have_is_null() -> None:
     assert row["intact"] is False
 
 
-@pytest.mark.slow
 def test_a_time_beyond_a_column_is_null_and_no_failure() -> None:
     own_project = project(Path("known"))
     (row,) = rows(result(own_project, "no data", start_ns=0, end_ns=2**64 - 1))
