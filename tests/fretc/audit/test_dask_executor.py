@@ -18,16 +18,15 @@ from typing import Any
 
 import pytest
 
-from compiler.project.folder import load
-from compiler.project.paths import requirement_files, sibling_path
 from fretc.audit import dask_executor
 from fretc.audit.many_logs import Audit, Engine, LogResult, audit_logs
-from fretc.audit.plan import Plan, packed, planned, unpacked
+from fretc.audit.plan import packed, unpacked
 from fretish.diagnostics import extras
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, untimed
 from tests.effort import FULL
 from tests.fretc.audit import deadly
+from tests.fretc.audit.plans import plan
 from tests.traces import MISSION, part
 
 ROOT = Path(__file__).parents[3]
@@ -79,14 +78,6 @@ def tables() -> dict[Path, bytes]:
     return {path: path.read_bytes() for path in found if path.parent.name != "register"}
 
 
-def plan() -> Plan:
-    files = requirement_files("requirements")
-    assert not isinstance(files, Diagnostic)
-    result = planned(load(files, sibling_path("requirements", "bindings.toml")))
-    assert isinstance(result, Plan)
-    return result
-
-
 def engine(cluster: Any) -> Engine:
     result = dask_executor.engine(cluster.scheduler_address.replace("tcp", "dask"), 2)
     assert not isinstance(result, Diagnostic)
@@ -98,7 +89,6 @@ def kill(cluster: Any) -> None:
     os.kill(next(iter(cluster.workers.values())).pid, signal.SIGKILL)
 
 
-@pytest.mark.slow
 def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
     there = unpacked(packed(plan()))
     assert there == plan()
