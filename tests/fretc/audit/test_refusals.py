@@ -78,7 +78,7 @@ def rows(out: str) -> dict[str, str]:
 def test_what_cannot_be_judged_is_no_data_beside_what_can(
     fretc: Fretc, kind: str, verdict: str
 ) -> None:
-    values = [1, 1 if verdict == "satisfied" else 0, 1]
+    values = [1.0, 1.0 if verdict == "satisfied" else 0.0, 1.0]
     sentence, header, bindings, code = REFUSED[kind]
     project(sentence, header, bindings)
     run = fretc("audit", log("l.mcap", values), "--format", "json")
