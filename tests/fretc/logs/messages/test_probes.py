@@ -9,6 +9,7 @@ from fretc.logs.messages.decoding import decoder, shape
 from fretc.logs.messages.definitions import types
 from fretc.logs.messages.layouts import Shape
 from fretc.logs.messages.probes import probe, trusted
+from tests.effort import FULL
 from tests.fretc.logs.logs import definition
 from tests.fretc.logs.messages.test_definitions import stream
 
@@ -78,13 +79,18 @@ def test_a_shape_of_other_fields_than_the_decoder_has_is_not_trusted(
     assert not trusted(known, decode)
 
 
-def test_a_message_too_large_to_be_made_up_is_not_trusted(monkeypatch: pytest.MonkeyPatch) -> None:
-    sent = stream("one/A[5] a\n===\nMSG: one/A\nfloat64[100] b", ros1=False)
+@pytest.mark.parametrize(
+    ("many", "most"), [(23, 23**2), *([(1000, probes._LARGEST)] if FULL else [])]
+)
+def test_a_message_too_large_to_be_made_up_is_not_trusted(
+    monkeypatch: pytest.MonkeyPatch, many: int, most: int
+) -> None:
+    sent = stream(f"one/A[{many}] a\n===\nMSG: one/A\nfloat64[{many}] b", ros1=False)
     known, decode = shape(sent), decoder(sent)
     assert known is not None
     assert callable(decode)
-    assert trusted(known, decode)
-    monkeypatch.setattr(probes, "_LARGEST", 499)
+    assert trusted(known, decode) is (many < 1000)
+    monkeypatch.setattr(probes, "_LARGEST", most)
     trusted.cache_clear()
     assert not trusted(known, decode)
 
