@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from itertools import product
+from itertools import cycle, product
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -35,6 +35,11 @@ def some(cases: Iterable[Case], step: int, first: int = 0) -> list[Case]:
 def examples(count: int) -> settings:
     """Draw so many examples, where one takes long; with the full profile as many as it says."""
     return settings() if FULL else settings(max_examples=count)
+
+
+def by_turns(cases: Iterable[Any], *ways: Any) -> list[tuple[Any, Any]]:
+    """Return each case with one of the ways, by turns; with each way with the full profile."""
+    return [*product(cases, ways)] if FULL else [*zip(cases, cycle(ways))]
 
 
 def pairwise(*axes: Sequence[Any]) -> list[tuple[Any, ...]]:

@@ -6,6 +6,7 @@ import json
 import re
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,6 @@ import pytest
 import tomli_w
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mcap.writer import Writer
 
 from compiler.emit import TARGETS
 from compiler.project.folder import Project, load
@@ -23,10 +23,11 @@ from fretc.audit.plan import Plan, planned
 from fretc.terminal.output import BAD, SHOWN, VIOLATION
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
-from tests.command import Fretc, write
+from tests.command import Fretc, made_once, write
 from tests.effort import FULL, some
+from tests.fretc.logs.logs import MS, S, said
+from tests.fretc.logs.logs import write as write_log
 
-MS, START = 10**6, 10**9
 BINDINGS = """\
 [clock]
 tick = "100 ms"
@@ -136,18 +137,12 @@ def refused(cases: Iterable[Case]) -> set[str]:
 
 def log() -> str:
     """Five values of each topic, 100 ms apart, all from the same time on."""
-    with Path("l.mcap").open("wb") as file:
-        writer = Writer(file)
-        writer.start()
-        schema = writer.register_schema("A", "jsonschema", b"{}")
-        for topic in ("/a", "/b"):
-            channel = writer.register_channel(topic, "json", schema)
-            for number in range(5):
-                time = START + number * 100 * MS
-                data = json.dumps({"x": number, "y": 5 - number}).encode()
-                writer.add_message(channel, time, data, time)
-        writer.finish()  # type: ignore[no-untyped-call]
-    return "l.mcap"
+    messages = [
+        said(topic, S + number * 100 * MS, x=number, y=5 - number)
+        for topic in ("/a", "/b")
+        for number in range(5)
+    ]
+    return str(write_log(Path("l.mcap"), messages))
 
 
 def project(bindings: str = BINDINGS) -> Project:
@@ -171,17 +166,23 @@ def verdicts_of(plan: Plan) -> dict[str, Any]:
     return verdicts
 
 
+@cache
+def good_verdicts() -> dict[str, Any]:
+    """The same of bindings without a mistake."""
+    plan = planned(project())
+    assert isinstance(plan, Plan)
+    return verdicts_of(plan)
+
+
 def check(cases: Sequence[Case]) -> None:
     """The law: what is refused, why, and that all else is what it was."""
+    good = good_verdicts()
     flawed = project(broken(cases))
-    good_plan, plan = planned(project()), planned(flawed)
-    assert isinstance(good_plan, Plan)
+    plan = planned(flawed)
     assert isinstance(plan, Plan)
     refused_ids = refused(cases)
     assert {each.id for each in plan.refused} == refused_ids
-    assert verdicts_of(plan) == {
-        id: what for id, what in verdicts_of(good_plan).items() if id not in refused_ids
-    }
+    assert verdicts_of(plan) == {id: good[id] for id in good if id not in refused_ids}
     codes = {kind.split()[0] for _, _, kind in cases}
     errors = [each.code.number for each in flawed.diagnostics if each.is_error]
     assert {why.code.number for why in plan.refusals} <= {*errors} <= codes
@@ -240,6 +241,17 @@ def test_an_audit_judges_the_others_as_before(fretc: Fretc, place: int) -> None:
         assert id not in refused_ids or result["reason"].startswith(f"not judged: {codes[0]} ")
 
 
+def audited(fretc: Fretc) -> None:
+    """A project without a mistake, its log, and the evidence."""
+
+    def make() -> None:
+        project()
+        log()
+        assert fretc("audit", "l.mcap").status == VIOLATION
+
+    made_once("an audit of sound tables", make)
+
+
 COMMANDS = [
     ("check",),
     ("report",),
@@ -261,9 +273,7 @@ COMMANDS = [
 def test_every_command_names_all_mistakes_and_makes_nothing_of_what_reads_them(
     fretc: Fretc, command: tuple[str, ...]
 ) -> None:
-    project()
-    log()
-    assert fretc("audit", "l.mcap").status == VIOLATION
+    audited(fretc)
     project(broken([("signal", "bx", "F306"), ("proposition", "idle", "F302")]))
     before = {path for path in Path().rglob("*") if path.is_file()}
     run = fretc(*command)
@@ -279,9 +289,7 @@ def test_every_command_names_all_mistakes_and_makes_nothing_of_what_reads_them(
 def test_a_report_takes_no_earlier_verdict_on_what_reads_a_broken_table(
     fretc: Fretc, case: Case
 ) -> None:
-    project()
-    log()
-    fretc("audit", "l.mcap")
+    audited(fretc)
     assert suspect(fretc) == (SHOWN, set())
     project(broken([case]))
     assert suspect(fretc) == (BAD, refused([case]))

@@ -60,7 +60,7 @@ def test_after_a_change_the_store_is_the_one_made_from_nothing(
     tmp_path: Path, judged: list[tuple[str, str]], name: str
 ) -> None:
     texts, expected = CHANGES[name]
-    before, now = plan(tmp_path / "r", PROJECT), plan(tmp_path / "r", texts)
+    before, now = plan(PROJECT), plan(texts)
     stored(now, "nothing")
     stored(before, "store")
     judged.clear()
@@ -73,8 +73,8 @@ def test_after_a_change_the_store_is_the_one_made_from_nothing(
 def test_a_new_log_is_judged_by_all_and_an_old_one_by_what_has_changed(
     tmp_path: Path, judged: list[tuple[str, str]]
 ) -> None:
-    before = plan(tmp_path / "r", PROJECT)
-    now = plan(tmp_path / "r", changed("R2", "always", "eventually"))
+    before = plan(PROJECT)
+    now = plan(changed("R2", "always", "eventually"))
     stored(before, "store")
     write(Path("b.mcap"), [*sent()])  # another one than it was
     judged.clear()
@@ -92,8 +92,8 @@ def test_a_new_log_is_judged_by_all_and_an_old_one_by_what_has_changed(
 def test_of_a_store_that_somebody_else_vouches_for_nothing_is_taken_over(
     tmp_path: Path, judged: list[tuple[str, str]]
 ) -> None:
-    before = plan(tmp_path / "r", PROJECT)
-    now = plan(tmp_path / "r", changed("R2", "always", "eventually"))
+    before = plan(PROJECT)
+    now = plan(changed("R2", "always", "eventually"))
     stored(before, "store")
     shutil.copytree("store", "copy")
     judged.clear()
@@ -101,10 +101,11 @@ def test_of_a_store_that_somebody_else_vouches_for_nothing_is_taken_over(
     assert len(judged) == len(LOGS) * 4
 
 
+@pytest.mark.confined
 @pytest.mark.slow
 def test_processes_take_over_the_same(tmp_path: Path, judged: list[tuple[str, str]]) -> None:
-    before = plan(tmp_path / "r", PROJECT)
-    now = plan(tmp_path / "r", changed("R2", "always", "eventually"))
+    before = plan(PROJECT)
+    now = plan(changed("R2", "always", "eventually"))
     stored(before, "store")
     stored(now, "nothing")
     with session(LOGS, now, Path("store")) as one:

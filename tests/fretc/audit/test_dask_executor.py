@@ -18,15 +18,15 @@ from typing import Any
 
 import pytest
 
-from compiler.project.folder import load
-from compiler.project.paths import requirement_files, sibling_path
 from fretc.audit import dask_executor
 from fretc.audit.many_logs import Audit, Engine, LogResult, audit_logs
-from fretc.audit.plan import Plan, packed, planned, unpacked
+from fretc.audit.plan import packed, unpacked
 from fretish.diagnostics import extras
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, untimed
 from tests.effort import FULL
+from tests.fretc.audit import deadly
+from tests.fretc.audit.plans import plan
 from tests.traces import MISSION, part
 
 ROOT = Path(__file__).parents[3]
@@ -78,14 +78,6 @@ def tables() -> dict[Path, bytes]:
     return {path: path.read_bytes() for path in found if path.parent.name != "register"}
 
 
-def plan() -> Plan:
-    files = requirement_files("requirements")
-    assert not isinstance(files, Diagnostic)
-    result = planned(load(files, sibling_path("requirements", "bindings.toml")))
-    assert isinstance(result, Plan)
-    return result
-
-
 def engine(cluster: Any) -> Engine:
     result = dask_executor.engine(cluster.scheduler_address.replace("tcp", "dask"), 2)
     assert not isinstance(result, Diagnostic)
@@ -97,14 +89,6 @@ def kill(cluster: Any) -> None:
     os.kill(next(iter(cluster.workers.values())).pid, signal.SIGKILL)
 
 
-def deadly(plan: bytes, log: str, folder: str, edition: str) -> LogResult | str:
-    """What a worker does, which knows of no patch: one log kills it."""
-    if log == LOGS[3]:
-        os.kill(os.getpid(), signal.SIGKILL)
-    return dask_executor._work(plan, log, folder, edition)
-
-
-@pytest.mark.slow
 def test_a_plan_is_the_same_after_a_journey(fretc: Fretc) -> None:
     there = unpacked(packed(plan()))
     assert there == plan()
@@ -141,47 +125,6 @@ def test_the_command_gives_the_same_on_a_fleet(fretc: Fretc, cluster: Any) -> No
 
 
 @pytest.mark.slow
-def test_a_worker_that_is_killed_loses_nothing_and_counts_nothing_twice(
-    fretc: Fretc, cluster: Any
-) -> None:
-    here = audit_logs(plan(), LOGS)
-    names: list[str] = []
-
-    def tell(log: str, audited: LogResult) -> None:
-        if not names:
-            kill(cluster)
-        names.append(log)
-
-    there = audit_logs(plan(), LOGS, engine(cluster), tell=tell)
-    assert there == here
-    assert sorted(names) == LOGS
-
-
-@pytest.mark.slow
-def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
-    fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    here = audit_logs(plan(), LOGS[:5])
-    monkeypatch.setattr(dask_executor, "_work", deadly)
-    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 1)
-    there = audit_logs(plan(), LOGS[:5], engine(cluster))
-    assert isinstance(here, Audit)
-    assert isinstance(there, Audit)
-    assert [r for r in there.results if r.run != LOGS[3]] == [
-        r for r in here.results if r.run != LOGS[3]
-    ]
-    (result,) = [r for r in there.results if r.run == LOGS[3]]
-    assert result.verdict == "no data"
-    assert result.hashes == here.results[3].hashes
-    (finding,) = result.health.findings
-    assert (finding.code, finding.message) == (
-        "F419",
-        f"the process that audited `{LOGS[3]}` was killed, and again when it ran alone: "
-        "all workers of Dask that tried it died",
-    )
-
-
-@pytest.mark.slow
 def test_a_worker_with_another_fretc_is_refused(
     fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -204,6 +147,48 @@ def test_a_worker_without_fretc_is_refused(
     assert (diagnostic.code.number, diagnostic.message) == (
         "F911",
         "a worker has no fretc, or another one: No module named 'compiler'",
+    )
+
+
+@pytest.mark.slow
+def test_a_worker_that_is_killed_loses_nothing_and_counts_nothing_twice(
+    fretc: Fretc, cluster: Any
+) -> None:
+    here = audit_logs(plan(), LOGS)
+    names: list[str] = []
+
+    def tell(log: str, audited: LogResult) -> None:
+        if not names:
+            kill(cluster)
+        names.append(log)
+
+    there = audit_logs(plan(), LOGS, engine(cluster), tell=tell)
+    assert there == here
+    assert sorted(names) == LOGS
+
+
+@pytest.mark.slow
+def test_a_log_that_kills_its_workers_is_told_and_the_others_are_audited(
+    fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The last one of the cluster: who dies while it begins is not always begun again."""
+    here = audit_logs(plan(), LOGS[:5])
+    monkeypatch.setattr(dask_executor, "_work", deadly.work)
+    monkeypatch.setattr(cluster.scheduler, "allowed_failures", int(FULL))
+    there = audit_logs(plan(), LOGS[:5], engine(cluster))
+    assert isinstance(here, Audit)
+    assert isinstance(there, Audit)
+    assert [r for r in there.results if r.run != deadly.LOG] == [
+        r for r in here.results if r.run != deadly.LOG
+    ]
+    (result,) = [r for r in there.results if r.run == deadly.LOG]
+    assert result.verdict == "no data"
+    assert result.hashes == here.results[3].hashes
+    (finding,) = result.health.findings
+    assert (finding.code, finding.message) == (
+        "F419",
+        f"the process that audited `{deadly.LOG}` was killed, and again when it ran alone: "
+        "all workers of Dask that tried it died",
     )
 
 
@@ -290,32 +275,37 @@ def test_a_cluster_of_its_own_is_stopped_and_goes_on(fretc: Fretc) -> None:
     assert tables() == evidence
 
 
+@pytest.fixture(scope="module")
+def own() -> Iterator[Any]:
+    """A client of a cluster of its own."""
+    with dask_executor._own_cluster(1) as client:
+        yield client
+
+
 @pytest.mark.slow
-def test_nobody_else_on_the_machine_is_let_into_a_cluster_of_its_own() -> None:
+def test_nobody_else_on_the_machine_is_let_into_a_cluster_of_its_own(own: Any) -> None:
     """Who can connect can execute code as the one who audits."""
     from distributed import Client, Security
 
-    with dask_executor._own_cluster(1) as client:
-        address = client.scheduler.address
-        assert address.startswith("tls://127.0.0.1:")
-        plain = address.replace("tls", "tcp")
-        for place, security in (
-            (plain, None),
-            (address, None),
-            (address, Security.temporary()),
-            (address, Security(require_encryption=True)),
-        ):
-            with pytest.raises((OSError, TypeError, ValueError, RuntimeError)):
-                Client(place, security=security, timeout=3, set_as_default=False)
-        assert client.submit(int, "7").result() == 7
-        (worker,) = client.scheduler_info()["workers"]
-        assert worker.startswith("tls://127.0.0.1:")
+    address = own.scheduler.address
+    assert address.startswith("tls://127.0.0.1:")
+    plain = address.replace("tls", "tcp")
+    for place, security in (
+        (plain, None),
+        (address, None),
+        (address, Security.temporary()),
+        (address, Security(require_encryption=True)),
+    ):
+        with pytest.raises((OSError, TypeError, ValueError, RuntimeError)):
+            Client(place, security=security, timeout=3, set_as_default=False)
+    assert own.submit(int, "7").result() == 7
+    (worker,) = own.scheduler_info()["workers"]
+    assert worker.startswith("tls://127.0.0.1:")
 
 
 @pytest.mark.slow
-def test_a_cluster_of_its_own_has_no_pages() -> None:
-    with dask_executor._own_cluster(1) as client:
-        port = client.scheduler_info()["services"].get("dashboard")
-        for path in ("/info/main/workers.html", "/json/counts.json", "/metrics", "/health"):
-            with pytest.raises(OSError, match="404"):
-                urllib.request.urlopen(f"http://127.0.0.1:{port}{path}", timeout=LONG)
+def test_a_cluster_of_its_own_has_no_pages(own: Any) -> None:
+    port = own.scheduler_info()["services"].get("dashboard")
+    for path in ("/info/main/workers.html", "/json/counts.json", "/metrics", "/health"):
+        with pytest.raises(OSError, match="404"):
+            urllib.request.urlopen(f"http://127.0.0.1:{port}{path}", timeout=LONG)

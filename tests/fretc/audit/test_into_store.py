@@ -16,16 +16,15 @@ import pytest
 
 from compiler.files import text_files as files
 from compiler.files.user_key import user_key
-from compiler.project.folder import load
-from compiler.project.paths import requirement_files, sibling_path
 from fretc.audit.into_store import StoredAudit, StoreWriter
 from fretc.audit.many_logs import SEQUENTIAL, Engine, LogAudits, audit_logs, audited, local_executor
-from fretc.audit.plan import Plan, planned
+from fretc.audit.plan import Plan
 from fretc.audit.store import parts
 from fretc.audit.store.reader import Store, evidence, opened
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from tests.command import Fretc, untimed
 from tests.effort import some
+from tests.fretc.audit.plans import plan
 from tests.traces import part
 
 ROOT = Path(__file__).parents[3]
@@ -41,14 +40,6 @@ def fretc(fretc: Fretc, monkeypatch: pytest.MonkeyPatch) -> Fretc:
     for log in LOGS:
         Path(log).write_bytes(part())
     return fretc
-
-
-def plan(evaluation: str = "columns") -> Plan:
-    paths = requirement_files("requirements")
-    assert not isinstance(paths, Diagnostic)
-    result = planned(load(paths, sibling_path("requirements", "bindings.toml")), evaluation)
-    assert isinstance(result, Plan)
-    return result
 
 
 def session(
@@ -119,6 +110,7 @@ def stop_after(logs: int) -> None:
 # The same from nothing ---------------------------------------------------------------------------
 
 
+@pytest.mark.confined
 @pytest.mark.slow
 def test_a_store_depends_on_no_engine_and_no_order(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch

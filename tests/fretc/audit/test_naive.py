@@ -1,6 +1,6 @@
 """Audits of random small logs, against an auditor written from the documentation.
 
-200 runs; `HYPOTHESIS_PROFILE=full`: 4000.
+40 runs; `HYPOTHESIS_PROFILE=full`: 4000.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import settings
 
 from compiler.formalization.formalize import formalize
 from compiler.targets.python.monitor import text
@@ -31,6 +30,7 @@ from fretish.documents import requirements
 from monitors import kernel
 from monitors.kernel import Monitor
 from monitors.loading import load
+from tests.effort import FULL
 from tests.fretc.audit.naive import (
     FACTORS,
     FORMS,
@@ -50,7 +50,7 @@ expr = "x < 1"
 [proposition.q]
 expr = "x < 2"
 """
-RUNS = 2 * settings().max_examples
+RUNS = 4000 if FULL else 40
 START = 5 * S
 OPERATORS = ("<", "<=", ">", ">=", "=", "!=")
 LARGE = (2**53 - 1, 2**53, 2**53 + 1, 2**53 + 2, 2**63 - 1, 2**63 - 2, -(2**53), -(2**53) - 1)

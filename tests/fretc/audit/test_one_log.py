@@ -14,11 +14,11 @@ from fretc.audit.evidence.writer import RunResult, as_record
 from fretc.audit.one_log import MonitoredRequirement, audit, signals_of
 from fretc.logs.signals.samples import Recording, Samples
 from fretish.bindings.declarations import Declarations
-from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from monitors.loading import load
 from tests.fretc.audit.results import HASHES
+from tests.fretc.logs.logs import declare
 
 S = 10**9
 BINDINGS = """
@@ -40,12 +40,6 @@ expr = "abs(v) < 0.01 m/s"
 FAR, NEAR, STILL, MOVING = 1.0, 0.01, 0.0, 0.4
 
 
-def declared(text: str = BINDINGS) -> Declarations:
-    declarations, diagnostics = read_bindings(Source("bindings.toml", text))
-    assert declarations is not None, diagnostics
-    return declarations
-
-
 def recorded(
     distances: Sequence[float], speeds: Sequence[float], end: float | None = None
 ) -> Recording:
@@ -65,7 +59,7 @@ def recorded(
 def audited(
     sentence: str, recording: Recording, declarations: Declarations | None = None
 ) -> RunResult:
-    bindings = declarations or declared()
+    bindings = declarations or declare(BINDINGS)
     ((requirement,), _) = requirements(Source("R1.fret", sentence))
     rule, diagnostics = formalize(requirement, bindings)
     assert rule is not None, diagnostics
@@ -109,7 +103,7 @@ def test_a_demand_that_is_open_at_the_end_is_inconclusive() -> None:
 
 
 def test_the_clock_can_make_an_open_demand_a_violation() -> None:
-    strict = declared(BINDINGS.replace("[clock]", '[clock]\nend = "violated"'))
+    strict = declare(BINDINGS.replace("[clock]", '[clock]\nend = "violated"'))
     evidence = audited(EVENTUALLY, recorded([FAR, FAR, NEAR], [MOVING] * 3), strict)
     assert evidence.verdict == "violated"
 
@@ -176,7 +170,7 @@ def test_the_record_is_plain_json_with_times_in_nanoseconds() -> None:
 
 
 def test_the_signals_of_propositions_are_named_once_in_order() -> None:
-    assert signals_of(declared(), ["still", "near", "still"]) == ("v", "d")
+    assert signals_of(declare(BINDINGS), ["still", "near", "still"]) == ("v", "d")
 
 
 @pytest.mark.slow
@@ -197,7 +191,7 @@ def test_the_signals_of_propositions_are_named_once_in_order() -> None:
 def test_a_number_is_at_a_threshold_by_its_rounded_value_where_the_comparison_decides(
     cm: float, where: str | None
 ) -> None:
-    bindings = declared()
+    bindings = declare(BINDINGS)
     sentence = "whenever near the rover shall immediately satisfy still"
     ((requirement,), _) = requirements(Source("R1.fret", sentence))
     rule, _ = formalize(requirement, bindings)

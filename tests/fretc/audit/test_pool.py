@@ -12,6 +12,8 @@ import pytest
 
 from fretc.audit.pool import Limits, TimedOut, WorkerDied, each
 
+pytestmark = pytest.mark.confined
+
 
 @pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2, 5])

@@ -170,7 +170,6 @@ def test_audit_finds_the_blind_sensor_and_the_stop_that_is_never_released(robot:
     )
 
 
-@pytest.mark.slow
 def test_verify_finds_that_no_agent_believes_an_action(robot: Fretc) -> None:
     files = ("--agent", "agent.gwen", "--properties", "agent.psl")
     run = robot(
@@ -190,7 +189,6 @@ def test_verify_finds_that_no_agent_believes_an_action(robot: Fretc) -> None:
     assert "`stop_moving` is an action, and actions are not believed" in line
 
 
-@pytest.mark.slow
 def test_verify_finds_that_the_published_environment_triggers_nothing(robot: Fretc) -> None:
     files = ("--agent", "agent.gwen", "--properties", "agent.psl")
     run = robot(

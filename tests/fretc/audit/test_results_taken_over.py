@@ -1,13 +1,15 @@
 """Results of an earlier audit: the same as judged again, for each change of what they rest on."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
 
 from compiler.files.records import replace as record_with
-from compiler.project.folder import load
+from compiler.project.folder import Project, load
 from fretc.audit import many_logs as auditing
 from fretc.audit import one_log
 from fretc.audit.evidence.schema import Result
@@ -79,7 +81,8 @@ CHANGES: dict[str, tuple[Texts, set[str]]] = {
 }
 
 
-def plan(folder: Path, texts: Texts, evaluation: str = "columns") -> Plan:
+def written(folder: Path, texts: Texts) -> Project:
+    """A project of these texts in a folder."""
     folder.mkdir(exist_ok=True)
     bindings = folder / "bindings.toml"
     bindings.write_text(texts["bindings"])
@@ -89,7 +92,23 @@ def plan(folder: Path, texts: Texts, evaluation: str = "columns") -> Plan:
             path = folder / f"{id}.fret"
             path.write_text(f'+++\nid = "{id}"\n+++\n{sentence}\n')
             paths.append(str(path))
-    made = planned(load(paths, str(bindings)), evaluation)
+    return load(paths, str(bindings))
+
+
+def plan(texts: Texts, evaluation: str = "columns") -> Plan:
+    """The plan of a project of these texts: made once, wherever it is used."""
+    return _plan(tuple(texts.items()), evaluation)
+
+
+@cache
+def _folder() -> TemporaryDirectory[str]:
+    """Of all of them: what an audit says of a topic that is missing names the bindings."""
+    return TemporaryDirectory()
+
+
+@cache
+def _plan(texts: tuple[tuple[str, str], ...], evaluation: str) -> Plan:
+    made = planned(written(Path(_folder().name), dict(texts)), evaluation)
     assert isinstance(made, Plan), made
     return made
 
@@ -131,7 +150,7 @@ def test_after_each_change_only_what_it_changes_is_judged_and_all_is_as_from_not
     tmp_path: Path, log: str, judged: list[str], name: str
 ) -> None:
     texts, expected = CHANGES[name]
-    before, now = plan(tmp_path / "before", PROJECT), plan(tmp_path / "now", texts)
+    before, now = plan(PROJECT), plan(texts)
     earlier = audited(before, log)
     from_nothing = audited(now, log)
     judged.clear()
@@ -144,13 +163,13 @@ def test_after_each_change_only_what_it_changes_is_judged_and_all_is_as_from_not
 @pytest.mark.parametrize("name", some(CHANGES, 4, 1))
 def test_and_back_again(tmp_path: Path, log: str, name: str) -> None:
     texts, _ = CHANGES[name]
-    before, now = plan(tmp_path / "before", texts), plan(tmp_path / "now", PROJECT)
+    before, now = plan(texts), plan(PROJECT)
     known = taken(before, now, audited(before, log))
     assert audited(now, log, known) == audited(now, log)
 
 
 def test_nothing_is_taken_over_of_another_log(tmp_path: Path, log: str, judged: list[str]) -> None:
-    made = plan(tmp_path / "plan", PROJECT)
+    made = plan(PROJECT)
     known = audited(made, log).results
     write(Path(log), [*sent(late=True)])
     judged.clear()
@@ -164,7 +183,7 @@ def test_nothing_is_taken_over_of_another_log(tmp_path: Path, log: str, judged: 
 def test_a_result_of_a_log_that_is_damaged_by_now_is_not_taken_over(
     tmp_path: Path, log: str
 ) -> None:
-    made = plan(tmp_path / "plan", PROJECT)
+    made = plan(PROJECT)
     good = audited(made, log).results
     worse = [record_with(each, health=record_with(each.health, intact=False)) for each in good]
     wrong = [record_with(each, verdict="violated") for each in worse]
@@ -173,9 +192,9 @@ def test_a_result_of_a_log_that_is_damaged_by_now_is_not_taken_over(
 
 @pytest.mark.slow
 def test_another_evaluation_or_a_closer_look_is_another_key(tmp_path: Path) -> None:
-    files = [plan(tmp_path / "a", PROJECT), plan(tmp_path / "b", PROJECT, "online")]
+    files = [plan(PROJECT), plan(PROJECT, "online")]
     one, other = map(keys, files)
     assert not {*one.values()} & {*other.values()}
-    project = load([str(tmp_path / "a" / "R1.fret")], str(tmp_path / "a" / "bindings.toml"))
+    project = written(tmp_path, {name: PROJECT[name] for name in ("bindings", "R1")})
     looks = [planned(project, integrity=each) for each in Integrity]
     assert len({keys(each)["R1"] for each in looks if isinstance(each, Plan)}) == len(Integrity)

@@ -1,9 +1,10 @@
 """Small logs with chosen contents, and declarations to read them with."""
 
+import json
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,7 @@ def payload(type_: str, encoding: str = "cdr", **fields: Any) -> bytes:
     return bytes(types.serialize_ros1(message, name))
 
 
+@cache
 def definition(type_: str, encoding: str) -> bytes:
     name = type_ if "/msg/" in type_ else type_.replace("/", "/msg/")
     text, _ = store(encoding).generate_msgdef(name, ros_version=2 if encoding == "cdr" else 1)
@@ -126,6 +128,11 @@ def number(value: float, time: int, topic: str = "/x", encoding: str = "cdr") ->
     return Sent(topic, type_, data + struct.pack("<d", value), time, encoding=encoding)
 
 
+def said(topic: str, time: int, **fields: object) -> Sent:
+    """A message in JSON."""
+    return Sent(topic, "J", json.dumps(fields).encode(), time, encoding="json")
+
+
 def header(stamp: int, encoding: str = "cdr") -> Any:
     types = store(encoding).types
     time = types["builtin_interfaces/msg/Time"](*divmod(stamp, S))
@@ -163,6 +170,7 @@ def scan(
     return Sent("/scan", type_, data, time, encoding=encoding)
 
 
+@lru_cache(maxsize=512)
 def declare(text: str) -> Declarations:
     """The declarations of a bindings file; it has to be right."""
     declarations, wrong = read_bindings(Source("bindings.toml", text))

@@ -15,12 +15,11 @@ from fretc.audit.bindings.draft import (
 )
 from fretc.logs.reader import look, read
 from fretc.logs.signals.samples import Recording
-from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from tests.command import write as put
-from tests.fretc.logs.logs import MS, S, Sent, number, payload, scan, write
+from tests.fretc.logs.logs import MS, S, Sent, declare, number, payload, scan, write
 
 ROOT = Path(__file__).parents[4]
 LOGS = sorted((ROOT / "traces").glob("*.mcap"))
@@ -32,12 +31,6 @@ def drafted(
     overview = look(str(path), words=True)
     assert not isinstance(overview, Diagnostic), overview
     return draft(overview, needs, durations)
-
-
-def declared(text: str) -> Declarations:
-    declarations, diagnostics = read_bindings(Source("bindings.toml", text))
-    assert declarations is not None, diagnostics
-    return declarations
 
 
 def every(period: int, count: int, topic: str = "/x", start: int = 1000 * S) -> list[Sent]:
@@ -66,7 +59,7 @@ def test_a_whole_draft(
 def test_a_draft_without_open_propositions_is_read_and_finds_no_fault_with_its_log(
     path: Path,
 ) -> None:
-    declarations = declared(drafted(path))
+    declarations = declare(drafted(path))
     assert len(declarations.signals) > 10
     recording = read(str(path), declarations, list(declarations.signals))
     assert isinstance(recording, Recording)
@@ -75,7 +68,7 @@ def test_a_draft_without_open_propositions_is_read_and_finds_no_fault_with_its_l
 
 
 def test_a_signal_is_known_between_two_messages_of_its_topic(tmp_path: Path) -> None:
-    declarations = declared(drafted(write(tmp_path / "a.mcap", every(100 * MS, 20))))
+    declarations = declare(drafted(write(tmp_path / "a.mcap", every(100 * MS, 20))))
     assert declarations.signals["x"].max_age == 300 * MS
     assert declarations.clock.period == 100 * MS
 
@@ -83,7 +76,7 @@ def test_a_signal_is_known_between_two_messages_of_its_topic(tmp_path: Path) -> 
 def test_bursts_do_not_make_a_sample_old_at_once(tmp_path: Path) -> None:
     """Three messages within 2 ms, every 100 ms: most steps are short."""
     messages = [m for i in range(20) for m in every(MS, 3, start=1000 * S + i * 100 * MS)]
-    age = declared(drafted(write(tmp_path / "a.mcap", messages))).signals["x"].max_age
+    age = declare(drafted(write(tmp_path / "a.mcap", messages))).signals["x"].max_age
     assert age is not None
     assert 98 * MS <= age <= 300 * MS
 
@@ -91,35 +84,35 @@ def test_bursts_do_not_make_a_sample_old_at_once(tmp_path: Path) -> None:
 def test_the_tick_is_that_of_the_slowest_topic_that_is_fast(tmp_path: Path) -> None:
     messages = [*every(10 * MS, 300), *every(40 * MS, 80, "/y"), *every(S, 11, "/slow")]
     messages.sort(key=lambda message: message.time)
-    assert declared(drafted(write(tmp_path / "a.mcap", messages))).clock.period == 40 * MS
-    late = declared(drafted(write(tmp_path / "c.mcap", every(101 * MS, 20))))
+    assert declare(drafted(write(tmp_path / "a.mcap", messages))).clock.period == 40 * MS
+    late = declare(drafted(write(tmp_path / "c.mcap", every(101 * MS, 20))))
     assert late.clock.period == 100 * MS  # a little late is no other rate
-    of_slow_topic = declared(drafted(write(tmp_path / "b.mcap", every(S, 11, "/slow"))))
+    of_slow_topic = declare(drafted(write(tmp_path / "b.mcap", every(S, 11, "/slow"))))
     assert of_slow_topic.clock.period == S
 
 
 def test_events_have_no_rate(tmp_path: Path) -> None:
     text = drafted(write(tmp_path / "a.mcap", every(S, 2)))
-    assert declared(text).signals["x"].max_age is None
-    assert declared(text).clock.period == 100 * MS
+    assert declare(text).signals["x"].max_age is None
+    assert declare(text).clock.period == 100 * MS
     assert '# max_age = "1 s"' in text
 
 
 def test_names_are_ones_that_expressions_can_use(tmp_path: Path) -> None:
     topics = ["/a/b", "/a_b", "/min", "/9", "/A-c", "not"]
     text = drafted(write(tmp_path / "a.mcap", [m for t in topics for m in every(MS, 1, t)]))
-    declarations = declared(text)
+    declarations = declare(text)
     assert set(declarations.signals) == {"a_b", "a_b_2", "min_2", "a_c", "not_2"}
     assert "# no path can name a topic that is called so" in text  # /9
     expr = " + ".join(declarations.signals)
-    declared(f'{text}\n[proposition.p]\nexpr = "{expr} > 0"\n')
+    declare(f'{text}\n[proposition.p]\nexpr = "{expr} > 0"\n')
 
 
 def test_what_a_log_calls_its_topics_and_types_cannot_leave_a_comment(tmp_path: Path) -> None:
     evil = '/x"\n[signal.y]\npath = "/z.data'
     message = number(1.0, S, topic=evil)
     text = drafted(write(tmp_path / "a.mcap", [message, *every(MS, 1)]))
-    assert set(declared(text).signals) == {"x"}
+    assert set(declare(text).signals) == {"x"}
 
 
 def test_other_numbers_are_there_as_comments(tmp_path: Path) -> None:
@@ -141,7 +134,7 @@ def test_a_proposition_that_is_to_be_filled_in_is_an_error_until_it_is(tmp_path:
     assert diagnostic.span is not None
     line = diagnostic.span.source.text.splitlines()[diagnostic.span.line - 1]
     assert line == 'expr = "TODO: when is it true? As in: x < 0.5"'
-    filled = declared(text.replace(line, 'expr = "x < 0.5"'))
+    filled = declare(text.replace(line, 'expr = "x < 0.5"'))
     assert filled.propositions["near"].role == "input"
 
 
@@ -155,19 +148,19 @@ def texts(*seen: str, topic: str = "/mode") -> list[Sent]:
 
 def test_the_words_of_a_text_are_those_of_the_log(tmp_path: Path) -> None:
     path = write(tmp_path / "a.mcap", texts(*["drive", "in motion", "drive"] * 4))
-    mode = declared(drafted(path)).signals["mode"]
+    mode = declare(drafted(path)).signals["mode"]
     assert mode.values == ("drive", "in motion")
     assert mode.max_age == 1500 * MS
-    recording = read(str(path), declared(drafted(path)), ["mode"])
+    recording = read(str(path), declare(drafted(path)), ["mode"])
     assert isinstance(recording, Recording)
     assert recording.findings == ()
 
 
 @pytest.mark.parametrize("text", ["x" * 41, 'a"b', "a\nb"])
 def test_free_text_is_no_signal(tmp_path: Path, text: str) -> None:
-    assert declared(drafted(write(tmp_path / "a.mcap", texts("a", text)))).signals == {}
+    assert declare(drafted(write(tmp_path / "a.mcap", texts("a", text)))).signals == {}
     many = texts(*(f"word {i}" for i in range(21)))
-    assert declared(drafted(write(tmp_path / "b.mcap", many))).signals == {}
+    assert declare(drafted(write(tmp_path / "b.mcap", many))).signals == {}
 
 
 def test_words_of_other_messages_are_there_as_comments(tmp_path: Path) -> None:
@@ -193,7 +186,7 @@ def test_a_proposition_that_is_called_as_a_truth_value_of_the_log_is_that(tmp_pa
     sent = [named("/docking", flag, payload(flag, data=True))]
     needs = [MissingProposition("docking", ("R1",), "input", "any")]
     text = drafted(write(tmp_path / "a.mcap", sent), needs)
-    assert declared(text).propositions["docking"].signals == ("docking",)
+    assert declare(text).propositions["docking"].signals == ("docking",)
 
 
 @pytest.mark.parametrize(
@@ -207,7 +200,7 @@ def test_durations_are_whole_numbers_of_the_tick(
     tmp_path: Path, durations: tuple[int, ...], tick: int
 ) -> None:
     text = drafted(write(tmp_path / "a.mcap", every(200 * MS, 12)), (), durations)
-    assert declared(text).clock.period == tick * MS
+    assert declare(text).clock.period == tick * MS
 
 
 # What requirements still need

@@ -15,12 +15,11 @@ from fretc.audit.evidence.courses import course, place
 from fretc.audit.evidence.reader import EvidenceFile, read
 from fretc.audit.evidence.schema import MOST_POINTS, MOST_WORDS, Result, Way
 from fretc.logs.signals.samples import Recording, Samples
-from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from tests.command import Fretc
 from tests.command import write as put
-from tests.fretc.logs.logs import MS, S, Sent, payload, write
+from tests.fretc.logs.logs import MS, S, Sent, declare, payload, write
 
 BINDINGS = """
 [clock]
@@ -38,12 +37,6 @@ MAP = """
 x = "/odom.pose.pose.position.x"
 y = "/odom.pose.pose.position.y"
 """
-
-
-def declared(text: str = BINDINGS + MAP) -> Declarations:
-    declarations, diagnostics = read_bindings(Source("bindings.toml", text))
-    assert declarations is not None, diagnostics
-    return declarations
 
 
 def log(x: Samples, y: Samples, **changes: Any) -> Recording:
@@ -68,12 +61,12 @@ def log(x: Samples, y: Samples, **changes: Any) -> Recording:
 def way(rows: Sequence[tuple[int, float, float]], **changes: Any) -> Way | None:
     times = np.array([time for time, _, _ in rows], np.int64) * MS
     x, y = (Samples(times, np.array([row[n] for row in rows])) for n in (1, 2))
-    found = course(log(x, y, **changes), declared())
+    found = course(log(x, y, **changes), declare(BINDINGS + MAP))
     return found.way if found else None
 
 
 def test_a_coordinate_is_read_as_its_signal_is_and_else_in_metres() -> None:
-    drawn = declared().map
+    drawn = declare(BINDINGS + MAP).map
     assert drawn is not None
     assert (drawn.x.unit_name, drawn.y.unit_name) == ("cm", "m")
     assert (drawn.x.name, drawn.y.name) == ("[map] x", "[map] y")
@@ -141,7 +134,7 @@ def test_words_are_their_changes_and_unknown_where_they_are_too_old() -> None:
     times = np.array([0, 500, 900, 5000, 5500], np.int64) * MS
     mode = Samples(times, np.array([0.0, 0.0, 1.0, 1.0, 0.0]), words=("drive", "docking"))
     nothing = Samples(np.array([], np.int64), np.array([]))
-    found = course(log(nothing, nothing, samples={"mode": mode}), declared())
+    found = course(log(nothing, nothing, samples={"mode": mode}), declare(BINDINGS + MAP))
     assert found is not None
     assert found.way is None
     (words,) = found.words.values()
@@ -151,7 +144,7 @@ def test_words_are_their_changes_and_unknown_where_they_are_too_old() -> None:
         ("drive", "docking", None, "docking", "drive", None),
     )
     many = Samples(np.arange(900) * 100 * MS, np.arange(900) % 2.0, words=("drive", "docking"))
-    short = course(log(nothing, nothing, samples={"mode": many}), declared())
+    short = course(log(nothing, nothing, samples={"mode": many}), declare(BINDINGS + MAP))
     assert short is not None
     assert len(short.words["mode"].words) == MOST_WORDS
     assert short.words["mode"].changes_left_out == 901 - MOST_WORDS

@@ -12,6 +12,7 @@ from fretc.audit.evidence.reader import EvidenceFile, read
 from fretc.audit.evidence.schema import Moment
 from fretc.report.make import make
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
+from tests.effort import examples
 from tests.fretc.report.cases import evidence, moment, project, result, violation
 
 
@@ -200,7 +201,7 @@ def _paths(value: Any, at: tuple[str | int, ...] = ()) -> list[tuple[str | int, 
 
 
 @pytest.mark.slow
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(examples(10), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 @example(data=None)
 def test_no_mutation_of_the_evidence_gives_a_traceback(

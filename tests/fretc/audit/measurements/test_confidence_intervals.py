@@ -1,8 +1,8 @@
 """From counts to an answer: by exact sums and by simulation, whatever triggers of a run share."""
 
-import os
 from collections.abc import Callable
 from fractions import Fraction
+from functools import cache
 from itertools import product
 from math import comb, prod
 
@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from fretc.audit.measurements.confidence_intervals import (
     Bounds,
+    Estimate,
     answer,
     both_sides,
     bounds,
@@ -22,6 +23,7 @@ from fretc.audit.measurements.confidence_intervals import (
 )
 from fretc.audit.measurements.trials import Trials
 from fretish.expressions import ComparisonOperator
+from tests.effort import FULL, pairwise, some
 
 
 def spread(answered: int, failed: int, open_: int = 0, logs: int = 100) -> list[Trials]:
@@ -60,6 +62,11 @@ def holds(p: Fraction, op: ComparisonOperator, bound: Fraction) -> bool:
     }[op]  # fmt: skip
 
 
+@cache
+def good_and_bad(count: int, others: int, confidence: float) -> Estimate:
+    return estimated(good(count, 50) + bad(others, 50), confidence)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("op", OPERATORS)
 @pytest.mark.parametrize(("n", "bound"), [(25, "0.8"), (33, "0.9"), (60, "0.5"), (60, "0.05")])
@@ -67,9 +74,9 @@ def test_where_whole_runs_are_good_or_bad_no_answer_is_wrong_more_often_than_sta
     op: ComparisonOperator, n: int, bound: str
 ) -> None:
     """The true probability is p; each answer that contradicts it, over all outcomes of n runs."""
-    answers = [answer_of(op, bound, good(k, 50) + bad(n - k, 50)) for k in range(n + 1)]
-    edge = Fraction(bound)
-    for p in [Fraction(i, 40) for i in range(41)] + [edge, edge - Fraction(1, 999)]:
+    edge, confidence = Fraction(bound), both_sides(op, 0.95)
+    answers = [answer(good_and_bad(k, n - k, confidence), op, edge) for k in range(n + 1)]
+    for p in (edge, edge - Fraction(1, 999), *some([Fraction(i, 40) for i in range(41)], 8)):
         false_answer = "refuted" if holds(p, op, edge) else "supported"
         weight = sum(
             (
@@ -83,7 +90,7 @@ def test_where_whole_runs_are_good_or_bad_no_answer_is_wrong_more_often_than_sta
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("confidence", [0.9, 0.95, 0.99])
+@pytest.mark.parametrize("confidence", some([0.95, 0.9, 0.99], 3))
 def test_runs_of_different_lengths_and_chances_keep_the_level(confidence: float) -> None:
     """Short runs are better than long ones; what is bounded is their mean, weighed by triggers."""
     (small, many), (large, few) = (1, 12), (4, 8)
@@ -141,7 +148,7 @@ DRAWS: dict[str, Draw] = {
 }
 """How many of the triggers of each of n runs are answered; in the second the correlation of two
 triggers of a run is 0.3."""
-REPETITIONS = 1000 if os.environ.get("HYPOTHESIS_PROFILE") == "full" else 30
+REPETITIONS = 1000 if FULL else 30
 
 
 def wrong(kind: str, n: int, p: float, confidence: float, repetitions: int) -> tuple[int, int]:
@@ -166,9 +173,7 @@ def most(repetitions: int, rate: float) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("p", [0.9, 0.99])
-@pytest.mark.parametrize("n", [30, 100, 200])
-@pytest.mark.parametrize("kind", DRAWS)
+@pytest.mark.parametrize(("kind", "n", "p"), pairwise([*DRAWS], [30, 100, 200], [0.9, 0.99]))
 def test_triggers_that_depend_on_each_other_make_no_answer_wrong_more_often(
     kind: str, n: int, p: float
 ) -> None:

@@ -15,10 +15,9 @@ from fretc.audit.measurements.trials import Trials
 from monitors.kernel import evaluate
 from monitors.kernel.columns import columns_of
 from monitors.kernel.verdicts import Truth
-from monitors.loading import load
 from tests import meaning
 from tests.effort import some
-from tests.monitoring import packed, rule
+from tests.monitoring import monitor, packed, rule
 from tests.strategies import Template, templates
 
 Columns = dict[str, list[bool]]
@@ -118,7 +117,7 @@ def test_every_template_is_counted_as_its_meaning_says(scope: str) -> None:
 def test_the_monitor_and_the_count_agree_on_every_run(scope: str) -> None:
     """The same triggers; a failure is a violation, and a satisfied run has answers only."""
     for template in tried(scope, 2):
-        machine = load("m", text(rule(template.sentence)))
+        machine = monitor(template.sentence)
         chance_ = random.Random(f"monitor {template!r}")
         for length in (3, 9, 14):
             columns = drawn(template, length, chance_)

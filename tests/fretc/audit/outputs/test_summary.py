@@ -1,6 +1,8 @@
 """What many runs say as a whole, and questions to them, through the command."""
 
 import json
+from functools import cache
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +10,7 @@ import pytest
 
 from fretc.audit.outputs.table import parquet, rows
 from tests.command import Fretc, Run
+from tests.effort import FULL
 from tests.fretc.audit.results import result as record
 from tests.fretc.report.cases import evidence, project, requirement, result, violation
 
@@ -21,6 +24,15 @@ def table(results: list[dict[str, Any]], fretc: str) -> bytes:
 @pytest.fixture
 def results(fretc: Fretc) -> list[dict[str, Any]]:
     """Three runs and two requirements, in a folder of their own."""
+    made, files = audited()
+    for name, content in files.items():
+        Path(name).write_bytes(content)
+    return made
+
+
+@cache
+def audited() -> tuple[list[dict[str, Any]], dict[str, bytes]]:
+    """The results, and the files of them."""
     own_project = project(
         Path("known"), requirement("R1", "the robot shall always satisfy near"), R2
     )
@@ -38,11 +50,11 @@ def results(fretc: Fretc) -> list[dict[str, Any]]:
         one["hashes"] = one["hashes"] | {"log": f"{number // 2:064x}"}
         one |= {"start_ns": 0, "end_ns": 3600 * 10**9}
         one["latencies_s"] = one["latencies_s"] if number in (0, 2) else []
-    Path("runs.parquet").write_bytes(table(written_results, "1"))
-    Path("evidence.json").write_text(
-        json.dumps(evidence(own_project, *written_results) | {"fretc": "1"}), "utf-8"
-    )
-    return written_results
+    document = evidence(own_project, *written_results) | {"fretc": "1"}
+    return written_results, {
+        "runs.parquet": table(written_results, "1"),
+        "evidence.json": json.dumps(document).encode(),
+    }
 
 
 SUMMARY = """\
@@ -134,19 +146,19 @@ def test_the_worst_of_several_verdicts_of_a_log_counts_and_that_is_said(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
     order = ["violated", "no data", "inconclusive", "vacuous", "satisfied"]
-    for place, worse in enumerate(order):
-        for better in order[place + 1 :]:
-            for first, second in ((worse, better), (better, worse)):
-                Path("1.parquet").write_bytes(table([{**results[0], "verdict": first}], "1"))
-                Path("2.parquet").write_bytes(table([{**results[0], "verdict": second}], "1"))
-                run = fretc("audit", "--summary", "1.parquet", "2.parquet", "--format", "json")
-                (row,) = json.loads(run.out)["by_requirement"]
-                assert (row["runs"], row[worse.replace(" ", "_")]) == (1, 1)
-                verdicts = " and ".join(sorted((worse, better)))
-                assert run.err.startswith(
-                    f"F555 warning: R1 has several verdicts of the log of a.mcap: {verdicts}; the "
-                    "worst of each log counts\n"
-                )
+    for verdict in order:
+        Path(f"{verdict}.parquet").write_bytes(table([{**results[0], "verdict": verdict}], "1"))
+    for worse, better in combinations(order, 2) if FULL else pairwise(order):
+        tables = [f"{worse}.parquet", f"{better}.parquet"]
+        for named in (tables, tables[::-1]):
+            run = fretc("audit", "--summary", *named, "--format", "json")
+            (row,) = json.loads(run.out)["by_requirement"]
+            assert (row["runs"], row[worse.replace(" ", "_")]) == (1, 1)
+            verdicts = " and ".join(sorted((worse, better)))
+            assert run.err.startswith(
+                f"F555 warning: R1 has several verdicts of the log of a.mcap: {verdicts}; the "
+                "worst of each log counts\n"
+            )
 
 
 def test_a_summary_as_json(fretc: Fretc, results: list[dict[str, Any]]) -> None:
@@ -179,7 +191,6 @@ def test_the_exit_status_is_that_of_the_audit(fretc: Fretc, results: list[dict[s
         assert fretc("audit", "--summary", f"{name}.parquet").status == status
 
 
-@pytest.mark.slow
 def test_only_the_worst_of_many_runs_are_listed(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:
@@ -203,7 +214,6 @@ def test_two_versions_of_a_requirement_are_not_counted_as_one_in_silence(
     assert run.err.startswith("F504 warning: R1 was audited as 2 different requirements: ")
 
 
-@pytest.mark.slow
 def test_a_query_is_answered_for_a_person_and_for_a_program(
     fretc: Fretc, results: list[dict[str, Any]]
 ) -> None:

@@ -83,7 +83,7 @@ def test_no_change_of_a_table_is_hidden(tmp_path: Path, monkeypatch: pytest.Monk
     all_of_them = [each for each in forgeries() if not each[2].equals(genuine[each[1]])]
     assert {name for _, name, _ in all_of_them} == {*TABLES}
     hidden = []
-    for what, name, table in some(all_of_them, 23):
+    for what, name, table in some(all_of_them, 47):
         manifest.write_bytes(sound)
         with_table(Path("store"), name, table)
         found = read("store")
@@ -107,7 +107,7 @@ def test_no_change_of_a_table_hides_what_is_violated(
     hidden = []
     decisive = [each for each in forgeries() if each[0].split()[0] in COLUMNS[each[1]]]
     assert {name for _, name, _ in decisive} == {*TABLES}
-    for what, name, table in forgeries() if FULL else decisive:
+    for what, name, table in forgeries() if FULL else decisive[::3]:
         manifest.write_bytes(sound)
         with_table(Path("store"), name, table)
         after = counted()

@@ -17,6 +17,7 @@ from fretc.audit.store.reader import Store, opened
 from fretc.audit.store.tables import TABLES, TableName, tabled
 from fretc.audit.store.writer import is_store, remove, write_document
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.command import made_once
 from tests.fretc.audit.results import result
 from tests.fretc.audit.store.test_law import document
 
@@ -30,9 +31,13 @@ RESULTS = (
 @pytest.fixture
 def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
+    made_once("a store of two runs", _written)
+    return Path("store")
+
+
+def _written() -> None:
     assert isinstance(write_document(Path("store"), document(*RESULTS)), str)
     assert not isinstance(read("store"), Diagnostic)
-    return Path("store")
 
 
 def refused(path: Path) -> str:
@@ -85,7 +90,6 @@ def test_links_and_pipes_are_not_followed(store: Path) -> None:
     assert "does not fit its manifest" in refused(store)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("table", TABLES)
 def test_a_folder_of_tables_that_is_a_link_is_neither_read_nor_cleared(
     store: Path, table: TableName
@@ -98,7 +102,6 @@ def test_a_folder_of_tables_that_is_a_link_is_neither_read_nor_cleared(
     assert any(Path("elsewhere").iterdir())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -120,7 +123,6 @@ def test_a_manifest_that_is_none_or_contradicts_itself_is_refused(
     refused(store)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("text", ["", "[]", "{", "\0", '{"schema": "fretc-store-1"}'])
 def test_what_is_no_manifest_is_refused(store: Path, text: str) -> None:
     (store / "manifest.json").write_text(text)

@@ -40,7 +40,7 @@ def values(kind: Any, *, held: bool) -> st.SearchStrategy[Any]:
             return values(inner, held=held)
         case types.UnionType(types=inner):
             point = held and any(isinstance(each, types.FloatType) for each in inner)
-            some = [e for e in inner if not (point and isinstance(_bare(e), types.IntType))]
+            some = [e for e in inner if not (point and isinstance(bare(e), types.IntType))]
             return st.one_of([values(each, held=held) for each in some])
         case types.NoneType():
             return st.none()
@@ -79,8 +79,8 @@ def values(kind: Any, *, held: bool) -> st.SearchStrategy[Any]:
     raise AssertionError(kind)
 
 
-def _bare(kind: Any) -> Any:
-    return _bare(kind.type) if isinstance(kind, types.Metadata) else kind
+def bare(kind: Any) -> Any:
+    return bare(kind.type) if isinstance(kind, types.Metadata) else kind
 
 
 def records(kind: Any, *without: str, held: bool) -> st.SearchStrategy[Any]:
@@ -163,7 +163,7 @@ def test_times_of_a_damaged_log_are_kept(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @settings(
-    max_examples=200 if FULL else 8,
+    max_examples=200 if FULL else 5,
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
 )

@@ -74,7 +74,7 @@ def opened(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 def test_a_log_is_read_again_only_where_something_else_of_it_is_read(
     tmp_path: Path, log: str, kept: SampleCache, opened: list[str], name: str
 ) -> None:
-    before, now = plan(tmp_path / "before", PROJECT), plan(tmp_path / "now", CHANGES[name][0])
+    before, now = plan(PROJECT), plan(CHANGES[name][0])
     audited(before, log, kept=kept)
     from_nothing = audited(now, log)
     opened.clear()
@@ -83,7 +83,7 @@ def test_a_log_is_read_again_only_where_something_else_of_it_is_read(
 
 
 def _kept(folder: Path, log: str, kept: SampleCache) -> tuple[Plan, Path]:
-    made = plan(folder / "plan", PROJECT)
+    made = plan(PROJECT)
     audited(made, log, kept=kept)
     (path,) = kept.folder.iterdir()
     return made, path
@@ -168,7 +168,7 @@ def test_what_is_not_of_this_user_and_this_place_is_not_believed(
 def test_of_a_file_that_does_not_stand_alone_nothing_is_kept(
     tmp_path: Path, log: str, kept: SampleCache
 ) -> None:
-    made = plan(tmp_path / "plan", PROJECT)
+    made = plan(PROJECT)
     other = Path(log).with_name("run.bin")
     shutil.copy(log, other)
     audited(made, str(other), kept=kept)

@@ -9,6 +9,7 @@ from mcap.records import Channel, Schema
 from fretc.logs.mcap.container import Stream
 from fretc.logs.messages.decoding import shape
 from fretc.logs.messages.definitions import DefinitionError, Field, types
+from tests.effort import examples
 
 
 def number(name: str, type_: str) -> Field:
@@ -212,6 +213,7 @@ def stream(text: str, *, ros1: bool) -> Stream:
 
 
 @given(st.text(), st.text())
+@examples(10)
 @example("a/b", "\0\0")
 def test_hostile_text_is_refused_or_read(name: str, text: str) -> None:
     for ros1 in (False, True):

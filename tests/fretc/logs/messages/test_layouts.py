@@ -44,7 +44,7 @@ def read(encoder: Encoder, payloads: list[bytes]) -> int:
 @pytest.mark.slow
 @BOTH
 @given(data=st.data(), seed=st.integers(0, 2**32))
-@settings(max_examples=2000 if FULL else 12)
+@settings(max_examples=2000 if FULL else 6)
 def test_every_number_is_what_the_official_decoder_reads(
     data: st.DataObject, seed: int, *, ros1: bool
 ) -> None:
@@ -58,7 +58,7 @@ def test_every_number_is_what_the_official_decoder_reads(
 @pytest.mark.slow
 @BOTH
 @given(data=st.data(), seed=st.integers(0, 2**32))
-@settings(max_examples=2000 if FULL else 10)
+@settings(max_examples=2000 if FULL else 5)
 def test_a_damaged_payload_is_read_as_the_official_decoder_does_or_left_to_it(
     data: st.DataObject, seed: int, *, ros1: bool
 ) -> None:

@@ -4,11 +4,14 @@ from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
 from fretc.logs.mcap.container import Stream
+from fretc.logs.messages import probes
 from fretc.logs.messages.decoding import decoder, shape
 from fretc.logs.messages.definitions import types
 from fretc.logs.messages.layouts import Shape
 from fretc.logs.messages.probes import probe, trusted
+from tests.effort import FULL
 from tests.fretc.logs.logs import definition
+from tests.fretc.logs.messages.test_definitions import stream
 
 BOTH = pytest.mark.parametrize("ros1", [False, True])
 
@@ -29,11 +32,6 @@ SEPARATED = st.builds("{}\n{}".format, st.just("=" * 80), st.sampled_from(
     ["MSG: one/A", "MSG: two/A", "MSG: one/B", "MSG: std_msgs/Header", "MSG: one/Header"]
 ))  # fmt: skip
 TEXTS = st.lists(st.one_of(LINES, LINES, SEPARATED), max_size=9).map("\n".join)
-
-
-def stream(text: str, *, ros1: bool) -> Stream:
-    schema = Schema(1, text.encode(), "ros1msg" if ros1 else "ros2msg", "one/T")
-    return Stream(Channel(1, "/x", "ros1" if ros1 else "cdr", {}, 1), schema)
 
 
 @pytest.mark.slow
@@ -81,12 +79,19 @@ def test_a_shape_of_other_fields_than_the_decoder_has_is_not_trusted(
     assert not trusted(known, decode)
 
 
-@pytest.mark.slow
-def test_a_message_too_large_to_be_made_up_is_not_trusted() -> None:
-    sent = stream("one/A[1000] a\n===\nMSG: one/A\nfloat64[1000] b", ros1=False)
+@pytest.mark.parametrize(
+    ("many", "most"), [(23, 23**2), *([(1000, probes._LARGEST)] if FULL else [])]
+)
+def test_a_message_too_large_to_be_made_up_is_not_trusted(
+    monkeypatch: pytest.MonkeyPatch, many: int, most: int
+) -> None:
+    sent = stream(f"one/A[{many}] a\n===\nMSG: one/A\nfloat64[{many}] b", ros1=False)
     known, decode = shape(sent), decoder(sent)
     assert known is not None
     assert callable(decode)
+    assert trusted(known, decode) is (many < 1000)
+    monkeypatch.setattr(probes, "_LARGEST", most)
+    trusted.cache_clear()
     assert not trusted(known, decode)
 
 

@@ -13,7 +13,7 @@ from fretc.logs.signals.samples import widest
 from fretc.logs.signals.signals import nearest as nearest_of_one
 from fretc.logs.signals.signals import sample
 from fretish.bindings.declarations import Signal
-from tests.effort import FULL
+from tests.effort import FULL, some
 from tests.fretc.logs.logs import declare
 
 NAN, INF = float("nan"), float("inf")
@@ -145,7 +145,7 @@ def test_the_ends_of_a_band_are_told_from_the_floats_around_them(reduce: str, op
     odd = [0.0, -0.0, -float(ends[0]), -float(ends[1]), -12.0, NAN, -NAN, INF, -INF]
     rows = [[one, other] for one in (*floats, *odd) for other in (0.5, NAN, -1.0)]
     bands = ((0.12, 12), (1e-45, 12), (0, 12), (12, 0.12), (0.12, INF), (NAN, 1))
-    for low, high in bands:
+    for low, high in some(bands, 2, op == "<"):
         limits = {"range_min": float(np.float32(low)), "range_max": float(np.float32(high))}
         valid = f"range_min {op} x and x {op} range_max"
         own = signal(f'reduce = "{reduce}"\nvalid = "{valid}"\ninvalid = {{ {DROPS} }}\n')
@@ -204,7 +204,7 @@ WHOLE = st.one_of(
     "valid", ["", "x > 9007199254740993", "x != 9007199254740993", "abs(x) < 9"]
 )
 @given(st.lists(st.lists(WHOLE, min_size=3, max_size=3), min_size=1, max_size=4))
-@settings(max_examples=2000 if FULL else 10)
+@settings(max_examples=2000 if FULL else 5)
 def test_whole_numbers_of_64_bits_are_read_alike_at_once_and_one_by_one(
     fields: str, valid: str, rows: list[list[int]]
 ) -> None:

@@ -18,6 +18,7 @@ from fretish.bindings import expressions as binding
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.units import NAMES, unit
+from tests.effort import examples
 
 FACTORS = {name: known for name in (*NAMES, "km/h", "mm/s", "m/s") if (known := unit(name))}
 PAIRS = [
@@ -63,6 +64,7 @@ def decimals(draw: st.DrawFn, digits: int) -> Fraction:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("op", OPERATORS)
+@examples(10)
 @given(st.data(), st.sampled_from(PAIRS), st.sampled_from([DOUBLE, SINGLE]), st.integers(-2, 2))
 def test_equal_constants_of_two_units_judge_each_sample_alike(
     op: str, data: st.DataObject, pair: tuple[str, str], kind: np.dtype[Any], apart: int
@@ -91,6 +93,7 @@ def moved(number: Any, steps: int) -> Any:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("op", OPERATORS)
+@examples(10)
 @given(st.data(), st.sampled_from(PAIRS), st.sampled_from([DOUBLE, SINGLE]))
 def test_a_sample_that_was_a_decimal_is_judged_as_that_decimal(
     op: str, data: st.DataObject, pair: tuple[str, str], kind: np.dtype[Any]
@@ -150,6 +153,7 @@ INTEGERS = st.one_of(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("op", OPERATORS)
+@examples(10)
 @given(INTEGERS, st.data(), st.sampled_from(["m", "mm", "km"]), st.sampled_from(["m", "mm"]))
 @example(2**53, None, "m", "m")
 def test_whole_numbers_of_64_bits_are_compared_as_whole_numbers(

@@ -1,6 +1,5 @@
 """Numbers of logs are judged as the numbers that were recorded: whichever type, unit and way in."""
 
-import json
 import math
 import struct
 from collections.abc import Sequence
@@ -14,7 +13,7 @@ from hypothesis import strategies as st
 
 from fretc.logs.signals.samples import EXACT, Series, Values, distinct, scaled, widest
 from fretc.logs.signals.traces import trace
-from tests.fretc.logs.logs import MS, S, Sent, declare, recorded, scan, write
+from tests.fretc.logs.logs import MS, S, Sent, declare, recorded, said, scan, write
 
 FORMATS = {"Float32": "<f", "Float64": "<d", "Int64": "<q", "UInt64": "<Q", "Int32": "<i"}
 MANY = 200
@@ -23,7 +22,7 @@ MANY = 200
 
 def sent(kind: str, value: float, time: int) -> Sent:
     if kind == "JSON":
-        return Sent("/x", "X", json.dumps({"data": value}).encode(), time, encoding="json")
+        return said("/x", time, data=value)
     data = b"\0\1\0\0" + struct.pack(FORMATS[kind], value)
     return Sent("/x", f"std_msgs/msg/{kind}", data, time)
 

@@ -288,7 +288,7 @@ def naive(rows: Sequence[tuple[str, int, int]], topic: str) -> list[tuple[int, b
 @example([("/scan", 0, 0, 9), ("/scan", 5, 5, 1)])
 @example([("/scan", 0, 0, 10), ("/scan", 5, 5, 1)])
 @example([("/scan", 5 * S, 0, 1), ("/scan", 5 * S, 5, 1)])
-@settings(max_examples=1000 if FULL else 30)
+@settings(max_examples=1000 if FULL else 12)
 def test_each_zero_is_read_as_the_definition_says(
     source: TimeSource, drawn: list[tuple[str, int, int, int]]
 ) -> None:

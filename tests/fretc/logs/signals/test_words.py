@@ -1,6 +1,5 @@
 """Signals of words and truth values, from logs of every kind to propositions."""
 
-import json
 import struct
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -15,7 +14,19 @@ from fretc.logs.signals.samples import Recording
 from fretc.logs.signals.traces import trace
 from fretc.logs.signals.words import words
 from fretc.logs.stream import End, Stream
-from tests.fretc.logs.logs import MS, S, Sent, codes, declare, payload, recorded, times, write
+from tests.effort import examples
+from tests.fretc.logs.logs import (
+    MS,
+    S,
+    Sent,
+    codes,
+    declare,
+    payload,
+    recorded,
+    said,
+    times,
+    write,
+)
 from tests.fretc.logs.messages.test_idl import LINE
 from tests.fretc.logs.messages.test_protobuf import STATE
 from tests.fretc.logs.messages.test_protobuf import log as protobuf
@@ -52,10 +63,7 @@ def strings(seen: Sequence[str], encoding: str) -> list[Sent]:
 
 
 def objects(seen: Sequence[object]) -> list[Sent]:
-    return [
-        Sent("/m", "m", json.dumps({"data": each}).encode(), S + i * STEP, encoding="json")
-        for i, each in enumerate(seen)
-    ]
+    return [said("/m", S + i * STEP, data=each) for i, each in enumerate(seen)]
 
 
 def read(recording: Recording) -> list[str | None]:
@@ -283,7 +291,7 @@ values = ["drive", "docking", "idle"]
 
 
 @pytest.mark.slow
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(examples(15), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     st.lists(
         st.tuples(*2 * [st.sampled_from(["drive", "docking", "idle", "fly", "", None, 3])]),
@@ -295,16 +303,7 @@ def test_a_random_log_is_judged_word_by_word(
     tmp_path: Path, rows: list[tuple[str | int | None, str | int | None]]
 ) -> None:
     """A comparison is unknown where a side is none of the words, and else as Python has it."""
-    sent = [
-        Sent(
-            "/m",
-            "m",
-            json.dumps({"mode": a, "other": b}).encode(),
-            S + i * STEP,
-            encoding="json",
-        )
-        for i, (a, b) in enumerate(rows)
-    ]
+    sent = [said("/m", S + i * STEP, mode=a, other=b) for i, (a, b) in enumerate(rows)]
     text = BOTH + "".join(f'[proposition."{expr}"]\nexpr = "{expr}"\n' for expr in NAIVE)
     recording = recorded(write(tmp_path / "l.mcap", sent), declare(text))
     known = ("drive", "docking", "idle")
@@ -358,7 +357,7 @@ ROWS = st.tuples(
 
 
 @pytest.mark.slow
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(examples(15), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.tuples(st.sampled_from([40, 100, 300]), ROWS), min_size=1, max_size=8))
 def test_a_stream_sees_what_a_log_of_the_same_messages_shows(
     tmp_path: Path, rows: list[tuple[int, tuple[object, object, object]]]
@@ -368,7 +367,7 @@ def test_a_stream_sees_what_a_log_of_the_same_messages_shows(
     for step, row in rows:
         message = dict(zip(("mode", "gear", "on"), row, strict=True))
         assert stream.message("/m", now, message) is None
-        sent.append(Sent("/m", "m", json.dumps(message).encode(), now, encoding="json"))
+        sent.append(said("/m", now, **message))
         now += step * MS
     end = stream.end()
     assert isinstance(end, End)

@@ -35,6 +35,7 @@ from tests.fretc.logs.logs import (
     values,
     write,
 )
+from tests.fretc.logs.messages.test_decoding import bindings
 
 NOTE = (
     "a bag has no check sums, and one time for each message: a changed byte within a message "
@@ -266,14 +267,6 @@ def test_without_rosbags_the_extra_is_named(
     diagnostic = refused(file)
     assert diagnostic.code is Code.MISSING_EXTRA
     assert "fretc[bags]" in str(diagnostic.help)
-
-
-def bindings(signals: dict[str, str]) -> str:
-    return '[clock]\ntick = "100 ms"\n' + "".join(
-        f'[signal.{name}]\npath = "{path}"\ninvalid = {{ nan = "drop" }}\n'
-        + ('reduce = "min"\n' if path.endswith("[:]") else "")
-        for name, path in signals.items()
-    )
 
 
 @needs_logs

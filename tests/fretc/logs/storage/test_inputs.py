@@ -30,7 +30,7 @@ from fretc.logs.storage.log_names import is_url, name_of
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.extras import install
 from fretish.diagnostics.rendering import render
-from tests.effort import some
+from tests.command import Fretc
 from tests.fretc.logs.logs import NONE, TWELVE, S, Sent, X, damaged, number, values, write
 
 ROOT = Path(__file__).parents[4]
@@ -73,42 +73,66 @@ def piped(data: bytes) -> Iterator[int]:
         thread.join()
 
 
+@contextmanager
+def standard_input(file: int) -> Iterator[None]:
+    """A file as the standard input of this process."""
+    before = os.dup(0)
+    os.dup2(file, 0)
+    try:
+        with pytest.MonkeyPatch.context() as patch, open(0, closefd=False) as stdin:
+            patch.setattr(sys, "stdin", stdin)
+            yield
+    finally:
+        os.dup2(before, 0)
+        os.close(before)
+
+
+def shown(data: bytes) -> list[str]:
+    """What `fretc info -` prints of such a log, but for its topics."""
+    sha256 = hashlib.sha256(data).hexdigest()
+    return [f"<stdin>  {len(data):,} bytes, 1.1 s, no damage found", f"  SHA-256  {sha256}"]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["pipe", "file"])
-def test_a_log_from_standard_input_is_the_log(tmp_path: Path, kind: str) -> None:
-    path = write(tmp_path / "log.mcap", TWELVE)
-    data = path.read_bytes()
-    if kind == "pipe":
-        with piped(data) as stdin:
-            found = info(stdin)
-    else:
-        with path.open("rb") as stream:
-            found = info(stream)
-    lines = found.stdout.decode().splitlines()
+def test_a_log_from_a_pipe_is_the_log(tmp_path: Path) -> None:
+    data = write(tmp_path / "log.mcap", TWELVE).read_bytes()
+    with piped(data) as stdin:
+        found = info(stdin)
     assert (found.returncode, found.stderr) == (0, b"")
-    assert lines[0] == f"<stdin>  {len(data):,} bytes, 1.1 s, no damage found"
-    assert lines[2] == f"  SHA-256  {hashlib.sha256(data).hexdigest()}"
+    assert found.stdout.decode().splitlines()[0:3:2] == shown(data)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("content", some(["half", "whole", "foreign"], 3))
-def test_nothing_of_standard_input_stays_behind(tmp_path: Path, content: str) -> None:
+def test_a_log_from_a_file_is_the_log(fretc: Fretc, tmp_path: Path) -> None:
+    path = write(tmp_path / "log.mcap", TWELVE)
+    with path.open("rb") as stream, standard_input(stream.fileno()):
+        run = fretc("info", "-")
+    assert (run.status, run.err) == (0, "")
+    assert run.out.splitlines()[0:3:2] == shown(path.read_bytes())
+
+
+@pytest.mark.parametrize(
+    ("content", "status"), [("half", 3), ("whole", 0), ("foreign", 2), ("empty", 2)]
+)
+def test_nothing_of_standard_input_stays_behind(
+    fretc: Fretc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, content: str, status: int
+) -> None:
     data = write(tmp_path / "log.mcap", TWELVE).read_bytes()
     place = tmp_path / "temporary"
     place.mkdir()
-    contents = {"half": data[: len(data) // 2], "whole": data, "foreign": b"no log"}
-    with piped(contents[content]) as stdin:
-        info(stdin, TMPDIR=str(place))
+    monkeypatch.setattr(tempfile, "tempdir", str(place))
+    contents = {"half": data[: len(data) // 2], "whole": data, "foreign": b"no log", "empty": b""}
+    with piped(contents[content]) as stdin, standard_input(stdin):
+        assert fretc("info", "-").status == status
     assert list(place.iterdir()) == []
 
 
-@pytest.mark.slow
-def test_empty_and_foreign_standard_input_have_their_codes() -> None:
-    found = info(subprocess.DEVNULL)
-    assert (found.returncode, found.stderr[:4]) == (2, b"F407")
-    with piped(b"hello, this is text\n" * 100) as stdin:
-        found = info(stdin)
-    assert (found.returncode, found.stderr[:4]) == (2, b"F402")
+@pytest.mark.parametrize(("data", "code"), [(b"", "F407"), (b"hello, text\n" * 100, "F402")])
+def test_empty_and_foreign_standard_input_have_their_codes(
+    fretc: Fretc, data: bytes, code: str
+) -> None:
+    with piped(data) as stdin, standard_input(stdin):
+        run = fretc("info", "-")
+    assert (run.status, run.err[:4]) == (2, code)
 
 
 @pytest.mark.slow

@@ -17,6 +17,7 @@ import pytest
 from fretc.logs.storage import inputs, web
 from fretc.logs.storage.inputs import opened
 from fretish.diagnostics.diagnostic import Code, Diagnostic
+from tests.effort import by_turns
 
 LENGTH = 5 * 2**20
 
@@ -211,8 +212,7 @@ def endless(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("whole", [True, False], ids=["whole", "by its index"])
-@pytest.mark.parametrize("path", ANSWERS)
+@pytest.mark.parametrize(("path", "whole"), by_turns(ANSWERS, True, False))
 def test_reading_ends_whatever_a_server_sends_for_ever(
     endless: str, path: str, whole: bool
 ) -> None:
