@@ -1,10 +1,11 @@
 """AJPF property files: only what AJPF reads as it is meant, and the same language as FT."""
 
 import re
+from functools import cache, lru_cache
 from itertools import count
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.agents import psl
@@ -25,6 +26,7 @@ from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import canonical
+from tests.effort import FULL, examples, some
 from tests.strategies import Template, templates
 
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
@@ -38,6 +40,7 @@ def target(options: Options) -> Target:
     return plain.weak if options.weaken else plain
 
 
+@lru_cache(maxsize=1024)
 def rule(sentence: str, id: str = "R1", bindings: str = "") -> FormalizedRequirement:
     declarations, wrong = read_bindings(Source("bindings.toml", bindings))
     assert not wrong, wrong
@@ -46,6 +49,7 @@ def rule(sentence: str, id: str = "R1", bindings: str = "") -> FormalizedRequire
     return made
 
 
+@lru_cache(maxsize=1024)
 def emitted(sentence: str, options: Options = DEFAULT, id: str = "R1", bindings: str = "") -> str:
     made = rule(sentence, id, bindings)
     diagnostic = target(options).refuse(made)
@@ -77,8 +81,11 @@ def unbelieved(formula: f.Formula) -> f.Formula:
     return f.rebuild(formula, unbelieved)
 
 
+@cache
 def expressible(options: Options = DEFAULT) -> list[Template]:
-    return [t for t in templates((2,)) if target(options).refuse(rule(t.sentence)) is None]
+    """Every fifth; all with the full profile."""
+    chosen = some(templates((2,)), 5)
+    return [t for t in chosen if target(options).refuse(rule(t.sentence)) is None]
 
 
 # What is emitted ------------------------------------------------------------------------------
@@ -165,7 +172,7 @@ _sentences = st.builds(
 
 
 @pytest.mark.slow
-@settings(max_examples=120)
+@examples(30)
 @given(_sentences)
 def test_compound_sentences_keep_their_language(sentence: s.Sentence) -> None:
     made = rule(canonical(sentence))
@@ -576,7 +583,7 @@ def test_what_is_weakened_is_implied_by_the_requirement_and_nothing_else_is_touc
         assert not template.scope.startswith("only")
         assert ("stretch of the scope" in loss) is (template.scope in ("in", "notin", "before"))
         assert equivalent(f.And((made.ft_infinite, found["R1"])), made.ft_infinite), template
-    assert weakened == 15
+    assert weakened == 15 if FULL else weakened >= 2
 
 
 @pytest.mark.parametrize("timing", ["at the next timepoint", "for 3 ticks", "after 3 ticks"])

@@ -153,7 +153,10 @@ def drawn(choose: random.Random) -> Iterator[str]:
 @each("seed", range(2 if FULL else 1))
 def test_any_sentence_tells_the_same_at_each_tick(seed: int, tmp_path: Path) -> None:
     choose = random.Random(seed)
-    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(islice(drawn(choose), 40 if FULL else 20))]
+    rules = [
+        rule(sentence, f"R{i}")
+        for i, sentence in enumerate(islice(drawn(choose), 40 if FULL else 20))
+    ]
     machine, source = monitors(rules), Source.of(*rules)
     program = compiled(tmp_path, "gcc", source)
     width = len(source.inputs)

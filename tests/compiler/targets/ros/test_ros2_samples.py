@@ -13,7 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.c_monitors import CHECKED
+from tests.c_monitors import CHECKED_IN_CPP
+from tests.effort import examples
 from tests.programs import installed
 from tests.ros2.emitted import write
 from tests.ros2.world import World
@@ -113,7 +114,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Any]:
         "-Wall",
         "-Wextra",
         "-Werror",
-        *CHECKED,
+        *CHECKED_IN_CPP,
         f"-I{source}",
     ]
     command += [str(folder / "driver.cpp"), *objects, "-o", str(folder / "driver")]
@@ -125,6 +126,7 @@ ranges = st.sampled_from([0.0, 0.25, 0.5, 1.0, 3.0, 50.0, math.inf, -math.inf, m
 
 
 @pytest.mark.slow
+@examples(12)
 @given(
     st.lists(ranges, max_size=5),
     st.lists(st.booleans(), max_size=3),

@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 from fretc.api.requirements import read_project
 from fretc.audit.plan import Plan, planned
 from fretc.watch.sources.source import Arrival
-from tests.c_monitors import CHECKED
+from tests.c_monitors import CHECKED_IN_CPP
+from tests.effort import examples
 from tests.fretc.watch.sent import MS, START, Sent
 from tests.fretc.watch.test_session import audited_rows, recorded
 from tests.programs import installed
@@ -129,6 +130,7 @@ def node(package: Path, some: Sequence[Posed], idle: int) -> Any:
 
 
 @pytest.mark.slow
+@examples(12)
 @given(st.sampled_from(SETTINGS), messages, st.sampled_from([0, 3, 40]))
 def test_every_tick_is_that_of_the_audit(
     subjects: dict[tuple[str, int], Subject],
@@ -208,12 +210,12 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name in ("monitors", "monitors_signals"):
         objects.append(str(folder / f"{name}.o"))
         command = [installed("gcc"), "-std=c99", "-c", str(source / f"{name}.c"), "-o", objects[-1]]
-        subprocess.run([*command, *CHECKED], check=True)
+        subprocess.run([*command, *CHECKED_IN_CPP], check=True)
     command = [
         installed("g++"),
         "-std=c++17",
         *strict,
-        *CHECKED,
+        *CHECKED_IN_CPP,
         f"-I{source}",
         "-Wno-float-conversion",
     ]
@@ -223,6 +225,7 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
+@examples(12)
 @given(st.sampled_from(SETTINGS), messages, st.sampled_from([0, 3, 40, 5000]))
 def test_the_package_in_cpp_says_the_same(
     program: Path,
