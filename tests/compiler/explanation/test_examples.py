@@ -12,7 +12,7 @@ from compiler.logic.spot import holds_on
 from tests import meaning
 from tests.effort import FULL
 from tests.monitoring import monitor, rule, steps
-from tests.strategies import Template, some_templates, templates
+from tests.strategies import Template, some_templates
 
 QUIET = 3
 """Rounds after a trace that are looked at."""
@@ -25,7 +25,7 @@ def found(sentence: str) -> tuple[FormalizedRequirement, Examples]:
 
 
 def every(scope: str, counts: tuple[int, ...]) -> list[Template]:
-    return [drawn for drawn in templates(counts) if drawn.scope == scope]
+    return [drawn for drawn in some_templates(counts) if drawn.scope == scope]
 
 
 def columns(atoms: tuple[str, ...], example: Example, rounds: int) -> dict[str, list[bool]]:

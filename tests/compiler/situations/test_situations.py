@@ -20,11 +20,11 @@ from fretc.analysis.arena.transition import Transition
 from tests import meaning
 from tests.compiler.situations.by_index import At, kind
 from tests.emitting import rule
-from tests.strategies import Template, some_templates, templates
+from tests.strategies import Template, few_templates, templates
 
 
 def of(scope: str) -> Iterator[Template]:
-    return (drawn for drawn in some_templates() if drawn.scope == scope)
+    return (drawn for drawn in few_templates() if drawn.scope == scope)
 
 
 def timed(made: FormalizedRequirement, *, exact: bool = False) -> list[Situation]:
