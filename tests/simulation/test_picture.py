@@ -13,7 +13,6 @@ from simulation.world.motion import Pose
 from simulation.world.scenario import load
 from tests.simulation.missions import Missions, cut_off, record
 
-
 pytestmark = pytest.mark.slow  # Matplotlib takes a second to import
 
 

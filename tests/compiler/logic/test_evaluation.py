@@ -14,6 +14,7 @@ from compiler.logic.definition import holds
 from compiler.logic.evaluation import evaluate, evaluate_unknown
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth, truth
+from tests.effort import FULL
 from tests.meaning import SCOPES
 from tests.monitoring import monitor, of_formula, over, packed, rule, steps
 from tests.strategies import (
@@ -264,7 +265,7 @@ def long_traces(draw: st.DrawFn) -> dict[str, list[bool]]:
     return columns
 
 
-slow = settings(max_examples=40, suppress_health_check=list(HealthCheck))
+slow = settings(max_examples=40 if FULL else 15, suppress_health_check=list(HealthCheck))
 
 
 @pytest.mark.slow

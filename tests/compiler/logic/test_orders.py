@@ -22,6 +22,7 @@ from fretish.diagnostics.source import Source
 from fretish.parser import parse
 from fretish.syntax import Sentence
 from tests.calls import calls
+from tests.effort import FULL
 
 _COMPARE = {"<": lt, "<=": le, ">": gt, ">=": ge, "=": eq, "!=": ne}
 _NAMES = ("x", "y", "z")
@@ -61,7 +62,7 @@ def value(text: str, numbers: Mapping[str, float]) -> bool:
 
 
 @pytest.mark.slow
-@settings(max_examples=40)
+@settings(max_examples=40 if FULL else 15)
 @given(several)
 def test_a_valuation_is_possible_where_numbers_make_it_and_nowhere_else(some: list[str]) -> None:
     """Every order of three numbers among the constants is one of those on a grid that fine."""

@@ -100,8 +100,8 @@ def test_a_simplified_formula_says_the_same_in_fewer_characters(sentence: str) -
 
 @pytest.mark.slow
 def test_many_templates_do_have_a_shorter_formula() -> None:
-    found = [simplified(formulas(sentence)[0]) for sentence in sentences(SCOPES)]
-    assert sum(text is not None for text in found) > 30
+    found = [simplified(formulas(sentence)[0]) for sentence in some(sentences(SCOPES), 4)]
+    assert sum(text is not None for text in found) > len(found) / 6
 
 
 def test_a_formula_that_is_short_already_has_none() -> None:

@@ -93,7 +93,7 @@ def test_an_operand_decides_alone_where_its_opposite_leads_elsewhere(sentence: s
     choose, seen = random.Random(sentence), set[str]()
     alone = {key for key in listed if key.startswith("alone-")}
     for number in range(500):
-        if not FULL and number >= 80 and seen == alone:
+        if not FULL and number >= 30 and seen == alone:
             break
         run = judged.run(choose, choose.choice((1, 1, 2, 3, 6)))
         bits = {n: sum(row[n] << t for t, (_, row) in enumerate(run)) for n in judged.atoms}
