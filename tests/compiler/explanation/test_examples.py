@@ -156,11 +156,11 @@ def test_a_verdict_is_certain_before_the_trace_ends_where_parts_share_propositio
 
 @pytest.mark.slow
 def test_long_bounds_have_traces_and_too_long_ones_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    most = made_of.MOST_STATES if FULL else 2000
-    monkeypatch.setattr(made_of, "MOST_STATES", most)
     _, told = found("upon p the sw shall within 1000 ticks satisfy q")
     assert [len(example.prefix) for example in told.satisfied] == [1, 1001]
     assert [example.decided for example in told.violated] == [1000, 1000]
+    most = made_of.MOST_STATES if FULL else 2000
+    monkeypatch.setattr(made_of, "MOST_STATES", most)
     _, none = found("only in m mode, whenever p the sw shall after 60 ticks satisfy q")
     assert none.note == f"its automaton has more than {most} states"
     assert not none.satisfied
