@@ -5,23 +5,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import formulas
 from compiler.logic import printing
 from compiler.logic.spot import same_language
-from fretish.diagnostics.source import Source
-from fretish.documents import requirements
 from tests import meaning
 from tests.each import each
 from tests.effort import some
-
-
-def rule(sentence: str) -> FormalizedRequirement:
-    ((requirement,), _) = requirements(Source("r.fret", sentence))
-    formalized, diagnostics = formalize(requirement, None)
-    assert formalized is not None, diagnostics
-    return formalized
+from tests.monitoring import rule
 
 
 def pctl(sentence: str) -> str:

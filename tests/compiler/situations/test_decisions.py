@@ -21,13 +21,13 @@ from compiler.logic.formula import atoms
 from compiler.situations.situations import MEANINGS, Situation, situations
 from compiler.situations.thresholds import Place, places, written
 from fretish import expressions as e
-from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import expression
 from fretish.printer import sentence as printed
 from fretish.syntax import Sentence
 from monitors.kernel.columns import Column
+from tests.bound_rules import bound_rule
 from tests.effort import FULL
 from tests.emitting import rule
 from tests.strategies import sentences
@@ -180,11 +180,7 @@ expr = "abs(speed) < 0.010 m/s for 200 ms"
 
 
 def bound(sentence: str) -> FormalizedRequirement:
-    declarations, mistakes = read_bindings(Source("bindings.toml", BINDINGS))
-    assert not mistakes, mistakes
-    made, found = formalize(Requirement("R1", Source("r.fret", sentence).span()), declarations)
-    assert made is not None, found
-    return made
+    return bound_rule(sentence, BINDINGS)
 
 
 def thresholds(made: FormalizedRequirement) -> list[Situation]:

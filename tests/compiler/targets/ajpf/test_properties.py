@@ -11,8 +11,6 @@ from hypothesis import strategies as st
 from compiler.agents import psl
 from compiler.agents.psl_printing import property_text
 from compiler.emit import TARGETS
-from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.spot import equivalent, same_language
@@ -20,12 +18,11 @@ from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.target import DEFAULT, Options, Target
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
 from fretish.printer import canonical
+from tests.bound_rules import bound_rule as rule
 from tests.effort import FULL, examples, some
 from tests.strategies import Template, templates
 
@@ -41,17 +38,8 @@ def target(options: Options) -> Target:
 
 
 @lru_cache(maxsize=1024)
-def rule(sentence: str, id: str = "R1", bindings: str = "") -> FormalizedRequirement:
-    declarations, wrong = read_bindings(Source("bindings.toml", bindings))
-    assert not wrong, wrong
-    made, diagnostics = formalize(Requirement(id, Source("r.fret", sentence).span()), declarations)
-    assert made is not None, diagnostics
-    return made
-
-
-@lru_cache(maxsize=1024)
 def emitted(sentence: str, options: Options = DEFAULT, id: str = "R1", bindings: str = "") -> str:
-    made = rule(sentence, id, bindings)
+    made = rule(sentence, bindings, id)
     diagnostic = target(options).refuse(made)
     assert diagnostic is None, diagnostic
     (file,) = target(options).emit([made], options)

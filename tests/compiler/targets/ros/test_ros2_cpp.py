@@ -10,15 +10,15 @@ from catkin_pkg.package import parse_package
 
 from compiler.targets.ros.ros2cpp import snake
 from tests.effort import FULL
-from tests.programs import installed, needs
-from tests.ros2.cpp import write_headers
+from tests.programs import needs
+from tests.ros2.cpp import built, write_headers
 from tests.ros2.emitted import write
 from tests.ros2.launch import launched
 
 ROOT = Path(__file__).parents[4]
 FAKE = ROOT / "tests/ros2/rclcpp"
 SUBJECTS = ("requirements/r1.fret", "requirements/mission", "requirements/agv")
-STRICT = "-std=c++17 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split()
+STRICT = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split()
 
 
 @pytest.fixture(scope="module")
@@ -103,13 +103,7 @@ def node(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     }
     write_headers(folder, types, fields, snake)
     source = package / "src"
-    objects = [folder / f"{name}.o" for name in ("monitors", "monitors_signals")]
-    for built in objects:
-        text = source / f"{built.stem}.c"
-        subprocess.run([installed("gcc"), "-std=c99", "-c", text, "-o", built], check=True)
-    command = [installed("g++"), *STRICT, f"-I{folder}", f"-I{FAKE}", str(source / "node.cpp")]
-    subprocess.run([*command, *map(str, objects), "-o", str(folder / "node")], check=True)
-    return folder / "node"
+    return built(folder, source, source / "node.cpp", (), [*STRICT, f"-I{folder}", f"-I{FAKE}"])
 
 
 def played(node: Path, *script: str) -> tuple[int, list[tuple[str, str]], str]:
