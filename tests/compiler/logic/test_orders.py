@@ -284,6 +284,7 @@ def test_what_no_cell_has_is_excluded_and_nothing_else(columns: list[str]) -> No
             assert any(all((text[i] == "1") == v for i, v in rest) for text in columns)
 
 
+@pytest.mark.slow
 def test_modes_exclude_one_another_in_pairs() -> None:
     words = tuple(f"m{i}" for i in range(60))
     compared = {word: e.Comparison("=", e.Name("mode"), e.Word(word)) for word in words}

@@ -192,7 +192,6 @@ def in_range(options: core.Options) -> Iterator[core.State]:
             yield core.State(stop, held, command, *ages)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new"),
     [

@@ -254,7 +254,7 @@ def test_lustre_has_no_assignment_with_its_own_words() -> None:
 
 
 @pytest.mark.parametrize("kind", ["c", "rust", "monitor", "smv", "prism", "dafny", "ajpf"])
-@settings(max_examples=200 if FULL else 10)
+@settings(max_examples=200 if FULL else 6)
 @given(
     st.lists(
         st.sampled_from([f"{word}{end}" for word in ("int", "T", "x", "class") for end in

@@ -206,7 +206,6 @@ def test_what_is_not_expected_is_no_success(
     assert line in done.stdout
 
 
-@pytest.mark.slow
 def test_an_answer_that_does_not_come_is_none(mcapl: Mcapl) -> None:
     mcapl.tool("java", 'if [ "$1" = -version ]; then echo \'version "11"\'; else exec sleep 30; fi')
     done = mcapl.run("--timeout", "0.1")
@@ -214,7 +213,6 @@ def test_an_answer_that_does_not_come_is_none(mcapl: Mcapl) -> None:
     assert "R1.jpf: ERROR, EXPECTED HOLDS (no answer in 0.1 seconds)" in done.stdout
 
 
-@pytest.mark.slow
 def test_without_ajpf_nothing_is_run(mcapl: Mcapl, tmp_path: Path) -> None:
     for environment, message in (
         ({"AJPF_HOME": ""}, "set AJPF_HOME to the folder of MCAPL"),
@@ -252,7 +250,6 @@ def test_a_manifest_that_says_nothing_is_no_success(mcapl: Mcapl, text: str) -> 
     assert mcapl.run().returncode == 2
 
 
-@pytest.mark.slow
 def test_a_manifest_without_its_controls_is_no_success(mcapl: Mcapl) -> None:
     manifest = json.loads((mcapl.bundle / "manifest.json").read_text())
     manifest["checks"] = manifest["checks"][:1]
@@ -260,7 +257,6 @@ def test_a_manifest_without_its_controls_is_no_success(mcapl: Mcapl) -> None:
     assert mcapl.run().returncode == 2
 
 
-@pytest.mark.slow
 @each("name", ["my folder", *"a,b a;b a:b a$b ${HOME} a\nb a\\b a'b Büro #1".split(" ")])
 def test_a_folder_that_ajpf_cannot_name_is_refused(mcapl: Mcapl, name: str) -> None:
     """It reads paths from lists and from properties, where these letters mean something else."""
@@ -285,7 +281,6 @@ def test_a_file_that_changes_while_ajpf_is_at_work_leaves_no_result(
     assert not (mcapl.bundle / "result.json").exists()
 
 
-@pytest.mark.slow
 def test_an_agent_of_ones_own_that_changes_meanwhile_leaves_no_result(mcapl: Mcapl) -> None:
     own = mcapl.folder / "own.gwen"
     own.write_text((mcapl.bundle / "SIF.gwen").read_text(encoding="utf-8"), encoding="utf-8")
@@ -320,7 +315,6 @@ def test_ajpf_starts_where_there_is_nothing_but_what_it_is_given(mcapl: Mcapl) -
 # What is run, and how --------------------------------------------------------------------------
 
 
-@pytest.mark.slow
 def test_the_newest_antlr_comes_before_the_others_on_the_class_path(mcapl: Mcapl) -> None:
     mcapl.run()
     places = (mcapl.folder / "said/class_path").read_text().strip().split(os.pathsep)
@@ -390,7 +384,6 @@ def test_an_agent_of_ones_own_is_checked_where_that_is_asked_for(mcapl: Mcapl) -
     assert mcapl.run("--agent", str(agent)).returncode == 2
 
 
-@pytest.mark.slow
 def test_an_agent_of_another_name_is_refused(mcapl: Mcapl) -> None:
     own = mcapl.folder / "other.gwen"
     for text, message in ((":name: rover", "is called `rover`"), ("", "has no `:name:`")):

@@ -20,6 +20,7 @@ from monitors.kernel.verdicts import Signals
 from monitors.loading import load
 from tests import meaning
 from tests.c_monitors import (
+    CHECKED,
     STRICT,
     Program,
     Rows,
@@ -122,7 +123,8 @@ def test_a_counter_that_requirements_share_tells_each_its_own_deadline(tmp_path:
     """It goes on behind the earlier deadline: there `left` is -1, as where nothing is open."""
     within, after = (f"upon p the sw shall {t} 2 ticks satisfy q" for t in ("within", "after"))
     rules = [rule(within, "R1"), rule(after, "R2")]
-    program = compiled(tmp_path, "gcc", Source.of(*rules))
+    flags = [*STRICT, *(CHECKED if FULL else ())]
+    program = compiled(tmp_path, "gcc", Source.of(*rules), flags=flags)
     trace = [(False, False), (True, False), *[(True, False)] * 4]
     told = program.run((0, trace))[1][0]
     assert [one.certain.left for one, _ in told] == [-1, 2, 1, 0, -1, -1]

@@ -372,9 +372,10 @@ def shape(text: str) -> list[str]:
 
 @pytest.mark.slow
 def test_a_step_is_the_same_code_for_any_duration() -> None:
-    for template in pairwise(SCOPES, meaning.CONDITIONS, ("within", "for", "after")):
-        short, long = (emitted(Template(*template, n).sentence) for n in (3, 10**6))
-        assert shape(short) == shape(long), template
+    for parts in pairwise(SCOPES, meaning.CONDITIONS, ("within", "for", "after")):
+        scope, condition, timing = parts
+        short, long = (emitted(Template(scope, condition, timing, n).sentence) for n in (3, 10**6))
+        assert shape(short) == shape(long), parts
 
 
 def test_a_chain_of_differences_makes_no_exponential_code() -> None:
@@ -786,7 +787,6 @@ def test_no_input_gives_a_traceback(programs: Path, trace: bytes) -> None:
     assert len(done.stderr.splitlines()) == 1, done.stderr[-300:]
 
 
-@pytest.mark.slow
 def test_a_file_that_is_not_there_is_one_clear_message(programs: Path, tmp_path: Path) -> None:
     missing = tmp_path / "missing.csv"
     done = call(programs, "within", str(missing))
@@ -797,7 +797,6 @@ def test_a_file_that_is_not_there_is_one_clear_message(programs: Path, tmp_path:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("arguments", [(), ("-", "--format", "xml"), ("-", "--end", "x"), ("--x",)])
 def test_bad_use_is_exit_status_2_with_a_hint(programs: Path, arguments: tuple[str, ...]) -> None:
     done = call(programs, "within", *arguments)
@@ -813,7 +812,6 @@ def test_help_names_the_sentence_and_the_columns(programs: Path) -> None:
     assert "columns: p, q" in done.stdout.decode()
 
 
-@pytest.mark.slow
 def test_a_percent_sign_in_a_sentence_does_not_break_the_help(
     programs: Path, tmp_path: Path
 ) -> None:
@@ -824,7 +822,6 @@ def test_a_percent_sign_in_a_sentence_does_not_break_the_help(
     assert "load%s" in done.stdout.decode()
 
 
-@pytest.mark.slow
 def test_unusual_names_are_columns(programs: Path) -> None:
     done = call(programs, "names", "--help").stdout.decode()
     columns = done.split("columns: ")[1].splitlines()[0]
@@ -834,7 +831,6 @@ def test_unusual_names_are_columns(programs: Path) -> None:
     assert json.loads(done)["violations"] == [[3, 3]]
 
 
-@pytest.mark.slow
 def test_a_table_of_numbers_is_compared_and_judged(programs: Path) -> None:
     """`x mod 3 = y` holds at the first two ticks; no response comes to the first in time."""
     trace = b"x,y,speed,q\n4,1,3,0\n7.5,1.5,2.5,0\n,1,2.5,0\n5,1,1,1\n"
@@ -854,7 +850,6 @@ def test_a_table_of_numbers_that_cannot_be_read_is_refused_with_its_place(progra
     )
 
 
-@pytest.mark.slow
 def test_a_monitor_of_numbers_reads_the_truth_of_comparisons_too(programs: Path) -> None:
     text = call(programs, "comparing", "--help").stdout.decode()
     assert "columns: speed, x, y, q\n" in text

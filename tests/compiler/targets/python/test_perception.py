@@ -241,7 +241,6 @@ expr = "clearance < 5 cm"
 """
 
 
-@pytest.mark.slow
 def test_the_text_is_of_python_3_10() -> None:
     found = rules(Setting(slow="y < 5").bindings, SENTENCES[:1])
     ast.parse(perception.text(found), feature_version=(3, 10))

@@ -20,7 +20,7 @@ from compiler.targets.target import Options
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import IDENTIFIER
-from tests.effort import some
+from tests.effort import examples, some
 from tests.emitting import rule
 
 ROOT = Path(__file__).parents[4]
@@ -88,6 +88,7 @@ def test_emitted_texts_run_on_python_3_10(tmp_path: Path) -> None:
     assert "Minimum required versions: 3.10" in ran.stdout
 
 
+@pytest.mark.slow
 def test_a_wrong_verdict_of_the_monitor_fails_the_tests_of_the_package(tmp_path: Path) -> None:
     own = written(described("requirements/r1.fret"), tmp_path)
     tests = own / "test/test_monitor.py"
@@ -104,6 +105,7 @@ def test_a_wrong_verdict_of_the_monitor_fails_the_tests_of_the_package(tmp_path:
     assert ran.returncode == 1
 
 
+@examples(12)
 @given(
     st.lists(st.from_regex(IDENTIFIER, fullmatch=True), min_size=1, max_size=2, unique=True),
     st.lists(st.text("aZ9.-_ ä~\n'<", min_size=1, max_size=5).filter(lambda t: "/" not in t)),
