@@ -10,16 +10,19 @@ from pathlib import Path
 import pytest
 
 from compiler.emit import TARGETS
+from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.reference import accepts, initial, step, template
 from compiler.project.folder import load
 from compiler.targets.dafny import text
 from compiler.targets.dafny_claims import claims
-from fretish.bindings.declarations import Form, Interception
+from fretish.bindings.declarations import Declarations, Form, Interception
 from fretish.diagnostics.rendering import render
+from fretish.diagnostics.source import Source
+from fretish.documents import Requirement
 from monitors import interceptor as core
 from monitors.interceptor import Velocity
-from tests.bound_rules import bound_rule as rule
-from tests.bound_rules import declared as bound
+from tests.bound_rules import declared
 from tests.dafny_reader import Reader
 from tests.each import each
 from tests.effort import FULL, pairwise
@@ -78,9 +81,20 @@ EVENT = re.sub(r"(period|hold|\w+_timeout) .*\n", "", BINDINGS).replace(
 )
 
 
+def bound(text: str = BINDINGS) -> Declarations:
+    return declared(text)
+
+
+def rule(sentence: str, declarations: Declarations | None = None) -> FormalizedRequirement:
+    requirement = Requirement("R1", Source("r.fret", sentence).span())
+    made, diagnostics = formalize(requirement, declarations)
+    assert made is not None, diagnostics
+    return made
+
+
 def emitted(sentence: str, bindings: str | None = BINDINGS) -> str:
     declarations = bound(bindings) if bindings else None
-    made = rule(sentence, bindings or "")
+    made = rule(sentence, declarations)
     assert TARGET.refuse(made) is None
     return text(made, declarations)
 
@@ -329,7 +343,7 @@ def test_a_lost_message_costs_the_time_to_the_next(requests: str, reach: str | N
     bindings = BINDINGS.replace("lost    = 1", f"lost = 2\n{requests}")
     found = emitted("whenever p robot shall eventually satisfy q", bindings)
     declarations = bound(bindings)
-    lines = claims(rule("whenever p robot shall eventually satisfy q", bindings), declarations)
+    lines = claims(rule("whenever p robot shall eventually satisfy q", declarations), declarations)
     if reach is None:
         assert lines[-1].unshown is not None
         assert lines[-1].unshown.endswith("([assume] requests, lost and no heartbeat)")

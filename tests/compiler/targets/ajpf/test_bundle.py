@@ -18,11 +18,12 @@ from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from tests.bound_rules import bound_rule as rule
+from tests.bound_rules import bound_rule
 from tests.command import Fretc
 from tests.programs import installed, needs
 
 ROOT = Path(__file__).parents[4]
+rule = bound_rule
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
 WEAKEN = Options(weaken=True)
 
