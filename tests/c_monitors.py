@@ -16,10 +16,13 @@ from compiler.targets.target import Options
 from monitors.kernel import Monitor
 from monitors.kernel.stepping import Marks
 from monitors.kernel.verdicts import Requirement, Signals, Truth
+from tests.effort import FULL
 from tests.programs import installed
 
 STRICT = "-std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split()
 CHECKED = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
+CHECKED_IN_CPP = CHECKED if FULL else ["-D_GLIBCXX_ASSERTIONS"]
+"""By default what the library of C++ checks itself: to compile the other takes twice the time."""
 Rows = Sequence[Sequence[Truth]]
 
 

@@ -21,6 +21,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.signals.policies import policy
 from compiler.targets.target import Options
 from tests.c_monitors import CHECKED, STRICT
+from tests.effort import FULL
 from tests.programs import installed
 from tests.rust_monitors import STRICT as STRICT_RUST
 from tests.rust_monitors import write
@@ -186,7 +187,7 @@ def c(cc: str = "gcc", *flags: str) -> Language:
 
     def build(folder: Path, text: str) -> Sequence[str | Path]:
         (folder / "main.c").write_text(text, encoding="utf-8")
-        command = [installed(cc), *STRICT, *(flags or ("-O1", *CHECKED))]
+        command = [installed(cc), *STRICT, *(flags or ("-O1" if FULL else "-O0", *CHECKED))]
         _make([*command, "main.c", "monitors_signals.c", "-o", "main"], folder)
         return [folder / "main"]
 

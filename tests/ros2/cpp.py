@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import subprocess
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from tests.programs import installed
 from tests.ros2.messages import STORE
 
 _BASES = {"float32": "float", "float64": "double", "string": "std::string", "byte": "uint8_t"}
@@ -50,6 +52,28 @@ def write_headers(
         path = folder / header
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text('#include "fake.hpp"\n')
+
+
+def built(
+    folder: Path, source: Path, main: Path, in_c: Sequence[str], in_cpp: Sequence[str]
+) -> Path:
+    """A program in C++ with the monitors in C of an emitted package.
+
+    Args:
+        folder: for what is compiled.
+        source: the folder `src` of the package.
+        main: the text in C++.
+        in_c: options for the monitors.
+        in_cpp: options for the text.
+    """
+    objects = []
+    for name in ("monitors", "monitors_signals"):
+        objects.append(str(folder / f"{name}.o"))
+        command = [installed("gcc"), "-std=c99", *in_c, "-c", f"{source / name}.c"]
+        subprocess.run([*command, "-o", objects[-1]], check=True)
+    command = [installed("g++"), "-std=c++17", *in_cpp, str(main), *objects]
+    subprocess.run([*command, "-o", str(folder / main.stem)], check=True)
+    return folder / main.stem
 
 
 def _cpp(name: str) -> str:

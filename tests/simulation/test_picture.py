@@ -13,16 +13,17 @@ from simulation.world.motion import Pose
 from simulation.world.scenario import load
 from tests.simulation.missions import Missions, cut_off, record
 
+pytestmark = pytest.mark.slow  # Matplotlib takes a second to import
+
 
 @pytest.fixture(scope="module")
 def drawing() -> ModuleType:
-    """Matplotlib takes a second to import; no worker that collects this waits for it."""
+    """No worker that collects this waits for it."""
     from simulation import picture
 
     return picture
 
 
-@pytest.mark.slow
 def test_the_picture_shows_what_was_moved_and_where_the_robot_was_stopped(
     drawing: ModuleType, missions: Missions
 ) -> None:
@@ -41,7 +42,6 @@ def test_the_picture_shows_what_was_moved_and_where_the_robot_was_stopped(
     assert shares["obstacle-moved"]["stop"] > 0.0001
 
 
-@pytest.mark.slow
 def test_the_picture_and_the_film_show_where_the_robot_touched_something(
     drawing: ModuleType, tmp_path: Path
 ) -> None:
@@ -61,7 +61,6 @@ def test_the_picture_and_the_film_show_where_the_robot_touched_something(
     assert counts[2] > 0 < counts[3]
 
 
-@pytest.mark.slow
 def test_the_film_shows_the_whole_mission(drawing: ModuleType, missions: Missions) -> None:
     film = Image.open(BytesIO(drawing.animate(missions(cut_off("obstacle-moved")))))
     assert isinstance(film, GifImageFile)
@@ -100,7 +99,6 @@ def test_every_contact_is_in_one_name(drawing: ModuleType) -> None:
     assert drawing._contact_times(contacts * 2) == "6 contacts: 3.0, 4.5, 9.0 s, ..."
 
 
-@pytest.mark.slow
 def test_the_film_says_what_the_safety_function_wants(drawing: ModuleType, tmp_path: Path) -> None:
     mission = record(tmp_path / "a.mcap", load("nominal"), max_seconds=2)
     shown = replace(mission, requests=((0.5, False), (1.0, True), (1.5, False)))

@@ -88,7 +88,7 @@ THREE = [case for case in CASES if "c" in case[0]]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("condition", "guarded", "word"), [*TWO, *some(THREE, 3, 2)])
+@pytest.mark.parametrize(("condition", "guarded", "word"), [*TWO, *some(THREE, 8, 2)])
 def test_the_model_and_the_cycle_written_twice_agree(
     condition: str, guarded: bool, word: str
 ) -> None:

@@ -14,7 +14,7 @@ from compiler.files.templating import render
 from fretish.clock import Clock
 from tests import meaning
 from tests.monitoring import rule
-from tests.strategies import Template, templates
+from tests.strategies import Template, few_templates, templates
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -59,7 +59,7 @@ def drawn_for(picture: Diagram, window: ObligationWindow) -> set[int]:
 def test_the_windows_are_the_ticks_at_which_the_response_matters(
     scope: str, condition: str
 ) -> None:
-    for drawn in templates((0, 1)):
+    for drawn in few_templates((0, 1)):
         if (drawn.scope, drawn.condition) != (scope, condition):
             continue
         picture = diagram(rule(drawn.sentence))

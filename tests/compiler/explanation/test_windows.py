@@ -20,7 +20,7 @@ from fretish import syntax as s
 from fretish.diagnostics.source import Source
 from fretish.parser import parse
 from tests import meaning
-from tests.strategies import Template, some_templates, templates, traces
+from tests.strategies import Template, few_templates, templates, traces
 
 
 def counted(drawn: Template) -> Counted:
@@ -39,7 +39,7 @@ def test_the_intervals_are_those_of_the_definition(scope: str) -> None:
 
 @pytest.mark.slow
 def test_every_short_trace_is_judged_as_fretish_means_it() -> None:
-    for drawn in some_templates((0, 1, 2)):
+    for drawn in few_templates((0, 1, 2)):
         rule, names = counted(drawn), drawn.columns
         for length in range(1, 4 if len(names) < 4 else 3):
             for values in product((False, True), repeat=len(names) * length):

@@ -49,6 +49,7 @@ def test_a_changed_text_is_another_edition(copy: Path, name: str) -> None:
     assert edition_now() == build_id()
 
 
+@pytest.mark.slow
 def test_a_file_more_is_another_edition(copy: Path) -> None:
     (copy / "monitors/more.py").touch()
     assert edition_now() != build_id()

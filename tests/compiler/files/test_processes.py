@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.command import Fretc
 from tests.effort import FULL, some
 
 ROOT = Path(__file__).parents[3]
@@ -95,21 +96,18 @@ def test_no_command_executes_what_lies_in_the_present_folder(
 @pytest.mark.parametrize(
     ("target", "file", "arguments", "status"),
     [
-        ("monitor", "r1_monitor.py", ["trace.csv"], 3),
         ("monitor", "r1_monitor.py", ["trace.csv", "--engine", "online", "--format", "json"], 3),
         ("interceptor", "interceptor.py", ["--help"], 0),
+        *([("monitor", "r1_monitor.py", ["trace.csv"], 3)] * FULL),
     ],
 )
 def test_a_generated_file_executes_nothing_that_lies_beside_it(
-    tmp_path: Path, target: str, file: str, arguments: list[str], status: int
+    fretc: Fretc, tmp_path: Path, target: str, file: str, arguments: list[str], status: int
 ) -> None:
     here, build = tmp_path / "here", tmp_path / "here/build"
     build.mkdir(parents=True)
-    emitted = run(
-        *(FRETC, str(ROOT / "requirements/r1.fret"), "--emit", target, "--output", str(build)),
-        folder=here,
-    )
-    assert emitted.returncode == 0, emitted.stderr
+    emitted = fretc(str(ROOT / "requirements/r1.fret"), "--emit", target, "--output", str(build))
+    assert emitted.status == 0, emitted.err
     (here / "trace.csv").write_text("too_close,stopped\n1,0\n")
     surrounded(build)
     done = run(sys.executable, f"build/{file}", *arguments, folder=here)
@@ -120,17 +118,19 @@ def test_a_generated_file_executes_nothing_that_lies_beside_it(
 @pytest.mark.slow
 @pytest.mark.parametrize("option", some(["-P", "-I"], 2))
 def test_a_generated_monitor_runs_where_python_leaves_its_folder_out_itself(
-    tmp_path: Path, option: str
+    fretc: Fretc, tmp_path: Path, option: str
 ) -> None:
-    run(FRETC, str(ROOT / "requirements/r1.fret"), "--emit", "monitor", folder=tmp_path)
+    fretc(str(ROOT / "requirements/r1.fret"), "--emit", "monitor")
     (tmp_path / "trace.csv").write_text("too_close,stopped\n1,0\n0,1\n")
     done = run(sys.executable, option, "build/r1_monitor.py", "trace.csv", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.slow
-def test_a_generated_monitor_is_imported_without_a_change_of_the_path(tmp_path: Path) -> None:
-    run(FRETC, str(ROOT / "requirements/r1.fret"), "--emit", "monitor", folder=tmp_path)
+def test_a_generated_monitor_is_imported_without_a_change_of_the_path(
+    fretc: Fretc, tmp_path: Path
+) -> None:
+    fretc(str(ROOT / "requirements/r1.fret"), "--emit", "monitor")
     code = "import sys; before = [*sys.path]; import r1_monitor; print(sys.path == before)"
     done = run(sys.executable, "-c", code, folder=tmp_path / "build")
     assert (done.stdout, done.stderr) == ("True\n", "")

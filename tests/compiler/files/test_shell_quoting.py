@@ -19,6 +19,7 @@ from compiler.files.shell_quoting import (
 )
 from fretc.report.make import make
 from tests.command import Fretc
+from tests.effort import some
 from tests.fretc.report.cases import as_json, project, report_of, result
 
 HOSTILE = (
@@ -98,7 +99,7 @@ def test_what_is_no_hash_is_not_shown_in_a_command(sha256: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [*HOSTILE, "a\nEND\ntouch PWNED\n.mcap"])
+@pytest.mark.parametrize("name", ["a\nEND\ntouch PWNED\n.mcap", *some(HOSTILE, 4)])
 def test_the_commands_of_a_report_execute_nothing_that_evidence_names(
     fretc: Fretc, tmp_path: Path, name: str
 ) -> None:

@@ -8,11 +8,12 @@ import pytest
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.claims import Result
 from fretc.verification.monitor.verifying import verified
-from tests.effort import FULL, pairwise
+from tests.each import each
+from tests.effort import FULL, pairwise, some
 from tests.meaning import SCOPES
 from tests.monitoring import emitted, monitor, rule, steps
 from tests.spot_monitors import Ltl3
-from tests.strategies import some_templates
+from tests.strategies import Template, few_templates
 
 LENGTH = 12
 
@@ -40,12 +41,9 @@ def check(sentence: str, made: FormalizedRequirement, names: tuple[str, ...], co
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scope", SCOPES)
-def test_each_template_is_decided_at_the_earliest_tick(scope: str) -> None:
-    for template in some_templates():
-        if template.scope == scope:
-            sentence = template.sentence
-            check(sentence, rule(sentence), template.columns, 12)
+@each("template", few_templates())
+def test_each_template_is_decided_at_the_earliest_tick(template: Template) -> None:
+    check(template.sentence, rule(template.sentence), template.columns, 12)
 
 
 # Parts that share atoms -------------------------------------------------------------------------
@@ -94,7 +92,8 @@ def counted() -> Iterator[tuple[str, int]]:
 @pytest.mark.slow
 def test_parts_that_share_atoms_are_decided_at_the_earliest_tick() -> None:
     draws = range(2 if FULL else 1)
-    for scope, condition, (timing, n), draw in pairwise(SCOPES, WHEN, [*counted()], draws):
+    cases = pairwise(SCOPES, WHEN, [*counted()], draws)
+    for scope, condition, (timing, n), draw in some(cases, 3):
         sentence = sharing(scope, condition, timing, n, f"{scope} {condition} {timing} {n} {draw}")
         check(sentence, rule(sentence), ("a", "b"), 6)
 
@@ -102,7 +101,7 @@ def test_parts_that_share_atoms_are_decided_at_the_earliest_tick() -> None:
 @pytest.mark.slow
 def test_long_durations_over_shared_atoms_are_decided_at_the_earliest_tick() -> None:
     """Above the length to which durations are shortened, at their own length."""
-    for scope, condition, timing, n in pairwise(SCOPES, WHEN, COUNTED, (7, 9, 25)):
+    for scope, condition, timing, n in some(pairwise(SCOPES, WHEN, COUNTED, (7, 9, 25)), 2):
         if n == 25 and scope.startswith("only") and timing.startswith("after"):
             continue  # what it demands of each trigger is another: 2^25 states
         sentence = sharing(scope, condition, timing, n, f"{scope} {condition} {timing}")

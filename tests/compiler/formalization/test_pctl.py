@@ -5,22 +5,13 @@ from collections.abc import Iterator
 
 import pytest
 
-from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.record import formulas
 from compiler.logic import printing
 from compiler.logic.spot import same_language
-from fretish.diagnostics.source import Source
-from fretish.documents import requirements
 from tests import meaning
 from tests.each import each
-
-
-def rule(sentence: str) -> FormalizedRequirement:
-    ((requirement,), _) = requirements(Source("r.fret", sentence))
-    formalized, diagnostics = formalize(requirement, None)
-    assert formalized is not None, diagnostics
-    return formalized
+from tests.effort import some
+from tests.monitoring import rule
 
 
 def pctl(sentence: str) -> str:
@@ -136,14 +127,14 @@ def test_all_templates_are_there() -> None:
 
 
 @pytest.mark.slow
-@each("sentence", ALL)
+@each("sentence", some(ALL, 5))
 def test_without_its_probabilities_it_is_the_future_time_formula(sentence: str) -> None:
     formula = printing.future(rule(sentence).ft_infinite)
     assert same_language(without_probabilities(pctl(sentence)), formula)
 
 
 @pytest.mark.slow
-@each("sentence", ALL)
+@each("sentence", some(ALL, 5))
 def test_the_model_checkers_know_every_operator(sentence: str) -> None:
     """They have no implication and no release within a path, and no last tick."""
     words = re.findall(r"->|=>|\w+", re.sub(r"P>=(?:0\.9|1) \[", "[", pctl(sentence)))
@@ -152,7 +143,7 @@ def test_the_model_checkers_know_every_operator(sentence: str) -> None:
 
 
 @pytest.mark.slow
-@each("sentence", ALL)
+@each("sentence", some(ALL, 5))
 def test_every_path_is_within_a_probability(sentence: str) -> None:
     """`P>=1` stands around the whole, and no bound stands without what is demanded."""
     text = pctl(sentence)
@@ -162,7 +153,7 @@ def test_every_path_is_within_a_probability(sentence: str) -> None:
 
 
 @pytest.mark.slow
-@each("sentence", list(templates("")))
+@each("sentence", some(templates(""), 5))
 def test_a_sentence_without_a_probability_has_none(sentence: str) -> None:
     formalized = rule(sentence)
     assert formalized.pctl is None

@@ -5,6 +5,7 @@ import random
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ from fretish.documents import requirements
 from tests import fret_notation as fret
 from tests import meaning, monitoring
 from tests.each import each
-from tests.effort import pairwise, some
+from tests.effort import FULL, pairwise, some
 from tests.monitoring import rule
 from tests.strategies import templates
 
@@ -66,8 +67,8 @@ def drawn_traces(names: Sequence[str], length: int) -> tuple[fret.Word, int]:
 
 def words(names: Sequence[str]) -> Iterator[tuple[fret.Word, int, int]]:
     """All traces of up to 14 cells, then 400 of each length up to 10."""
-    longest = 14 // len(names)
-    for length in range(1, 11):
+    longest = (14 if FULL else 10) // len(names)
+    for length in range(1, 11) if FULL else (1, 2, 3, 4, 6, 10):
         word, full = (every_trace if length <= longest else drawn_traces)(tuple(names), length)
         yield word, length, full
 
@@ -119,7 +120,7 @@ def beyond(formula: str, names: Sequence[str], length: int) -> set[int]:
     last = [0] * (length - 1) + [full] + [0] * 3
     choose = random.Random("what follows")
     said, node = set(), fret.parse(formula)
-    for _ in range(40):
+    for _ in range(40 if FULL else 12):
         after = {n: [choose.choice((0, full)) for _ in range(3)] for n in names}
         longer = {"LAST": last, **{n: [*word[n], *after[n]] for n in names}}
         said.add(fret.values(node, longer, length + 3, full, loop=length)[0])
@@ -280,7 +281,7 @@ def traces() -> list[Trace]:
     """Each length from 1 to 8 some times, with modes that last."""
     choose = random.Random("traces of predicates")
     found = []
-    for length in [*range(1, 9)] * 5:
+    for length in [*range(1, 9)] * (5 if FULL else 3):
         changes = [choose.random() < 0.35 for _ in range(length)]
         mode = [sum(changes[: k + 1]) % 2 == 1 for k in range(length)]
         p, q, r = ([choose.random() < 0.6 for _ in range(length)] for _ in "pqr")
@@ -352,10 +353,10 @@ OF_THE_RUN: dict[str, Callable[[Sequence[bool], int], bool]] = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("text", OF_THE_RUN)
-@pytest.mark.parametrize("scope", WHILE)
-def test_the_first_tick_within_a_scope_is_that_of_the_run(scope: str, text: str) -> None:
+@each("case", some(product(WHILE, OF_THE_RUN), 2))
+def test_the_first_tick_within_a_scope_is_that_of_the_run(case: tuple[str, str]) -> None:
     """Formula and monitor, at the end of each prefix, against the definition."""
+    scope, text = case
     number = list(OF_THE_RUN).index(text)
     of_scope = [template for template in templates((1,)) if template.scope == scope]
     for place, template in enumerate(some(of_scope[number % 3 :: 3], 3, number % 3)):
@@ -387,29 +388,28 @@ POSITIONS = [
     "after m mode sw shall always satisfy ({}) -> q",
     "sw shall eventually satisfy q & !({})",
 ]
+AT_FIRST = ("FTP", "!FTP & p", "FTP xor p", "occurred(2, FTP)", "prevOcc(FTP, p)")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sentence", POSITIONS)
-def test_no_monitor_asks_whether_it_is_the_first_tick(sentence: str) -> None:
+@each("case", some(product(POSITIONS, AT_FIRST), 2))
+def test_no_monitor_asks_whether_it_is_the_first_tick(case: tuple[str, str]) -> None:
     """It tells what it would, were it told by a proposition that holds at that tick alone."""
-    for text in ("FTP", "!FTP & p", "FTP xor p", "occurred(2, FTP)", "prevOcc(FTP, p)"):
-        itself = monitoring.monitor(sentence.format(text))
-        told = monitoring.monitor(sentence.format(text.replace("FTP", "z")))
-        assert [*itself.PROPOSITIONS] == [name for name in told.PROPOSITIONS if name != "z"]
-        for trace in traces()[:8]:
-            word = {**trace, "z": [k == 0 for k in range(len(trace["q"]))]}
-            columns = {name: [*column] for name, column in word.items()}
-            pairs = zip(
-                monitoring.steps(itself, columns), monitoring.steps(told, columns), strict=True
-            )
-            for one, other in pairs:
-                assert (one.trigger, one.breach, one.finite, one.first_violation) == (
-                    other.trigger,
-                    other.breach,
-                    other.finite,
-                    other.first_violation,
-                ), (sentence, text, trace)
+    sentence, text = case
+    itself = monitoring.monitor(sentence.format(text))
+    told = monitoring.monitor(sentence.format(text.replace("FTP", "z")))
+    assert [*itself.PROPOSITIONS] == [name for name in told.PROPOSITIONS if name != "z"]
+    for trace in traces()[:8]:
+        word = {**trace, "z": [k == 0 for k in range(len(trace["q"]))]}
+        columns = {name: [*column] for name, column in word.items()}
+        pairs = zip(monitoring.steps(itself, columns), monitoring.steps(told, columns), strict=True)
+        for one, other in pairs:
+            assert (one.trigger, one.breach, one.finite, one.first_violation) == (
+                other.trigger,
+                other.breach,
+                other.finite,
+                other.first_violation,
+            ), (sentence, text, trace)
 
 
 @pytest.mark.parametrize(

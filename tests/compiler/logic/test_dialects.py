@@ -7,16 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.definition import holds
 from compiler.logic.printing import DIALECTS, FRET, LATEX, NUSMV, PLAIN, SPOT
 from compiler.logic.spot import same_language
-from fretish.diagnostics.source import Source
-from fretish.documents import requirements
 from tests.each import each
+from tests.monitoring import rule
 
 a, b, c = f.Atom("a"), f.Atom("b"), f.Atom("c")
 FAST = f.Atom("(arm_x >= 3)")
@@ -24,13 +21,6 @@ ANSWER = f.Release(f.LAST, f.Implies(f.Atom("arm.x"), f.Eventually(FAST, f.Inter
 """LAST R (arm.x -> F[0,3] arm_x >= 3): bounds, a comparison, a name to spell."""
 SINCE = f.Not(f.Since(f.Xor(a, f.TRUE), f.Previous(b), f.Interval(1, 3)))
 FIRST = f.Iff(f.Historically(f.And((a, f.Not(b))), f.EVER), f.Or((f.FIRST, f.Once(c, f.EVER))))
-
-
-def rule(sentence: str) -> FormalizedRequirement:
-    ((requirement,), _) = requirements(Source("r.fret", sentence))
-    formalized, diagnostics = formalize(requirement, None)
-    assert formalized is not None, diagnostics
-    return formalized
 
 
 def test_there_are_five_dialects() -> None:

@@ -14,15 +14,16 @@ from compiler.logic.definition import holds
 from compiler.logic.evaluation import evaluate, evaluate_unknown
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth, truth
+from tests.effort import FULL
 from tests.meaning import SCOPES
 from tests.monitoring import monitor, of_formula, over, packed, rule, steps
 from tests.strategies import (
+    few_templates,
     future,
     future_formulas,
     leaves,
     past,
     past_formulas,
-    some_templates,
     three_valued,
     traces,
 )
@@ -188,7 +189,7 @@ def test_unknown_is_told_by_the_parts() -> None:
 def test_the_future_at_the_first_tick_is_the_past_at_the_last(scope: str) -> None:
     """FRET's finite verdict by both of its formulas, and the monitor's, at every prefix."""
     choose = random.Random(scope)
-    for template in some_templates((0, 2, 5)):
+    for template in few_templates((0, 2, 5)):
         if template.scope != scope:
             continue
         made, machine = rule(template.sentence), monitor(template.sentence)
@@ -206,7 +207,7 @@ def test_the_future_at_the_first_tick_is_the_past_at_the_last(scope: str) -> Non
 def test_stepping_and_columns_agree_at_every_prefix(scope: str) -> None:
     """Also where some values are unknown."""
     choose = random.Random(scope)
-    for template in some_templates((0, 2)):
+    for template in few_templates((0, 2)):
         if template.scope != scope:
             continue
         machine = monitor(template.sentence)
@@ -263,7 +264,7 @@ def long_traces(draw: st.DrawFn) -> dict[str, list[bool]]:
     return columns
 
 
-slow = settings(max_examples=40, suppress_health_check=list(HealthCheck))
+slow = settings(max_examples=40 if FULL else 15, suppress_health_check=list(HealthCheck))
 
 
 @pytest.mark.slow

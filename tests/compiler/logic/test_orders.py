@@ -22,6 +22,7 @@ from fretish.diagnostics.source import Source
 from fretish.parser import parse
 from fretish.syntax import Sentence
 from tests.calls import calls
+from tests.effort import FULL
 
 _COMPARE = {"<": lt, "<=": le, ">": gt, ">=": ge, "=": eq, "!=": ne}
 _NAMES = ("x", "y", "z")
@@ -61,7 +62,7 @@ def value(text: str, numbers: Mapping[str, float]) -> bool:
 
 
 @pytest.mark.slow
-@settings(max_examples=40)
+@settings(max_examples=40 if FULL else 15)
 @given(several)
 def test_a_valuation_is_possible_where_numbers_make_it_and_nowhere_else(some: list[str]) -> None:
     """Every order of three numbers among the constants is one of those on a grid that fine."""
@@ -283,6 +284,7 @@ def test_what_no_cell_has_is_excluded_and_nothing_else(columns: list[str]) -> No
             assert any(all((text[i] == "1") == v for i, v in rest) for text in columns)
 
 
+@pytest.mark.slow
 def test_modes_exclude_one_another_in_pairs() -> None:
     words = tuple(f"m{i}" for i in range(60))
     compared = {word: e.Comparison("=", e.Name("mode"), e.Word(word)) for word in words}

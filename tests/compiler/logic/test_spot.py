@@ -14,7 +14,7 @@ from compiler.logic.spot import equivalent, holds_on, same_language, simplified
 from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from tests.each import each
-from tests.effort import examples
+from tests.effort import examples, some
 from tests.strategies import quoted_texts
 
 a, b = f.Atom("a"), f.Atom("b")
@@ -89,7 +89,7 @@ def test_an_atom_of_any_text_is_an_atom(texts: list[str]) -> None:
 
 
 @pytest.mark.slow
-@each("sentence", [*sentences(SCOPES), *sentences(ONLY_SCOPES)])
+@each("sentence", some([*sentences(SCOPES), *sentences(ONLY_SCOPES)], 5))
 def test_a_simplified_formula_says_the_same_in_fewer_characters(sentence: str) -> None:
     for formula in formulas(sentence):
         text = simplified(formula)
@@ -100,8 +100,8 @@ def test_a_simplified_formula_says_the_same_in_fewer_characters(sentence: str) -
 
 @pytest.mark.slow
 def test_many_templates_do_have_a_shorter_formula() -> None:
-    found = [simplified(formulas(sentence)[0]) for sentence in sentences(SCOPES)]
-    assert sum(text is not None for text in found) > 30
+    found = [simplified(formulas(sentence)[0]) for sentence in some(sentences(SCOPES), 4)]
+    assert sum(text is not None for text in found) > len(found) / 6
 
 
 def test_a_formula_that_is_short_already_has_none() -> None:

@@ -22,7 +22,7 @@ from tests.signal_policies import KINDS, SIGNS, audited_truth, signals, truth_of
 
 
 @pytest.mark.slow
-@examples(15)
+@examples(8)
 @given(st.data())
 def test_a_description_has_the_truth_that_the_audit_computes(data: st.DataObject) -> None:
     declared: dict[str, Signal] = {name: data.draw(signals(name)) for name in ("a", "b")}

@@ -21,13 +21,13 @@ from compiler.logic.formula import atoms
 from compiler.situations.situations import MEANINGS, Situation, situations
 from compiler.situations.thresholds import Place, places, written
 from fretish import expressions as e
-from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from fretish.printer import expression
 from fretish.printer import sentence as printed
 from fretish.syntax import Sentence
 from monitors.kernel.columns import Column
+from tests.bound_rules import bound_rule
 from tests.effort import FULL
 from tests.emitting import rule
 from tests.strategies import sentences
@@ -93,7 +93,7 @@ def test_an_operand_decides_alone_where_its_opposite_leads_elsewhere(sentence: s
     choose, seen = random.Random(sentence), set[str]()
     alone = {key for key in listed if key.startswith("alone-")}
     for number in range(500):
-        if not FULL and number >= 80 and seen == alone:
+        if not FULL and number >= 30 and seen == alone:
             break
         run = judged.run(choose, choose.choice((1, 1, 2, 3, 6)))
         bits = {n: sum(row[n] << t for t, (_, row) in enumerate(run)) for n in judged.atoms}
@@ -123,7 +123,7 @@ def test_an_unknown_decides_where_both_values_may_lead_elsewhere(sentence: str) 
     assert {each.unknown for each in listed} == {*judged.atoms}
     for each, number in product(listed, range(300)):
         assert each.unknown is not None
-        if not FULL and number >= 50 and each.key in seen:
+        if not FULL and number >= 10 and each.key in seen:
             continue
         run = judged.run(choose, choose.randrange(1, 6))
         state, row = run[-1]
@@ -180,11 +180,7 @@ expr = "abs(speed) < 0.010 m/s for 200 ms"
 
 
 def bound(sentence: str) -> FormalizedRequirement:
-    declarations, mistakes = read_bindings(Source("bindings.toml", BINDINGS))
-    assert not mistakes, mistakes
-    made, found = formalize(Requirement("R1", Source("r.fret", sentence).span()), declarations)
-    assert made is not None, found
-    return made
+    return bound_rule(sentence, BINDINGS)
 
 
 def thresholds(made: FormalizedRequirement) -> list[Situation]:

@@ -20,11 +20,11 @@ from fretc.analysis.arena.transition import Transition
 from tests import meaning
 from tests.compiler.situations.by_index import At, kind
 from tests.emitting import rule
-from tests.strategies import Template, some_templates, templates
+from tests.strategies import Template, few_templates
 
 
 def of(scope: str) -> Iterator[Template]:
-    return (drawn for drawn in some_templates() if drawn.scope == scope)
+    return (drawn for drawn in few_templates() if drawn.scope == scope)
 
 
 def timed(made: FormalizedRequirement, *, exact: bool = False) -> list[Situation]:
@@ -132,7 +132,7 @@ def test_each_situation_is_come_by_or_cannot_be(scope: str) -> None:
 
 
 def test_no_key_is_given_twice() -> None:
-    for drawn in templates((0, 2)):
+    for drawn in few_templates((0, 2)):
         keys = [key for key, _ in of_demand(facts(rule(drawn.sentence)))]
         assert len({*keys}) == len(keys), drawn
 

@@ -15,7 +15,7 @@ from compiler.situations.tick_predicates import TickPredicates, facts
 from fretish.syntax import ConditionKind
 from tests import meaning
 from tests.emitting import rule
-from tests.strategies import Template, some_templates
+from tests.strategies import Template, few_templates
 
 Row = Mapping[str, bool]
 LETTERS = "mpqs"
@@ -85,7 +85,7 @@ def changed(counted: reference.Template, tick: Tick, letter: str) -> bool:
 @pytest.mark.slow
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_facts_are_those_of_the_definition(scope: str) -> None:
-    for drawn in (each for each in some_templates() if each.scope == scope):
+    for drawn in (each for each in few_templates() if each.scope == scope):
         made = rule(drawn.sentence)
         counted = reference.template(made.sentence, made.ticks or 0)
         for known in (facts(made), facts(made, exact=True)):

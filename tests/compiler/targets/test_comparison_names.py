@@ -8,16 +8,13 @@ import pytest
 from compiler.emit import TARGETS
 from compiler.explanation.constant_parts import constant_parts
 from compiler.explanation.examples import examples
-from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import excluded
 from compiler.targets.comparison_names import comparison_names, definitions
 from compiler.targets.ltl import text
 from compiler.targets.target import Options
-from fretish.bindings.tables.reader import read_bindings
-from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
 from fretish.printer import expression
+from tests.bound_rules import bound_rule
 
 BINDINGS = """\
 [clock]
@@ -47,11 +44,7 @@ NAMES = {
 
 
 def rule(sentence: str = SENTENCE, bindings: str = BINDINGS) -> FormalizedRequirement:
-    declared, wrong = read_bindings(Source("bindings.toml", bindings))
-    assert declared is not None, wrong
-    found, said = formalize(Requirement("A1", Source("a1.fret", sentence).span()), declared)
-    assert found is not None, said
-    return found
+    return bound_rule(sentence, bindings, "A1")
 
 
 def emitted(target: str, sentence: str = SENTENCE) -> str:

@@ -17,13 +17,15 @@ from compiler.project.folder import load
 from compiler.targets.dafny import text
 from compiler.targets.dafny_claims import claims
 from fretish.bindings.declarations import Declarations, Form, Interception
-from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors import interceptor as core
 from monitors.interceptor import Velocity
+from tests.bound_rules import declared
 from tests.dafny_reader import Reader
+from tests.each import each
+from tests.effort import FULL, pairwise
 
 TARGET = TARGETS["dafny"]
 CONDITIONS = ("", "when p ", "whenever p ")
@@ -80,9 +82,7 @@ EVENT = re.sub(r"(period|hold|\w+_timeout) .*\n", "", BINDINGS).replace(
 
 
 def bound(text: str = BINDINGS) -> Declarations:
-    found, wrong = read_bindings(Source("bindings.toml", text))
-    assert found is not None, wrong
-    return found
+    return declared(text)
 
 
 def rule(sentence: str, declarations: Declarations | None = None) -> FormalizedRequirement:
@@ -103,20 +103,20 @@ def emitted(sentence: str, bindings: str | None = BINDINGS) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("condition", CONDITIONS)
-@pytest.mark.parametrize("timing", TIMINGS)
-@pytest.mark.parametrize("n", [0, 1, 2])
+@each(
+    "kind",
+    pairwise(CONDITIONS, [(t, n) for t in TIMINGS for n in (0, 1, 2) if "{n}" in t or not n]),
+)
 def test_the_step_and_the_definition_are_those_of_the_reference(
-    condition: str, timing: str, n: int
+    kind: tuple[str, tuple[str, int]],
 ) -> None:
-    if n and "{n}" not in timing:
-        return
+    condition, (timing, n) = kind
     made = rule(f"{condition}robot shall {timing.format(n=n)} satisfy q")
     read = Reader(text(made, None))
     ticks = (n,) if "{n}" in timing else ()
     names = re.findall(r"(\w+): bool", re.findall(r"datatype Tick = .*", text(made, None))[0])
     reference = template(made.sentence, n)
-    length = 3 if len(names) > 2 else 4
+    length = 3 if len(names) > 2 else 4 if FULL else 3
     for word in product(product((False, True), repeat=len(names)), repeat=length):
         letters = [dict(zip(names, letter, strict=True)) for letter in word]
         w = [read.Tick(*letter) for letter in word]
@@ -206,7 +206,6 @@ def in_range(options: core.Options) -> Iterator[core.State]:
             yield core.State(stop, held, command, *ages)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new"),
     [

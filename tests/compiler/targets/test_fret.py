@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from compiler.project.folder import load
 from tests.command import Fretc, write
+from tests.effort import FULL
 
 
 def emitted(fretc: Fretc, *files: str) -> dict[str, Any]:
@@ -515,7 +516,9 @@ def variables_of(records: list[dict[str, Any]]) -> Any:
 
 
 @pytest.mark.slow
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=40)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=40 if FULL else 15
+)
 @given(st.lists(VARIABLE, max_size=4))
 def test_what_fret_says_of_its_variables_comes_back(
     fretc: Fretc, variables: list[dict[str, Any]]

@@ -14,6 +14,7 @@ from compiler.targets.prism import complement, unrolled
 from tests import meaning
 from tests.compiler.formalization.test_pctl import CONDITIONS, SCOPES, TIMINGS, templates
 from tests.each import each
+from tests.effort import some
 from tests.emitting import MANY, PROBABLE, emitted, refused, rule
 from tests.programs import package
 
@@ -75,15 +76,14 @@ ALL = list(templates("with probability >= 0.9"))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scope", range(8))
-def test_without_its_probabilities_it_is_the_future_time_formula(scope: int) -> None:
-    for sentence in ALL[45 * scope : 45 * (scope + 1)]:
-        formula = printing.future(rule(sentence).ft_infinite)
-        assert same_language(without_probabilities(property_of(sentence)), formula), sentence
+@each("sentence", some(ALL, 7))
+def test_without_its_probabilities_it_is_the_future_time_formula(sentence: str) -> None:
+    formula = printing.future(rule(sentence).ft_infinite)
+    assert same_language(without_probabilities(property_of(sentence)), formula)
 
 
 @pytest.mark.slow
-@each("sentence", ALL)
+@each("sentence", some(ALL, 7, first=3))
 def test_no_trap_of_prism_or_storm_is_in_it(sentence: str) -> None:
     text = property_of(sentence)
     words = set(re.findall(r"[A-Za-z]+", re.sub(r'"\w+"', "", text)))

@@ -72,9 +72,9 @@ def _code(text: str) -> str:
     return re.sub(r"//.*|#[^!\[].*|--.*|/\*.*?\*/", "", text)
 
 
-def about(names: Sequence[str]) -> FormalizedRequirement:
+def about(names: Sequence[str], id: str = "R1") -> FormalizedRequirement:
     """A rule that is broken where none of the names is true."""
-    return rule(f"the sw shall always satisfy {disjunction(names)}")
+    return rule(f"the sw shall always satisfy {disjunction(names)}", id)
 
 
 def disjunction(names: Sequence[str]) -> str:
@@ -90,6 +90,12 @@ def one_by_one(count: int) -> list[list[bool]]:
     return [[place == tick for place in range(count)] for tick in range(count + 1)]
 
 
+def words() -> list[tuple[int, list[list[bool]]]]:
+    """For the monitor of each chunk."""
+    return [(place, one_by_one(len(names))) for place, names in enumerate(chunks())]
+
+
+@cache
 def chunks() -> list[tuple[str, ...]]:
     """Parts that a name and what it could become fall into together."""
     return parts(sorted(taken(), key=lambda name: name.lower().strip("_")), 200)
@@ -120,17 +126,19 @@ def test_python_runs_it(chunk: tuple[str, ...]) -> None:
 
 
 @pytest.mark.slow
-@every_name
-def test_gcc_compiles_it_after_all_headers(chunk: tuple[str, ...], tmp_path: Path) -> None:
-    source = c_monitors.Source.of(about(chunk))
-    program = c_monitors.compiled(tmp_path, "gcc", source, flags=c_monitors.STRICT)
-    (told,) = program.run((0, one_by_one(len(chunk))))[1]
-    assert breaks(told) == [len(chunk)]
+def test_gcc_compiles_it_after_all_headers(tmp_path: Path) -> None:
+    """A monitor for each chunk: all in one program, and all after the headers at once."""
+    ids = ["R1" if "R1_MONITOR_H" in names else f"M{i}" for i, names in enumerate(chunks())]
+    sources = [c_monitors.Source.of(about(*each)) for each in zip(chunks(), ids, strict=True)]
+    program = c_monitors.compiled(tmp_path, "gcc", *sources, flags=c_monitors.STRICT)
+    _, told = program.run(*words())
+    assert [*map(breaks, told)] == [[len(names)] for names in chunks()]
     headers = "".join(f"#include <{name}.h>\n" for name in HEADERS)
-    header = next(name for name in source.texts if name.endswith(".h"))
+    ours = [name for source in sources for name in source.texts if name.endswith(".h")]
+    includes = "".join(f'#include "{name}"\n' for name in ours)
     for compiler, ending, flags in (("gcc", "c", "-std=gnu11"), ("g++", "cpp", "-std=c++17")):
         own = headers if ending == "c" else headers.replace("#include <stdnoreturn.h>\n", "")
-        (tmp_path / f"after.{ending}").write_text(f'{own}#include "{header}"\n')
+        (tmp_path / f"after.{ending}").write_text(f"{own}{includes}")
         command = [installed(compiler), flags, "-fsyntax-only", f"after.{ending}"]
         subprocess.run(command, cwd=tmp_path, check=True)
 
@@ -152,20 +160,18 @@ def test_the_macros_of_c_s_headers_are_in_the_table(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@every_name
-def test_rustc_compiles_it(chunk: tuple[str, ...], tmp_path: Path) -> None:
-    library = rust_monitors.library(rust_monitors.crate(about(chunk)))
-    (told,) = rust_monitors.outcomes(tmp_path, [library], [(0, one_by_one(len(chunk)))])
-    assert breaks(told) == [len(chunk)]
+def test_rustc_compiles_it(tmp_path: Path) -> None:
+    crates = [rust_monitors.crate(about(names)) for names in chunks()]
+    told = rust_monitors.outcomes(tmp_path, [*map(rust_monitors.library, crates)], words())
+    assert [*map(breaks, told)] == [[len(names)] for names in chunks()]
 
 
 @node.needs_node
 @pytest.mark.slow
-@every_name
-def test_node_runs_it(chunk: tuple[str, ...], tmp_path: Path) -> None:
-    (text,) = emitted("js", about(chunk).requirement.wording.text).values()
-    (told,) = node.outcomes(tmp_path, [text], [(0, one_by_one(len(chunk)))])
-    assert [row[0]["certain"]["breach"] for row in told] == [False] * len(chunk) + [True]
+def test_node_runs_it(tmp_path: Path) -> None:
+    texts = [TARGETS["js"].emit([about(names)])[0].text for names in chunks()]
+    for rows in node.outcomes(tmp_path, texts, words()):
+        assert [row[0]["certain"]["breach"] for row in rows] == [False] * (len(rows) - 1) + [True]
 
 
 @every_name
@@ -186,9 +192,10 @@ def test_storm_reads_it(chunk: tuple[str, ...], tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_dafny_reads_it(tmp_path: Path) -> None:
-    """All names in one run, a module for each chunk: its start takes longer than a chunk."""
+    """All names in one run, a module for each chunk; by default its own, and some of all others."""
+    names = {*some(taken(), 8), *TABLES["Dafny"].words.intersection(taken())}
     with (tmp_path / "all.dfy").open("w") as file:
-        for place, chunk in enumerate(chunks()):
+        for place, chunk in enumerate(parts(sorted(names), 200)):
             (text,) = emitted("dafny", about(chunk).requirement.wording.text).values()
             file.write(f"module Chunk{place} {{\n{text}\n}}\n")
     command = [installed("dafny"), "/noVerify", "/compile:0", "all.dfy"]
@@ -247,7 +254,7 @@ def test_lustre_has_no_assignment_with_its_own_words() -> None:
 
 
 @pytest.mark.parametrize("kind", ["c", "rust", "monitor", "smv", "prism", "dafny", "ajpf"])
-@settings(max_examples=200 if FULL else 10)
+@settings(max_examples=200 if FULL else 6)
 @given(
     st.lists(
         st.sampled_from([f"{word}{end}" for word in ("int", "T", "x", "class") for end in
@@ -302,16 +309,14 @@ def test_an_id_is_no_name_of_the_run_time_in_python() -> None:
 def test_an_id_is_no_name_of_a_library_in_c(tmp_path: Path) -> None:
     """Linked with what these libraries have, and compiled after their headers."""
     headers = "pthread.h semaphore.h threads.h stdatomic.h spawn.h aio.h regex.h".split()
+    files = {name: text for id in IDS for name, text in emitted("c", _ABOUT_P, id).items()}
+    assert len(files) == 2 * len(IDS)
+    ours = "".join(f'#include "{name}"\n' for name in files if name.endswith(".h"))
     library = "".join(f"#include <{name}>\n" for name in headers)
-    for id in IDS:
-        files = emitted("c", _ABOUT_P, id)
-        for name, text in files.items():
-            (tmp_path / name).write_text(text)
-        header = next(name for name in files if name.endswith(".h"))
-        (tmp_path / "after.c").write_text(f'{library}#include "{header}"\n')
-        source = header.replace(".h", ".c")
-        command = [installed("gcc"), "-std=gnu11", "-fsyntax-only", source, "after.c"]
-        subprocess.run(command, cwd=tmp_path, check=True)
+    rust_monitors.write(tmp_path, {**files, "after.c": f"{library}{ours}"})
+    sources = [name for name in files if name.endswith(".c")]
+    command = [installed("gcc"), "-std=gnu11", "-fsyntax-only", *sources, "after.c"]
+    subprocess.run(command, cwd=tmp_path, check=True)
 
 
 def test_an_id_is_no_label_in_prism() -> None:
@@ -324,7 +329,7 @@ def test_an_id_is_no_label_in_prism() -> None:
 
 @needs("gcc", "node", "rustc")
 @pytest.mark.slow
-@pytest.mark.parametrize("names", some(parts(taken(), 3), 400))
+@pytest.mark.parametrize("names", some(parts(taken(), 3), 1000, 400))
 def test_a_monitor_with_such_names_is_proved(fretc: Fretc, names: tuple[str, ...]) -> None:
     first, second, third = (f'"{name}"' for name in (*names, *"xyz")[:3])
     write("a.fret", f"when {first} the sw shall until {second} satisfy {third}\n")

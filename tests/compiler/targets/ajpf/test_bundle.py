@@ -11,35 +11,21 @@ import pytest
 from compiler.agents import gwendolen, psl
 from compiler.agents.checking import agent_evidence
 from compiler.files.text_files import sha256
-from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.ajpf.bundle import TARGET, emit, refusal
 from compiler.targets.target import DEFAULT, Options
-from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from tests.bound_rules import bound_rule
 from tests.command import Fretc
 from tests.programs import installed, needs
 
 ROOT = Path(__file__).parents[4]
+rule = bound_rule
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
 WEAKEN = Options(weaken=True)
-
-
-def declared(text: str) -> Declarations:
-    found, diagnostics = read_bindings(Source("bindings.toml", text))
-    assert found is not None, diagnostics
-    return found
-
-
-def rule(sentence: str, id: str = "R1", bindings: str | None = None) -> FormalizedRequirement:
-    requirement = Requirement(id, Source("r.fret", sentence).span())
-    made, diagnostics = formalize(requirement, declared(bindings) if bindings else None)
-    assert made is not None, diagnostics
-    return made
 
 
 def bundle(made: FormalizedRequirement, options: Options = DEFAULT) -> dict[str, str]:

@@ -1,17 +1,16 @@
 """AJPF property files: only what AJPF reads as it is meant, and the same language as FT."""
 
 import re
+from functools import cache, lru_cache
 from itertools import count
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from compiler.agents import psl
 from compiler.agents.psl_printing import property_text
 from compiler.emit import TARGETS
-from compiler.formalization.formalize import formalize
-from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from compiler.logic import printing
 from compiler.logic.spot import equivalent, same_language
@@ -19,12 +18,12 @@ from compiler.targets.ajpf import properties as ajpf
 from compiler.targets.target import DEFAULT, Options, Target
 from fretish import expressions as e
 from fretish import syntax as s
-from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
 from fretish.printer import canonical
+from tests.bound_rules import bound_rule as rule
+from tests.effort import FULL, examples, some
 from tests.strategies import Template, templates
 
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
@@ -38,16 +37,9 @@ def target(options: Options) -> Target:
     return plain.weak if options.weaken else plain
 
 
-def rule(sentence: str, id: str = "R1", bindings: str = "") -> FormalizedRequirement:
-    declarations, wrong = read_bindings(Source("bindings.toml", bindings))
-    assert not wrong, wrong
-    made, diagnostics = formalize(Requirement(id, Source("r.fret", sentence).span()), declarations)
-    assert made is not None, diagnostics
-    return made
-
-
+@lru_cache(maxsize=1024)
 def emitted(sentence: str, options: Options = DEFAULT, id: str = "R1", bindings: str = "") -> str:
-    made = rule(sentence, id, bindings)
+    made = rule(sentence, bindings, id)
     diagnostic = target(options).refuse(made)
     assert diagnostic is None, diagnostic
     (file,) = target(options).emit([made], options)
@@ -77,8 +69,11 @@ def unbelieved(formula: f.Formula) -> f.Formula:
     return f.rebuild(formula, unbelieved)
 
 
+@cache
 def expressible(options: Options = DEFAULT) -> list[Template]:
-    return [t for t in templates((2,)) if target(options).refuse(rule(t.sentence)) is None]
+    """Every fifth; all with the full profile."""
+    chosen = some(templates((2,)), 5)
+    return [t for t in chosen if target(options).refuse(rule(t.sentence)) is None]
 
 
 # What is emitted ------------------------------------------------------------------------------
@@ -165,7 +160,7 @@ _sentences = st.builds(
 
 
 @pytest.mark.slow
-@settings(max_examples=120)
+@examples(30)
 @given(_sentences)
 def test_compound_sentences_keep_their_language(sentence: s.Sentence) -> None:
     made = rule(canonical(sentence))
@@ -576,7 +571,7 @@ def test_what_is_weakened_is_implied_by_the_requirement_and_nothing_else_is_touc
         assert not template.scope.startswith("only")
         assert ("stretch of the scope" in loss) is (template.scope in ("in", "notin", "before"))
         assert equivalent(f.And((made.ft_infinite, found["R1"])), made.ft_infinite), template
-    assert weakened == 15
+    assert weakened == 15 if FULL else weakened >= 2
 
 
 @pytest.mark.parametrize("timing", ["at the next timepoint", "for 3 ticks", "after 3 ticks"])

@@ -8,9 +8,9 @@ import spot
 
 from compiler.logic import printing
 from compiler.targets.comparison_names import comparison_names, renamed
-from tests import meaning
+from tests.each import each
 from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, rule
-from tests.strategies import templates
+from tests.strategies import Template, few_templates
 
 
 def text_of(sentence: str) -> str:
@@ -35,14 +35,12 @@ def assert_has_the_language_of_the_formula(sentence: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scope", meaning.SCOPES)
-def test_every_template_has_the_language_of_its_formula(scope: str) -> None:
-    for template in templates((0, 1, 3)):
-        if template.scope == scope:
-            assert_has_the_language_of_the_formula(template.sentence)
+@each("template", few_templates((0, 1, 3)))
+def test_every_template_has_the_language_of_its_formula(template: Template) -> None:
+    assert_has_the_language_of_the_formula(template.sentence)
 
 
-@pytest.mark.parametrize("sentence", SHARING)
+@each("sentence", SHARING)
 def test_expressions_may_share_propositions(sentence: str) -> None:
     assert_has_the_language_of_the_formula(sentence.format(n=2))
 
@@ -156,11 +154,10 @@ def test_a_predicate_that_looks_elsewhere_is_refused() -> None:
     assert "F601 HOA cannot express the predicate `persisted` of R1" in refused("hoa", LOOKING_BACK)
 
 
-@pytest.mark.slow
-def test_an_automaton_that_is_too_large_is_refused() -> None:
+def test_an_automaton_that_is_too_large_is_refused(most_states: int) -> None:
     sentence = "only in m mode whenever p the sw shall after 60 ticks satisfy q"
     assert refused("hoa", sentence) == (
-        "F670 the automaton of R1 has more than 100000 states\n"
+        f"F670 the automaton of R1 has more than {most_states} states\n"
         "  --> r.fret:1:1\n"
         f"   | {sentence}\n"
         f"   | {'^' * len(sentence)}\n"

@@ -17,9 +17,10 @@ from compiler.logic import printing
 from compiler.logic.definition import holds
 from compiler.logic.spot import same_language
 from compiler.targets.comparison_names import comparison_names
-from tests import meaning
+from tests.each import each
+from tests.effort import FULL
 from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, rule
-from tests.strategies import some_templates, templates
+from tests.strategies import Template, few_templates
 
 # The part of NuSMV's language that is used, from the grammar of its user manual (2.6, chapter 2
 # and 3.2); precedences of expressions as in its table, from the tightest.
@@ -240,17 +241,15 @@ def assert_runs_as_defined(sentence: str, traces: int, length: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scope", meaning.SCOPES)
-def test_every_template_runs_as_it_is_defined(scope: str) -> None:
-    for drawn in some_templates((0, 1, 3)):
-        if drawn.scope == scope:
-            assert_runs_as_defined(drawn.sentence, 8, 9)
+@each("template", few_templates((0, 1, 3)))
+def test_every_template_runs_as_it_is_defined(template: Template) -> None:
+    assert_runs_as_defined(template.sentence, 8, 9)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("sentence", SHARING)
+@each("sentence", SHARING)
 def test_expressions_may_share_propositions(sentence: str) -> None:
-    assert_runs_as_defined(sentence.format(n=2), 20, 8)
+    assert_runs_as_defined(sentence.format(n=2), 20 if FULL else 8, 8)
 
 
 def test_what_decides_at_the_end_is_told_by_acceptance() -> None:
@@ -277,15 +276,13 @@ def test_the_properties_of_a_safety_requirement() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scope", meaning.SCOPES)
-def test_the_requirement_is_its_future_time_formula(scope: str) -> None:
-    for drawn in templates((0, 2)):
-        if drawn.scope == scope:
-            found = re.search(r"LTLSPEC NAME r1_ft :=\n  (.*);", text_of(drawn.sentence))
-            assert found
-            spelt = re.sub(r" \[(\d+),(\d+)\]", r"[\1:\2]", found[1]).replace(" V ", " R ")
-            expected = printing.future(rule(drawn.sentence).ft_infinite)
-            assert same_language(spelt.replace("TRUE", "1").replace("FALSE", "0"), expected)
+@each("template", few_templates((0, 2)))
+def test_the_requirement_is_its_future_time_formula(template: Template) -> None:
+    found = re.search(r"LTLSPEC NAME r1_ft :=\n  (.*);", text_of(template.sentence))
+    assert found
+    spelt = re.sub(r" \[(\d+),(\d+)\]", r"[\1:\2]", found[1]).replace(" V ", " R ")
+    expected = printing.future(rule(template.sentence).ft_infinite)
+    assert same_language(spelt.replace("TRUE", "1").replace("FALSE", "0"), expected)
 
 
 @pytest.mark.parametrize("timing", ["eventually", "finally"])

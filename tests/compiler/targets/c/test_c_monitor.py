@@ -20,6 +20,7 @@ from monitors.kernel.verdicts import Signals
 from monitors.loading import load
 from tests import meaning
 from tests.c_monitors import (
+    CHECKED,
     STRICT,
     Program,
     Rows,
@@ -29,10 +30,11 @@ from tests.c_monitors import (
     write,
 )
 from tests.each import each
+from tests.effort import FULL
 from tests.emitting import refused
 from tests.monitoring import rule
 from tests.programs import installed
-from tests.strategies import some_templates, templates
+from tests.strategies import COUNTS, few_templates, templates
 
 SIGNALS = {name: name for name in ("trigger", "breach", "settled", "answer")} | {"open": "owed"}
 ROOT = Path(__file__).parents[4]
@@ -97,20 +99,22 @@ def monitors(rules: list[FormalizedRequirement]) -> Monitor:
     return load("monitors.py", text(*rules))
 
 
-@cache
-def of_templates() -> list[FormalizedRequirement]:
-    return [rule(template.sentence, f"R{i}") for i, template in enumerate(templates())]
+def in_files(counts: tuple[int, ...] = COUNTS) -> list[list[str]]:
+    """Sentences of templates: with the full profile all, of each scope together."""
+    if not FULL:
+        return [[template.sentence for template in few_templates(counts)]]
+    every = [*templates(counts)]
+    return [[each.sentence for each in every if each.scope == scope] for scope in meaning.SCOPES]
 
 
 @pytest.mark.slow
-@each("scope", meaning.SCOPES)
-def test_every_template_tells_the_same_at_each_tick(scope: str, tmp_path: Path) -> None:
-    """Those of a scope in one file, which computes what they share once."""
-    mine = [template.sentence for template in some_templates() if template.scope == scope]
-    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(mine)]
+@each("sentences", in_files())
+def test_every_template_tells_the_same_at_each_tick(sentences: list[str], tmp_path: Path) -> None:
+    """Several in one file, which computes what they share once."""
+    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
     machine, source = monitors(rules), Source.of(*rules)
     assert source.inputs == (*machine.PROPOSITIONS,)
-    program, choose = compiled(tmp_path, "gcc", source), random.Random(scope)
+    program, choose = compiled(tmp_path, "gcc", source), random.Random(sentences[0])
     width = len(source.inputs)
     hold(machine, program, *(rows(choose, width, choose.choice([6, 12, 60])) for _ in range(24)))
 
@@ -119,7 +123,8 @@ def test_a_counter_that_requirements_share_tells_each_its_own_deadline(tmp_path:
     """It goes on behind the earlier deadline: there `left` is -1, as where nothing is open."""
     within, after = (f"upon p the sw shall {t} 2 ticks satisfy q" for t in ("within", "after"))
     rules = [rule(within, "R1"), rule(after, "R2")]
-    program = compiled(tmp_path, "gcc", Source.of(*rules))
+    flags = [*STRICT, *(CHECKED if FULL else ())]
+    program = compiled(tmp_path, "gcc", Source.of(*rules), flags=flags)
     trace = [(False, False), (True, False), *[(True, False)] * 4]
     told = program.run((0, trace))[1][0]
     assert [one.certain.left for one, _ in told] == [-1, 2, 1, 0, -1, -1]
@@ -147,10 +152,13 @@ def drawn(choose: random.Random) -> Iterator[str]:
 
 
 @pytest.mark.slow
-@each("seed", range(2))
+@each("seed", range(2 if FULL else 1))
 def test_any_sentence_tells_the_same_at_each_tick(seed: int, tmp_path: Path) -> None:
     choose = random.Random(seed)
-    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(islice(drawn(choose), 40))]
+    rules = [
+        rule(sentence, f"R{i}")
+        for i, sentence in enumerate(islice(drawn(choose), 40 if FULL else 20))
+    ]
     machine, source = monitors(rules), Source.of(*rules)
     program = compiled(tmp_path, "gcc", source)
     width = len(source.inputs)

@@ -29,7 +29,6 @@ from fretc.logs.signals.propositions import truth, truth_values
 from fretc.logs.signals.samples import widest
 from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal, path
-from fretish.bindings.tables.reader import read_bindings
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
@@ -38,6 +37,7 @@ from monitors.kernel import Monitor, readings
 from monitors.kernel.readings import number
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
+from tests.bound_rules import bound_rule
 from tests.monitoring import emitted, monitor
 
 NAMES = ("x", "y", "z")
@@ -379,12 +379,7 @@ expr = "v <= 150 cm/s"
 
 
 def of(sentence: str) -> FormalizedRequirement:
-    declared, wrong = read_bindings(Source("bindings.toml", BINDINGS))
-    assert wrong == ()
-    source = Source("r.fret", f"the sw shall always satisfy {sentence}")
-    rule, remarks = formalize(Requirement("R1", source.span()), declared)
-    assert rule is not None, remarks
-    return rule
+    return bound_rule(f"the sw shall always satisfy {sentence}", BINDINGS)
 
 
 @pytest.mark.slow

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -11,13 +12,15 @@ import pytest
 from compiler.files.text_files import write as deliver
 from compiler.targets.python.interceptor import text
 from fretish.bindings.declarations import Form, Interception
-from tests.effort import FULL
+from tests.effort import FULL, some
 from tests.programs import DEBIANS_PATH
 from tests.ros1 import Ended, Ros, World, ended, ros, ros1_or_skip, until
 
 MS = 1_000_000
 TIMED = Interception("/stop", "/cmd_vel", "/wheels", period=2 * MS, stop_timeout=400 * MS, ros=1)
 PAPER = Interception("/stop", "/cmd_vel", "/wheels", form=Form.EVENT, ros=1)
+FORMS = (TIMED, PAPER)
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
 FAST = 0.4
 
 pytestmark = pytest.mark.slow
@@ -55,15 +58,14 @@ def standing(world: World) -> None:
     assert set(world.ask()) == {0.0}
 
 
-@pytest.mark.parametrize("node", [TIMED, PAPER], ids=["timer", "event"])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(("number", "node"), some(product(SIGNALS, FORMS), 3))
 def test_a_signal_ends_the_node_and_the_last_that_the_wheels_hear_is_zero(
     here: Ros, tmp_path: Path, node: Interception, number: int
 ) -> None:
     path = file(tmp_path, node)
     here.master()
     world = here.world("world")
-    for _ in range(5 if FULL else 2):
+    for _ in range(5 if FULL else 1):
         started = here.node(path)
         moving(world)
         assert ended(started, number) == Ended(0, "")
@@ -102,7 +104,7 @@ def test_a_second_node_of_the_name_ends_the_first_which_says_so(here: Ros, tmp_p
     until("the last is zero", lambda: world.ask()[-1:] == [0.0], 2.0)
 
 
-@pytest.mark.parametrize("node", [TIMED, PAPER], ids=["timer", "event"])
+@pytest.mark.parametrize("node", some(FORMS, 2), ids=lambda node: node.form.value)
 def test_while_two_safety_functions_speak_the_robot_stands(
     here: Ros, tmp_path: Path, node: Interception
 ) -> None:

@@ -1,16 +1,19 @@
 """Generated monitors, executed from their text: the meaning of FRETish, tick by tick."""
 
 import ast
+import io
 import json
 import random
 import re
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import redirect_stderr, redirect_stdout
 from functools import cache
 from itertools import product
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import pytest
 from hypothesis import given
@@ -26,17 +29,22 @@ from fretish.diagnostics.source import Source
 from fretish.documents import requirements
 from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth, Verdict
-from monitors.loading import load
+from monitors.loading import executed, load
 from tests import fret_notation as fret
 from tests import meaning
-from tests.effort import FULL, some
+from tests.effort import FULL, pairwise, some
 from tests.monitoring import emitted, monitor, over, rule, steps
-from tests.strategies import Template, templates, three_valued
+from tests.strategies import COUNTS, Template, some_templates, three_valued
 
-SCOPES = ("null", "in", "notin", "before", "after", "onlyIn", "onlyBefore", "onlyAfter")
+SCOPES = meaning.SCOPES
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
 WITHIN = "when p the sw shall within 3 ticks satisfy q"
 Columns = dict[str, list[bool]]
+
+
+def of_scope(scope: str, counts: tuple[int, ...] = COUNTS) -> list[Template]:
+    """Each condition and each timing; with the full profile each two of them."""
+    return [template for template in some_templates(counts) if template.scope == scope]
 
 
 @cache
@@ -54,8 +62,8 @@ def drawn(names: Sequence[str], length: int, count: int, seed: str) -> list[Colu
 def some_traces(template: Template) -> Iterator[Columns]:
     names = template.columns
     every = fret.all_traces(names, 9 // len(names) if len(names) < 4 else 2)
-    yield from some(every, 5)  # no power of two: each value at each tick
-    yield from drawn(names, 8, 25 if FULL else 12, repr(template))
+    yield from some(every, 23)  # no power of two: each value at each tick
+    yield from drawn(names, 8, 25 if FULL else 8, repr(template))
 
 
 def cut(columns: Columns, length: int) -> Columns:
@@ -68,9 +76,7 @@ def cut(columns: Columns, length: int) -> Columns:
 @pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_finite_is_the_meaning_of_every_prefix(scope: str) -> None:
-    for template in templates():
-        if template.scope != scope:
-            continue
+    for template in of_scope(scope):
         known: dict[tuple[tuple[bool, ...], ...], bool] = {}
         for columns in some_traces(template):
             rows = tuple(zip(*columns.values(), strict=True))
@@ -84,9 +90,7 @@ def test_finite_is_the_meaning_of_every_prefix(scope: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_triggers_are_those_of_the_definition(scope: str) -> None:
-    for template in templates((2,)):
-        if template.scope != scope:
-            continue
+    for template in of_scope(scope):
         for columns in some_traces(template):
             m, p = (columns.get(name, columns["q"]) for name in "mp")
             expected = [
@@ -110,9 +114,7 @@ def columns_of(names: Sequence[str], table: Sequence[tuple[bool, ...]]) -> Colum
 @pytest.mark.parametrize("scope", SCOPES)
 def test_violated_is_said_at_the_first_tick_that_nothing_can_repair(scope: str) -> None:
     """Two more ticks decide every template that counts to 1: nothing of before is open then."""
-    for template in templates((0, 1)):
-        if template.scope != scope:
-            continue
+    for template in of_scope(scope, (0, 1)):
         names, machine = template.columns, of_template(template)
         for length in (1, 2):
             for prefix in rows(names, length):
@@ -127,9 +129,7 @@ def test_violated_is_said_at_the_first_tick_that_nothing_can_repair(scope: str) 
 @pytest.mark.parametrize("scope", SCOPES)
 def test_an_open_demand_is_never_counted_as_satisfied(scope: str) -> None:
     """Satisfied and vacuous are said only of traces that FRET's finite semantics satisfies."""
-    for template in templates((0, 2)):
-        if template.scope != scope:
-            continue
+    for template in of_scope(scope):
         for columns in drawn(template.columns, 6, 20, repr(template)):
             for verdict in steps(of_template(template), columns):
                 if verdict.verdict in ("satisfied", "vacuous"):
@@ -176,9 +176,7 @@ def is_open(timing: str, n: int, begun: int, last: int, q: list[bool]) -> bool:
 @pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_a_demand_is_open_until_its_answer_or_its_deadline(scope: str) -> None:
-    for template in templates():
-        if template.scope != scope:
-            continue
+    for template in of_scope(scope):
         timing, negated = template.timing, False
         if scope.startswith("only"):
             negated = timing in ("always", "for", "within")
@@ -242,23 +240,13 @@ def with_holes(names: Sequence[str], length: int, seed: str) -> dict[str, list[T
 @pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
 def test_what_is_definite_stays_whatever_the_unknown_values_are(scope: str) -> None:
-    for template in templates((0, 2)):
-        if template.scope != scope:
-            continue
+    for template in of_scope(scope):
         for k in range(6):
             columns = with_holes(template.columns, 6, f"{template} {k}")
             partly = steps(of_template(template), columns)
             for filled in completions(columns):
                 for known, full in zip(partly, steps(of_template(template), filled), strict=True):
-                    for field in (
-                        "finite",
-                        "trigger",
-                        "breach",
-                        "doom",
-                        "owed",
-                        "settled",
-                        "answer",
-                    ):
+                    for field in "finite trigger breach doom owed settled answer".split():
                         value = getattr(known, field)
                         assert value in (None, getattr(full, field)), (template, columns, field)
                     assert known.decided in ("pending", full.decided), (template, columns)
@@ -267,7 +255,7 @@ def test_what_is_definite_stays_whatever_the_unknown_values_are(scope: str) -> N
 
 @pytest.mark.slow
 @given(
-    st.sampled_from(list(templates())),
+    st.sampled_from(some_templates()),
     three_valued("m", "p", "q", "s"),
     st.randoms(use_true_random=False),
 )
@@ -284,23 +272,17 @@ def test_no_unknown_value_contradicts_a_definite_verdict(
         assert known.finite in (None, template.satisfied(cut(filled, length)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scope", SCOPES)
-def test_with_all_values_known_everything_is_definite(scope: str) -> None:
-    for template in templates((2,)):
-        if template.scope == scope:
-            (columns,) = drawn(template.columns, 8, 1, repr(template))
-            for verdict in steps(of_template(template), columns):
-                assert None not in (verdict.finite, verdict.breach, verdict.owed)
-                assert verdict.verdict != "no data"
-
-
-@pytest.mark.parametrize("scope", SCOPES)
-def test_where_nothing_is_known_nothing_is_satisfied(scope: str) -> None:
-    for template in templates((2,)):
-        if template.scope == scope:
-            unknown: dict[str, list[Truth]] = {name: [None] * 6 for name in template.columns}
-            for verdict in steps(of_template(template), unknown):
-                assert verdict.verdict not in ("satisfied", "violated"), template
+def test_with_all_values_known_everything_is_definite_and_with_none_nothing(scope: str) -> None:
+    for template in of_scope(scope):
+        (columns,) = drawn(template.columns, 8, 1, repr(template))
+        for verdict in steps(of_template(template), columns):
+            assert None not in (verdict.finite, verdict.breach, verdict.owed)
+            assert verdict.verdict != "no data"
+        unknown: dict[str, list[Truth]] = {name: [None] * 6 for name in template.columns}
+        for verdict in steps(of_template(template), unknown):
+            assert verdict.verdict not in ("satisfied", "violated"), template
 
 
 # Whole runs -----------------------------------------------------------------------------------
@@ -389,13 +371,11 @@ def shape(text: str) -> list[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scope", SCOPES)
-@pytest.mark.parametrize("timing", ["within", "for", "after"])
-def test_a_step_is_the_same_code_for_any_duration(scope: str, timing: str) -> None:
-    for condition in ("null", "regular", "holding"):
-        short = emitted(Template(scope, condition, timing, 3).sentence)
-        long = emitted(Template(scope, condition, timing, 10**6).sentence)
-        assert shape(short) == shape(long)
+def test_a_step_is_the_same_code_for_any_duration() -> None:
+    for parts in pairwise(SCOPES, meaning.CONDITIONS, ("within", "for", "after")):
+        scope, condition, timing = parts
+        short, long = (emitted(Template(scope, condition, timing, n).sentence) for n in (3, 10**6))
+        assert shape(short) == shape(long), parts
 
 
 def test_a_chain_of_differences_makes_no_exponential_code() -> None:
@@ -482,7 +462,7 @@ def test_names_that_the_code_uses_itself_change_nothing(
     template = Template(scope, condition, timing, 2)
     used = locals_of(emitted(template.sentence))
     names = [n for n in used if n not in template.columns]
-    for taken in names:
+    for taken in some(names, 5, first=len(scope) % 5):
         sentence = re.sub(r"\bq\b", f'"{taken}"', template.sentence)
         machine = monitor(sentence)
         for columns in drawn(template.columns, 8, 6, taken):
@@ -604,9 +584,39 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@cache
+def module(path: Path) -> Any:
+    return executed(path.read_text("utf-8"), path.stem)
+
+
 def call(
     programs: Path, name: str, *arguments: str, stdin: bytes = b""
 ) -> subprocess.CompletedProcess[bytes]:
+    """As the program does it that the text is, in this process."""
+    path, given = programs / f"{name}.py", programs / "stdin"
+    given.write_bytes(stdin)
+    program, out, err = module(path), io.StringIO(), io.StringIO()
+    main = getattr(program, "main_by_variables", None) or program.main
+    with (
+        given.open(encoding="utf-8") as file,
+        patch.object(sys, "stdin", file),
+        patch.object(sys, "argv", [str(path), *arguments]),
+        redirect_stdout(out),
+        redirect_stderr(err),
+    ):
+        try:
+            status = main(program.MONITOR)
+        except SystemExit as exit_:
+            status = exit_.code
+    return subprocess.CompletedProcess(
+        [str(path)], status, out.getvalue().encode(), err.getvalue().encode()
+    )
+
+
+def started(
+    programs: Path, name: str, *arguments: str, stdin: bytes = b""
+) -> subprocess.CompletedProcess[bytes]:
+    """The program in a process of its own."""
     return subprocess.run(
         [sys.executable, "-I", "-S", str(programs / f"{name}.py"), *arguments],
         input=stdin,
@@ -621,10 +631,14 @@ def tool(*command: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
-def test_a_monitor_passes_a_strict_type_check(programs: Path, tmp_path: Path) -> None:
+def test_a_monitor_passes_a_strict_type_check(
+    programs: Path, request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
     """In a folder with another name: the checker is not to find the project's configuration."""
     files = sorted(map(str, programs.glob("*.py")))
-    arguments = ("--strict", "--config-file=", f"--cache-dir={tmp_path}", *files)
+    cache = getattr(request.config, "cache", None)
+    kept = cache.mkdir("mypy-of-monitors") if cache else tmp_path
+    arguments = ("--strict", "--config-file=", f"--cache-dir={kept}", *files)
     done = tool(sys.executable, "-m", "mypy", *arguments)
     assert (done.returncode, done.stderr) == (0, ""), done.stdout
 
@@ -657,6 +671,7 @@ def test_the_exit_status_tells_the_verdict(
     for done in (
         call(programs, "within", str(path), "--format", "json"),
         call(programs, "within", "-", "--format", "json", stdin=trace.encode()),
+        *([started(programs, "within", "-", "--format", "json", stdin=trace.encode())] * FULL),
     ):
         assert (done.returncode, done.stderr) == (status, b"")
         (line,) = done.stdout.decode().splitlines()
@@ -664,9 +679,11 @@ def test_the_exit_status_tells_the_verdict(
 
 
 def test_the_json_has_the_fields_that_programs_rely_on(programs: Path) -> None:
-    done = call(
+    """From a process of its own, as programs get it."""
+    done = started(
         programs, "within", "-", "--format", "json", stdin=b"p,q\n1,0\n0,0\n0,0\n0,0\n1,1\n"
     )
+    assert (done.returncode, done.stderr) == (1, b"")
     found = json.loads(done.stdout)
     promised = {
         "requirement": "within",
@@ -765,12 +782,11 @@ def test_bad_input_is_one_clear_message(programs: Path, trace: bytes, message: s
 @pytest.mark.slow
 @pytest.mark.parametrize("trace", [b'{"p": ' + b"[" * 100_000, b"p,q\n\x00,1\n", b'{"p":1}\n\xff'])
 def test_no_input_gives_a_traceback(programs: Path, trace: bytes) -> None:
-    done = call(programs, "within", "-", stdin=trace)
+    done = started(programs, "within", "-", stdin=trace)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1, done.stderr[-300:]
 
 
-@pytest.mark.slow
 def test_a_file_that_is_not_there_is_one_clear_message(programs: Path, tmp_path: Path) -> None:
     missing = tmp_path / "missing.csv"
     done = call(programs, "within", str(missing))
@@ -781,7 +797,6 @@ def test_a_file_that_is_not_there_is_one_clear_message(programs: Path, tmp_path:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("arguments", [(), ("-", "--format", "xml"), ("-", "--end", "x"), ("--x",)])
 def test_bad_use_is_exit_status_2_with_a_hint(programs: Path, arguments: tuple[str, ...]) -> None:
     done = call(programs, "within", *arguments)
@@ -797,7 +812,6 @@ def test_help_names_the_sentence_and_the_columns(programs: Path) -> None:
     assert "columns: p, q" in done.stdout.decode()
 
 
-@pytest.mark.slow
 def test_a_percent_sign_in_a_sentence_does_not_break_the_help(
     programs: Path, tmp_path: Path
 ) -> None:
@@ -808,7 +822,6 @@ def test_a_percent_sign_in_a_sentence_does_not_break_the_help(
     assert "load%s" in done.stdout.decode()
 
 
-@pytest.mark.slow
 def test_unusual_names_are_columns(programs: Path) -> None:
     done = call(programs, "names", "--help").stdout.decode()
     columns = done.split("columns: ")[1].splitlines()[0]
@@ -818,7 +831,6 @@ def test_unusual_names_are_columns(programs: Path) -> None:
     assert json.loads(done)["violations"] == [[3, 3]]
 
 
-@pytest.mark.slow
 def test_a_table_of_numbers_is_compared_and_judged(programs: Path) -> None:
     """`x mod 3 = y` holds at the first two ticks; no response comes to the first in time."""
     trace = b"x,y,speed,q\n4,1,3,0\n7.5,1.5,2.5,0\n,1,2.5,0\n5,1,1,1\n"
@@ -838,7 +850,6 @@ def test_a_table_of_numbers_that_cannot_be_read_is_refused_with_its_place(progra
     )
 
 
-@pytest.mark.slow
 def test_a_monitor_of_numbers_reads_the_truth_of_comparisons_too(programs: Path) -> None:
     text = call(programs, "comparing", "--help").stdout.decode()
     assert "columns: speed, x, y, q\n" in text

@@ -8,16 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compiler.formalization.formalize import formalize
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python.monitor import text
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.traces import trace
-from fretish.bindings.tables.reader import read_bindings
-from fretish.diagnostics.source import Source
-from fretish.documents import requirements
 from monitors.kernel.columns import truths
 from monitors.loading import load
+from tests.bound_rules import bound_rule
 
 BINDINGS = """
 [clock]
@@ -41,13 +38,7 @@ COMPARISONS = (
 
 @cache
 def rule(comparison: str) -> FormalizedRequirement:
-    declarations, wrong = read_bindings(Source("bindings.toml", BINDINGS))
-    assert declarations is not None, wrong
-    sentence = f"the r shall always satisfy {comparison}"
-    ((requirement,), _) = requirements(Source("R1.fret", sentence))
-    found, said = formalize(requirement, declarations)
-    assert found is not None, said
-    return found
+    return bound_rule(f"the r shall always satisfy {comparison}", BINDINGS)
 
 
 @cache

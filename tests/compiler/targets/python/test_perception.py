@@ -27,6 +27,7 @@ from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.documents import Requirement
 from monitors.loading import executed
+from tests.effort import examples
 from tests.fretc.logs.logs import declare
 from tests.fretc.watch.sent import MS, SENTENCES, START, Sent, Setting, plan_of
 from tests.fretc.watch.test_session import audited_rows, recorded
@@ -93,6 +94,7 @@ def judging(setting: Setting, some: Sequence[Sent], idle: int) -> tuple[Any, lis
 
 
 @pytest.mark.slow
+@examples(12)
 @given(settings_, messages, st.sampled_from([0, 3, 40]))
 @example(
     Setting(slow="z < 5 for 25 ms", lateness=0), [Sent("/x", 1.0, 0, 60), Sent("/x", 1.0, 40)], 3
@@ -109,6 +111,7 @@ def test_every_tick_is_that_of_the_audit(setting: Setting, some: list[Sent], idl
 
 
 @pytest.mark.slow
+@examples(12)
 @given(settings_, messages)
 def test_what_is_owed_on_arrival_is_what_a_watch_says(setting: Setting, some: list[Sent]) -> None:
     _, owed = judging(setting, some, 0)
@@ -128,6 +131,7 @@ def live_module() -> Any:
 
 
 @pytest.mark.slow
+@examples(12)
 @given(st.data())
 def test_a_sample_is_that_of_the_audit(data: st.DataObject) -> None:
     signal = data.draw(signals("a"))
@@ -167,6 +171,7 @@ truths_of_fields = st.recursive(
 
 
 @pytest.mark.slow
+@examples(12)
 @given(
     signals("a"),
     truths_of_fields | st.none(),
@@ -192,6 +197,7 @@ def test_a_whole_array_at_once_gives_what_its_elements_give(
 
 
 @pytest.mark.slow
+@examples(12)
 @given(
     st.lists(st.floats(0, 10, width=32) | st.sampled_from([math.inf, -math.inf, math.nan])),
     st.floats(-3.2, 3.2),
@@ -235,7 +241,6 @@ expr = "clearance < 5 cm"
 """
 
 
-@pytest.mark.slow
 def test_the_text_is_of_python_3_10() -> None:
     found = rules(Setting(slow="y < 5").bindings, SENTENCES[:1])
     ast.parse(perception.text(found), feature_version=(3, 10))

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from compiler.files.attribution import EXAMPLE, FIELDS, Attribution, Unfit, attribution
 from tests.command import Fretc, write
+from tests.effort import FULL
 
 R1 = Path(__file__).parents[4] / "requirements"
 KINDS = ("ros1-package", "ros2-package", "ros2-cpp-package")
@@ -44,7 +45,9 @@ def emitted(fretc: Fretc, *kinds: str) -> dict[str, str]:
 
 
 @pytest.mark.slow
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=15)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=15 if FULL else 3
+)
 @given(st.fixed_dictionaries(dict.fromkeys(FIELDS, LINES) | {"email": st.just("a@b.org")}))
 @example(WHOLE)
 def test_a_manifest_has_what_the_project_says(fretc: Fretc, table: dict[str, str]) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import signal
 import subprocess
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -20,7 +19,8 @@ import pytest
 import tomli_w
 
 from compiler.files.text_files import write as deliver
-from tests.fretc.watch.watched import ROOT, Watched
+from tests.command import Fretc
+from tests.fretc.watch.watched import Watched
 from tests.programs import DEBIANS_PATH, DEBIANS_PYTHON, installed
 from tests.ros1 import Ended, Ros, ended, ros, ros1_or_skip, until
 from tests.ros2.emitted import OWNER
@@ -114,13 +114,7 @@ class Robot:
         until("it stands", self.stands)
 
 
-def fretc(folder: Path, *words: str) -> subprocess.CompletedProcess[bytes]:
-    command = [sys.executable, "-c", "from fretc.cli import main; main()", *words]
-    environment = {"PATH": DEBIANS_PATH, "HOME": str(folder), "PYTHONPATH": str(ROOT)}
-    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, check=False)
-
-
-def package(folder: Path) -> Path:
+def package(fretc: Fretc, folder: Path) -> Path:
     """The requirements, and the package of those of `halt`."""
     for name, sentences in FOLDERS.items():
         texts = {f"{id}.fret": sentence for id, sentence in sentences.items()}
@@ -128,16 +122,16 @@ def package(folder: Path) -> Path:
             assert deliver({folder / name / file: text}) is None
     settings = tomli_w.dumps({"project": asdict(OWNER)})
     assert deliver({folder / "fretc.toml": settings}) is None
-    made = fretc(folder, "halt", "--emit", "ros1-package", "-o", ".")
-    assert made.returncode == 0, made.stderr
+    made = fretc("halt", "--emit", "ros1-package", "-o", ".")
+    assert made.status == 0, made.err
     return folder / "halt_monitor"
 
 
-def audited(folder: Path, name: str) -> dict[str, dict[str, Any]]:
+def audited(fretc: Fretc, name: str) -> dict[str, dict[str, Any]]:
     """The results of an audit of the bag by each requirement of a folder."""
-    ran = fretc(folder, "audit", "run.bag", "--requirements", name, "-o", f"{name}.json")
-    assert ran.returncode == 1, ran.stderr
-    results = json.loads((folder / f"{name}.json").read_text())["results"]
+    ran = fretc("audit", "run.bag", "--requirements", name, "-o", f"{name}.json")
+    assert ran.status == 1, ran.err
+    results = json.loads(Path(f"{name}.json").read_text())["results"]
     return {each["requirement"]: each for each in results}
 
 
@@ -180,8 +174,8 @@ def violated(lines: Sequence[dict[str, Any]], id: str) -> int | None:
     return time
 
 
-def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path) -> None:
-    made = package(tmp_path)
+def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path, fretc: Fretc) -> None:
+    made = package(fretc, tmp_path)
     here.environment = {**here.environment, "PYTHONPATH": str(made / "src")}
     here.master()
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -226,7 +220,7 @@ def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path) -> None:
     record.send_signal(signal.SIGINT)
     record.wait(20)
 
-    audit, alive = audited(tmp_path, "halt"), audited(tmp_path, "alive")["ALIVE"]
+    audit, alive = audited(fretc, "halt"), audited(fretc, "alive")["ALIVE"]
     edges = {each["ns"] for each in audit["EDGE"]["triggers"]}
     assert len(edges) == 3
     first = next(each for each in alive["violations"] if each["start_ns"] > max(edges))
@@ -243,8 +237,10 @@ def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path) -> None:
     assert first["missing"] == "guarded"
 
 
-def test_what_can_go_wrong_around_the_node_stops_the_robot(here: Ros, tmp_path: Path) -> None:
-    made = package(tmp_path)
+def test_what_can_go_wrong_around_the_node_stops_the_robot(
+    here: Ros, tmp_path: Path, fretc: Fretc
+) -> None:
+    made = package(fretc, tmp_path)
     here.environment = {**here.environment, "PYTHONPATH": str(made / "src")}
     program = made / "scripts/monitor_node.py"
     here.master()

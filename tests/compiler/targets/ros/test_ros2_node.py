@@ -16,6 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from monitors.loading import executed
+from tests.effort import examples
 from tests.ros2 import rclpy
 from tests.ros2.emitted import FORWARD, Monitor, Robot, write
 from tests.ros2.messages import message_class
@@ -257,6 +258,7 @@ transitions = st.lists(
 
 
 @pytest.mark.slow
+@examples(10)
 @given(transitions)
 def test_only_an_active_node_lets_the_robot_go(package: Path, asked: list[str]) -> None:
     robot = Robot(package)

@@ -12,6 +12,7 @@ import pytest
 import yaml
 from catkin_pkg.package import parse_package
 
+from tests.effort import some
 from tests.programs import DEBIANS_PATH, debians_python, installed
 from tests.ros2.emitted import Robot, write
 from tests.ros2.launch import launched
@@ -111,7 +112,7 @@ def _colcon(workspace: Path, verb: str, *words: str) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("subject", SUBJECTS)
+@pytest.mark.parametrize("subject", some(SUBJECTS, 3))
 def test_ros_2s_linters_find_nothing(subject: str, tmp_path: Path) -> None:
     package = write(ROOT / subject, tmp_path)
     for linter in ("flake8", "pep257", "xmllint"):

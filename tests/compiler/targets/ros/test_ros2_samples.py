@@ -13,8 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.c_monitors import CHECKED
-from tests.programs import installed
+from tests.c_monitors import CHECKED_IN_CPP
+from tests.effort import examples
+from tests.ros2.cpp import built as compiled
 from tests.ros2.emitted import write
 from tests.ros2.world import World
 
@@ -102,29 +103,15 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Any]:
     source = write(folder, folder / "package", "ros2-cpp-package") / "src"
     live = World().process().load(write(folder, folder / "package"), "perception")
     (folder / "driver.cpp").write_text(DRIVER)
-    objects = []
-    for name in ("monitors", "monitors_signals"):
-        objects.append(str(folder / f"{name}.o"))
-        command = [installed("gcc"), "-std=c99", "-c", str(source / f"{name}.c"), "-o", objects[-1]]
-        subprocess.run(command, check=True)
-    command = [
-        installed("g++"),
-        "-std=c++17",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        *CHECKED,
-        f"-I{source}",
-    ]
-    command += [str(folder / "driver.cpp"), *objects, "-o", str(folder / "driver")]
-    subprocess.run(command, check=True)
-    return folder / "driver", live
+    in_cpp = ["-Wall", "-Wextra", "-Werror", *CHECKED_IN_CPP, f"-I{source}"]
+    return compiled(folder, source, folder / "driver.cpp", CHECKED_IN_CPP, in_cpp), live
 
 
 ranges = st.sampled_from([0.0, 0.25, 0.5, 1.0, 3.0, 50.0, math.inf, -math.inf, math.nan])
 
 
 @pytest.mark.slow
+@examples(12)
 @given(
     st.lists(ranges, max_size=5),
     st.lists(st.booleans(), max_size=3),

@@ -18,10 +18,11 @@ from hypothesis import strategies as st
 from fretc.api.requirements import read_project
 from fretc.audit.plan import Plan, planned
 from fretc.watch.sources.source import Arrival
-from tests.c_monitors import CHECKED
+from tests.c_monitors import CHECKED_IN_CPP
+from tests.effort import examples
 from tests.fretc.watch.sent import MS, START, Sent
 from tests.fretc.watch.test_session import audited_rows, recorded
-from tests.programs import installed
+from tests.ros2.cpp import built
 from tests.ros2.emitted import write
 from tests.ros2.messages import message_class
 from tests.ros2.world import World
@@ -129,6 +130,7 @@ def node(package: Path, some: Sequence[Posed], idle: int) -> Any:
 
 
 @pytest.mark.slow
+@examples(12)
 @given(st.sampled_from(SETTINGS), messages, st.sampled_from([0, 3, 40]))
 def test_every_tick_is_that_of_the_audit(
     subjects: dict[tuple[str, int], Subject],
@@ -203,26 +205,13 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "bindings.toml").write_text(BINDINGS.format(time="header.stamp", lateness=5))
     source = write(folder, folder / "package", "ros2-cpp-package") / "src"
     (folder / "driver.cpp").write_text(DRIVER)
-    strict = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror".split()
-    objects = []
-    for name in ("monitors", "monitors_signals"):
-        objects.append(str(folder / f"{name}.o"))
-        command = [installed("gcc"), "-std=c99", "-c", str(source / f"{name}.c"), "-o", objects[-1]]
-        subprocess.run([*command, *CHECKED], check=True)
-    command = [
-        installed("g++"),
-        "-std=c++17",
-        *strict,
-        *CHECKED,
-        f"-I{source}",
-        "-Wno-float-conversion",
-    ]
-    command += [str(folder / "driver.cpp"), *objects, "-o", str(folder / "driver")]
-    subprocess.run(command, check=True)
-    return folder / "driver"
+    strict = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -Wno-float-conversion".split()
+    in_cpp = [*strict, *CHECKED_IN_CPP, f"-I{source}"]
+    return built(folder, source, folder / "driver.cpp", CHECKED_IN_CPP, in_cpp)
 
 
 @pytest.mark.slow
+@examples(12)
 @given(st.sampled_from(SETTINGS), messages, st.sampled_from([0, 3, 40, 5000]))
 def test_the_package_in_cpp_says_the_same(
     program: Path,

@@ -11,6 +11,7 @@ from compiler.project.folder import load
 from compiler.targets.rust.monitor import TARGET
 from compiler.targets.target import Options
 from tests.each import each
+from tests.effort import FULL, some
 from tests.programs import installed
 from tests.rust_monitors import write
 from tests.signal_policies import collected, numbered
@@ -19,12 +20,12 @@ ROOT = Path(__file__).parents[4]
 
 
 @pytest.mark.slow
-@each("folder", ["", "requirements", "requirements/mission", "requirements/agv"])
+@each("folder", some(["", "requirements", "requirements/mission", "requirements/agv"], 4))
 def test_clippy_finds_nothing(folder: str, tmp_path: Path) -> None:
     if folder:
         rules = load([str(path) for path in sorted(ROOT.joinpath(folder).glob("*.fret"))]).rules
     else:
-        rules = tuple(numbered(case, i) for i, case in enumerate(collected(40)))
+        rules = tuple(numbered(case, i) for i, case in enumerate(collected(40 if FULL else 15)))
     files = TARGET.emit(rules, Options(one_file=True))
     write(tmp_path, {str(file.path): file.text for file in files})
     installed("cargo-clippy")

@@ -1,0 +1,30 @@
+"""A sentence and the text of its bindings → the rule that fretc makes of both."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from compiler.formalization.formalize import formalize
+from compiler.formalization.formalized import FormalizedRequirement
+from fretish.bindings.declarations import Declarations
+from fretish.bindings.tables.reader import read_bindings
+from fretish.diagnostics.source import Source
+from fretish.documents import Requirement
+
+
+@lru_cache(maxsize=256)
+def declared(text: str) -> Declarations:
+    """What the text of bindings declares; it has no mistake."""
+    found, wrong = read_bindings(Source("bindings.toml", text))
+    assert found is not None, wrong
+    assert wrong == (), wrong
+    return found
+
+
+@lru_cache(maxsize=4096)
+def bound_rule(sentence: str, bindings: str = "", id: str = "R1") -> FormalizedRequirement:
+    """The rule of a sentence with these bindings; tests that ask for the same one share it."""
+    requirement = Requirement(id, Source("r.fret", sentence).span())
+    made, diagnostics = formalize(requirement, declared(bindings) if bindings else None)
+    assert made is not None, diagnostics
+    return made
