@@ -212,9 +212,14 @@ def result(
 
 def basis(known: Project, name: str) -> Mapping[str, str]:
     """What an audit would record of a requirement now."""
-    basis_of = bases(known)
+    if not _latest or _latest[0] is not known:  # asked once as long as one project is in use
+        _latest[:] = known, bases(known)
     requirement = next((each for each in known.requirements if each.id == name), None)
-    return basis_of[id(requirement)] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
+    return _latest[1][id(requirement)] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
+
+
+_latest: list[Any] = []
+"""The latest project, and its bases."""
 
 
 ODOM = {

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 import re
-from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
@@ -17,6 +16,7 @@ from fretc.report.make import make
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, accepted, text
 from fretish.diagnostics.diagnostic import Diagnostic
+from tests.browsing import Visits, serious
 from tests.effort import some
 from tests.fretc.report.cases import (
     BINDINGS,
@@ -28,9 +28,6 @@ from tests.fretc.report.cases import (
     result,
     violation,
 )
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser
 
 HOSTILE = "<script>document.title = 'broken'</script></del>\u202egnp.exe\u202c " + "x" * 3000
 
@@ -143,22 +140,10 @@ def test_of_many_runs_the_violated_ones_come_first_and_the_rest_is_counted(tmp_p
     ("width", "scheme"), some([(390, "dark"), (1440, "dark"), (390, "light"), (1440, "light")], 3)
 )
 def test_the_section_fits_and_is_accessible(
-    browser: Browser, page: Path, width: int, scheme: Any
+    visits: Visits, page: Path, width: int, scheme: str
 ) -> None:
-    context = browser.new_context(
-        offline=True, color_scheme=scheme, viewport={"width": width, "height": 900}
-    )
-    shown = context.new_page()
-    shown.goto(page.as_uri())
+    shown = visits.open(page, width, scheme=scheme)
     assert shown.evaluate("document.documentElement.scrollWidth") == width
     shown.locator("#changes summary").first.click()
     assert shown.locator("#changes tbody tr").first.is_visible()
-    shown.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
-    run = "axe.run('#changes', {resultTypes: ['violations']})"
-    serious = [
-        (each["id"], each["nodes"][0]["html"][:200])
-        for each in shown.evaluate(run)["violations"]
-        if each["impact"] in ("serious", "critical")
-    ]
-    assert serious == []
-    context.close()
+    assert serious(shown, "#changes") == []

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -14,13 +13,14 @@ import pytest
 
 from compiler.project.folder import load
 from fretc.report.make import make
+from tests.browsing import Visits, serious
 from tests.effort import FULL, some
 from tests.fretc.report.cases import project, report_of, requirement, result, violation
 from tests.fretc.report.page.large import MARKS, mostly_satisfied, small
 from tests.fretc.report.page.large import page as page_of
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Page
 
 pytestmark = pytest.mark.slow
 SCREENS = [(1440, 900), (1024, 768), (390, 844)]
@@ -95,26 +95,15 @@ def html(name: str) -> str:
 
 
 @pytest.fixture
-def visit(browser: Browser, tmp_path: Path) -> Iterator[Visit]:
-    """Opens a page by its name; nothing complains, and nothing is asked of the network."""
-    messages: list[str] = []
-    contexts = []
+def visit(visits: Visits, tmp_path: Path) -> Visit:
+    """Opens a page by its name."""
 
     def open_it(name: str, width: int = 1440, height: int = 900, **options: Any) -> Page:
-        size: Any = {"width": width, "height": height}
-        contexts.append(browser.new_context(offline=True, viewport=size, **options))
-        page = contexts[-1].new_page()
-        page.on("console", lambda message: messages.append(message.text))
-        page.on("pageerror", lambda error: messages.append(str(error)))
         path = tmp_path / f"{name}.html"
         path.write_text(html(name), encoding="utf-8")
-        page.goto(path.as_uri())
-        return page
+        return visits.open(path, width, height, **options)
 
-    yield open_it
-    for context in contexts:
-        context.close()
-    assert messages == []
+    return open_it
 
 
 @pytest.mark.parametrize(
@@ -158,14 +147,10 @@ def test_the_first_screen_decides_and_the_page_is_never_wider_than_the_screen(
     ),
 )
 def test_axe_finds_nothing_serious(visit: Visit, name: str, scheme: str, width: int) -> None:
-    page = visit(name, width, color_scheme=scheme)
+    page = visit(name, width, scheme=scheme)
     if name == "aggregated":
         page.locator("table.small a").first.click()
-    page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
-    run = "axe.run('header, nav, #matrix, .controls', {resultTypes: ['violations']})"
-    found = page.evaluate(run)["violations"]
-    serious = [each for each in found if each["impact"] in ("serious", "critical")]
-    assert [(each["id"], each["nodes"][0]["html"][:200]) for each in serious] == []
+    assert serious(page, "header, nav, #matrix, .controls") == []
 
 
 def test_fifteen_requirements_in_sixteen_runs_fit_one_screen(visit: Visit) -> None:
@@ -254,7 +239,7 @@ def test_filters_leave_what_is_asked_for_and_say_what_red_they_hide(visit: Visit
 
 @pytest.mark.parametrize("name", some(["mission", "50 x 100"], 2))
 def test_without_the_script_each_cell_is_there_and_leads_somewhere(visit: Visit, name: str) -> None:
-    page = visit(name, java_script_enabled=False)
+    page = visit(name, scripts=False)
     assert page.locator(".controls").count() == 0
     red = page.locator('.matrix td > a[aria-label^="violated"]:visible').first
     target = str(red.get_attribute("href")).removeprefix("#")
@@ -282,7 +267,7 @@ def test_an_aggregated_matrix_opens_its_parts_and_they_say_the_same(visit: Visit
 
 
 def test_an_aggregated_matrix_lists_what_is_not_satisfied_without_the_script(visit: Visit) -> None:
-    page = visit("aggregated", java_script_enabled=False)
+    page = visit("aggregated", scripts=False)
     page.locator("table.small a.violated").first.click()
     assert "violated in" in page.locator("#list-1").inner_text()
 
