@@ -61,6 +61,12 @@ class Visits:
         page.goto(f"{path.absolute().as_uri()}{address}")
         return page
 
+    def again(self, page: Page) -> Page:
+        """The document and the address of a page in another one."""
+        other = self._page(scripts=True)
+        other.goto(page.url)
+        return other
+
     def _page(self, scripts: bool) -> Page:
         made, place = self._made[scripts], self._used[scripts]
         self._used[scripts] += 1

@@ -214,8 +214,9 @@ def basis(known: Project, name: str) -> Mapping[str, str]:
     """What an audit would record of a requirement now."""
     if not _latest or _latest[0] is not known:  # asked once as long as one project is in use
         _latest[:] = known, bases(known)
+    found: Mapping[int, Mapping[str, str]] = _latest[1]
     requirement = next((each for each in known.requirements if each.id == name), None)
-    return _latest[1][id(requirement)] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
+    return found[id(requirement)] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
 
 
 _latest: list[Any] = []
