@@ -53,6 +53,13 @@ def project(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     return fretc.read_project(folder)
 
 
+@pytest.fixture(scope="module")
+def plan(project: fretc.Project) -> Plan:
+    made = planned(project)
+    assert isinstance(made, Plan)
+    return made
+
+
 def verdicts(plan: Plan, samples: list[tuple[int, float]]) -> dict[str, str]:
     """Those of an audit."""
     times = np.array([time for time, _ in samples], np.int64)
@@ -66,9 +73,7 @@ def verdicts(plan: Plan, samples: list[tuple[int, float]]) -> dict[str, str]:
 
 
 @pytest.mark.slow
-@settings(
-    max_examples=100 if FULL else 8
-)  # each makes monitors and looks at all phases of the ticks
+@settings(max_examples=100 if FULL else 6)  # each looks at all phases of the ticks
 @given(
     st.lists(
         st.tuples(st.integers(1, 120), st.sampled_from([0.0, 2.0, 4.0, float("nan")])), min_size=1
@@ -76,10 +81,8 @@ def verdicts(plan: Plan, samples: list[tuple[int, float]]) -> dict[str, str]:
     st.lists(st.integers(0, 120), max_size=6),
 )
 def test_the_verdicts_at_the_end_are_those_of_an_audit(
-    project: fretc.Project, samples: list[tuple[int, float]], cuts: list[int]
+    project: fretc.Project, plan: Plan, samples: list[tuple[int, float]], cuts: list[int]
 ) -> None:
-    plan = planned(project)
-    assert isinstance(plan, Plan)
     samples = sorted(samples, key=lambda sample: sample[0])
     stream = fretc.Stream(project)
     cuts = [cut for cut in sorted(cuts) if cut <= samples[-1][0]]

@@ -22,6 +22,7 @@ from fretc.report.forms.csv_rows import csv_text
 from fretc.report.forms.json_text import json_pieces
 from fretc.report.forms.markdown import markdown
 from fretc.report.make import ReportBuild, make
+from fretc.report.model.views import Report
 from fretc.report.page.html import html
 from fretc.report.page.selection import DETAILED, selection
 from fretc.report.sections import details as reading
@@ -52,14 +53,21 @@ def known(folder: Path) -> Project:
 
 
 FORMS = [JSON, STORE]
+RUNS = 20 if FULL else 6
 
 
 @pytest.fixture(scope="module", params=FORMS)
 def audited(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Evidence of 3 requirements in 20 runs, half of them violated, in either form."""
+    """Evidence of 3 requirements in some runs, half of them violated, in either form."""
     folder = tmp_path_factory.mktemp("audited")
-    written(folder, 3, 20, 0.5, request.param)
+    written(folder, 3, RUNS, 0.5, request.param)
     return folder / str(request.param)
+
+
+@pytest.fixture(scope="module")
+def made(audited: Path) -> tuple[Report, Details]:
+    """The report about it."""
+    return whole(make(project(audited.parent, 3), str(audited)))
 
 
 def opened(path: Path) -> EvidenceSource:
@@ -68,7 +76,7 @@ def opened(path: Path) -> EvidenceSource:
     return known
 
 
-def whole(build: ReportBuild) -> tuple[Any, Details]:
+def whole(build: ReportBuild) -> tuple[Report, Details]:
     assert build.report is not None, build.diagnostics[0].message
     assert build.details is not None
     return build.report, build.details
@@ -83,7 +91,7 @@ def test_a_source_counts_what_it_has_in_full(audited: Path) -> None:
     briefs = [*known.briefs()]
     results = dict(known.details(range(len(briefs))))
     assert briefs == [(place, brief(result)) for place, result in enumerate(results.values())]
-    assert [*results] == [*range(60)]
+    assert [*results] == [*range(3 * RUNS)]
     runs = {run: [r for r in results.values() if r.run == run] for run in known_runs(results)}
     assert [*known.runs()] == [run_facts(of) for of in runs.values()]
     for ids in (("R0",), ("R2", "R0"), ()):
@@ -144,9 +152,10 @@ class Counted:
 
 
 @pytest.mark.slow
-def test_a_page_reads_those_results_in_full_that_it_shows(audited: Path) -> None:
-    build = make(project(audited.parent, 3), str(audited))
-    report, details = whole(build)
+def test_a_page_reads_those_results_in_full_that_it_shows(
+    audited: Path, made: tuple[Report, Details]
+) -> None:
+    report, details = made
     counted = Counted(opened(audited))
     chosen = selection(report, replace(details, evidence=counted))
     shown = [view.anchor for each in chosen.by_anchor.values() for view in each.details]
@@ -161,8 +170,8 @@ def test_a_page_reads_those_results_in_full_that_it_shows(audited: Path) -> None
 
 @pytest.mark.slow
 @pytest.mark.parametrize("audited", some(FORMS, 2), indirect=True)
-def test_the_json_form_in_pieces_is_that_in_one(audited: Path) -> None:
-    report, details = whole(make(project(audited.parent, 3), str(audited)))
+def test_the_json_form_in_pieces_is_that_in_one(made: tuple[Report, Details]) -> None:
+    report, details = made
     anchors = [view.anchor for view in report.requirements]
     histograms = dict(details.histograms(anchors))
     every = [row for view in report.requirements for row in view.results]
@@ -187,9 +196,9 @@ def test_the_json_form_in_pieces_is_that_in_one(audited: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("audited", some(FORMS, 2, 1), indirect=True)
 def test_how_much_is_read_at_once_changes_nothing(
-    audited: Path, monkeypatch: pytest.MonkeyPatch
+    made: tuple[Report, Details], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    report, details = whole(make(project(audited.parent, 3), str(audited)))
+    report, details = made
     once = "".join(json_pieces(report, details)), html(report, details)
     monkeypatch.setattr(json_text, "_AT_ONCE", 1)
     monkeypatch.setattr(reading, "_AT_ONCE", 1)
@@ -199,5 +208,5 @@ def test_how_much_is_read_at_once_changes_nothing(
 def test_briefs_stand_by_requirement_in_their_order(audited: Path) -> None:
     briefs = Briefs.of(opened(audited)).by_requirement
     assert {id: [place for place, _ in some] for id, some in briefs.items()} == {
-        f"R{n}": [*range(n, 60, 3)] for n in range(3)
+        f"R{n}": [*range(n, 3 * RUNS, 3)] for n in range(3)
     }

@@ -23,6 +23,7 @@ from fretc.report.forms.reqif import reqif as form
 from fretc.report.model.views import HazardView, Report, verdict_mark
 from fretish.diagnostics import extras
 from tests.command import Fretc, write
+from tests.effort import FULL, examples
 from tests.fretc.report.cases import (
     HAZARDS,
     evidence,
@@ -338,6 +339,7 @@ def held(text: str) -> str:
 
 
 @pytest.mark.slow
+@examples(8)
 @given(text=st.text(LETTERS, min_size=1))
 def test_any_text_comes_back(small: Report, schema: XMLSchema, text: str) -> None:
     hazard = HazardView(f"{text}.", text, f".{text}.", "", "")
@@ -349,14 +351,17 @@ def test_any_text_comes_back(small: Report, schema: XMLSchema, text: str) -> Non
 
 @pytest.mark.slow
 def test_a_thousand_requirements_are_all_there(small: Report) -> None:
+    """By default a tenth of them."""
+    count = 1000 if FULL else 100
     (view,), (row,) = small.requirements, small.matrix
     (one,) = view.results
     many = replace(view, results=(one,) * 30)
-    views = [replace(many, id=f"R{n}", anchor=f"req-R{n}") for n in range(1000)]
+    views = [replace(many, id=f"R{n}", anchor=f"req-R{n}") for n in range(count)]
     rows = [replace(row, anchor=view.anchor) for view in views]
     text = form(replace(small, requirements=tuple(views), matrix=tuple(rows)))
     content = read(text)
-    assert (len(content.objects), len(content.relations), len(content.places)) == (1001, 1000, 1001)
+    sizes = len(content.objects), len(content.relations), len(content.places)
+    assert sizes == (count + 1, count, count + 1)
 
 
 def test_of_many_runs_the_worst_are_listed(small: Report) -> None:

@@ -10,6 +10,7 @@ from fretc.report.model.views import Report
 from fretc.report.page import selection as choosing
 from fretc.report.page.selection import DETAILED, PICTURES, Selection
 from fretc.report.page.selection import selection as chosen_of
+from tests.effort import some
 from tests.fretc.report.cases import project as small_project
 from tests.fretc.report.cases import report_of, result
 
@@ -35,8 +36,12 @@ def selection(build: ReportBuild) -> Selection:
 
 
 @pytest.mark.slow
-def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(tmp_path: Path) -> None:
-    build, html = reported(tmp_path, 50, 20, 0.05)
+@pytest.mark.parametrize(("count", "share"), some([(8, 0.3), (50, 0.05)], 2))
+def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(
+    tmp_path: Path, count: int, share: float
+) -> None:
+    """By default eight, of whose runs as many are violated."""
+    build, html = reported(tmp_path, count, 20, share)
     assert len(html.encode()) <= 2_000_000
     chosen = selection(build)
     assert all(len(section.rows) == 20 for section in chosen.by_anchor.values())
@@ -46,14 +51,21 @@ def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(tmp_path: P
 
 
 @pytest.mark.slow
-def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(tmp_path: Path) -> None:
-    build, html = reported(tmp_path, 12, 10, 1.0)
+@pytest.mark.parametrize(
+    ("count", "most", "drawn"), some([(4, 34, 5), (12, DETAILED, PICTURES)], 2)
+)
+def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, count: int, most: int, drawn: int
+) -> None:
+    monkeypatch.setattr(choosing, "DETAILED", most)
+    monkeypatch.setattr(choosing, "PICTURES", drawn)
+    build, html = reported(tmp_path, count, 10, 1.0)
     chosen = selection(build)
     counts = [len(section.details) for section in chosen.by_anchor.values()]
-    assert sum(counts) == DETAILED
+    assert sum(counts) == most
     assert max(counts) - min(counts) <= 1
     pictures = [len(r.timelines) for s in chosen.by_anchor.values() for r in s.details]
-    assert sum(pictures) == PICTURES
+    assert sum(pictures) == drawn
     assert "Details below: of 8 of 10 runs that are not satisfied." in html
 
 
