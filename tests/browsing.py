@@ -86,9 +86,9 @@ class Visits:
 def serious(page: Page, of: str = "") -> list[tuple[str, str]]:
     """What axe finds in the parts that the selector names: its rule, and the first element."""
     page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
-    found = page.evaluate(
-        "of => axe.run(of || document, {resultTypes: ['violations']})", of
-    )["violations"]
+    found = page.evaluate("of => axe.run(of || document, {resultTypes: ['violations']})", of)[
+        "violations"
+    ]
     return [
         (each["id"], each["nodes"][0]["html"][:200])
         for each in found

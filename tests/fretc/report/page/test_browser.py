@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from tests.browsing import Visits, serious
+from tests.effort import some
 from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
@@ -153,8 +155,7 @@ def test_without_its_script_all_is_there_and_nothing_offers_to_filter(opened: Op
     assert page.locator("#req-R2 figure:visible").count() >= 3
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [1200, 400])
+@pytest.mark.parametrize(("scheme", "width"), some(product(("light", "dark"), (1200, 400)), 4))
 def test_axe_finds_nothing_serious(opened: Open, scheme: str, width: int) -> None:
     assert serious(opened(width, scheme=scheme)) == []
 
