@@ -270,9 +270,17 @@ def report_of(known: Project, folder: Path, *results: Mapping[str, Any]) -> Repo
 
 def as_json(report: ReportBuild) -> dict[str, Any]:
     """What the report says, as plain data."""
-    assert report.json is not None
-    content: dict[str, Any] = json.loads(report.json)
+    text = report.json  # made whenever it is asked for
+    assert text is not None
+    content: dict[str, Any] = json.loads(text)
     return content
+
+
+def as_html(report: ReportBuild) -> str:
+    """Its page."""
+    text = report.html  # made whenever it is asked for
+    assert text is not None
+    return text
 
 
 def words(marks: Sequence[Mapping[str, Any]]) -> list[str]:

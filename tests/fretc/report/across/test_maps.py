@@ -13,7 +13,7 @@ from fretc.report.across.layout import drawn_map
 from fretc.report.across.maps import RunResult, run_map
 from fretc.report.model.marks import verdict_mark
 from tests.fretc.audit.results import result as record
-from tests.fretc.report.cases import R1, project, report_of, result, violation
+from tests.fretc.report.cases import R1, as_html, project, report_of, result, violation
 
 PLAIN: dict[str, Any] = {
     "times_ns": [10**9, 5 * 10**9, 7 * 10**9, 11 * 10**9],
@@ -68,5 +68,4 @@ def test_the_page_has_the_map_with_links_and_says_it_in_words(tmp_path: Path) ->
         "The way of the robot from (0, 0) to (6, 3) in metres, within 0.01 m. It has 2 parts: "
         "between them the place is unknown. 2 violations, each marked where it began."
     )
-    assert build.html is not None
-    assert '<a href="#picture-result-R1.1.1"><title>R1: violated, at 1 s</title>' in build.html
+    assert '<a href="#picture-result-R1.1.1"><title>R1: violated, at 1 s</title>' in as_html(build)

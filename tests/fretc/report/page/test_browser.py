@@ -16,6 +16,7 @@ from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
     R1,
+    as_html,
     moment,
     project,
     report_of,
@@ -67,8 +68,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for id in ("R1", "R2", "R3")
         for run in range(9)
     ]
-    html = report_of(known, folder, *runs).html
-    assert html is not None
+    html = as_html(report_of(known, folder, *runs))
     path = folder / "report.html"
     path.write_text(html, encoding="utf-8")
     return path

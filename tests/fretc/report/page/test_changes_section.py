@@ -22,6 +22,7 @@ from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
     R1,
+    as_html,
     evidence,
     project,
     requirement,
@@ -75,8 +76,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
         bindings=BINDINGS.replace("< 5 cm", "< 9 cm"),
         hazards=HAZARDS.replace("A drum can break.", "A drum can leak."),
     )
-    html = make(now, written(folder, now, *judged(now, "violated")), lock=lock).html
-    assert html is not None
+    html = as_html(make(now, written(folder, now, *judged(now, "violated")), lock=lock))
     path = folder / "report.html"
     path.write_text(html, encoding="utf-8")
     return path

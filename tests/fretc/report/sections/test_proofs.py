@@ -23,6 +23,7 @@ from tests.effort import some
 from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
+    as_html,
     as_json,
     evidence,
     project,
@@ -85,8 +86,7 @@ def test_a_proof_is_the_result_of_its_method(tmp_path: Path, method: str) -> Non
     assert content["overall"]["headline"] == "Everything that was claimed is shown."
     assert content["manifest"][-2]["kind"] == "verification"
     validate("report.schema.json", content)
-    assert report.html is not None
-    assert "<h4>What was proved</h4>" in report.html
+    assert "<h4>What was proved</h4>" in as_html(report)
 
 
 def test_the_worst_claim_decides(tmp_path: Path) -> None:
