@@ -53,7 +53,7 @@ def known(folder: Path) -> Project:
 
 
 FORMS = [JSON, STORE]
-RUNS = 20 if FULL else 6
+RUNS = 20 if FULL else 4
 
 
 @pytest.fixture(scope="module", params=FORMS)

@@ -22,7 +22,7 @@ from fretc.report.forms.markdown import markdown
 from fretc.report.model.changes import Change
 from fretc.report.model.views import Remark, Report, verdict_mark
 from fretc.report.sections.details import Details
-from tests.command import Fretc, write
+from tests.command import Fretc, made_once, write
 from tests.fretc.report import junit_schema
 from tests.fretc.report.cases import (
     evidence,
@@ -52,14 +52,18 @@ WAIVER = (
 @pytest.fixture
 def reported(fretc: Fretc) -> Fretc:
     """Four requirements and a retired one: satisfied, violated, waived, not FRETish."""
-    known = project(Path("requirements"), *TEXTS)
-    write("requirements/waivers.toml", WAIVER)
-    results = [
-        result(known, "satisfied", "R1"),
-        result(known, "satisfied", "R1", run="logs/b.mcap", hashes={"log": "cd" * 32}),
-        result(known, "violated", "R2", violations=[violation(14, 20, 11)]),
-    ]
-    write("build/evidence.json", json.dumps(evidence(known, *results)))
+
+    def make() -> None:
+        known = project(Path("requirements"), *TEXTS)
+        write("requirements/waivers.toml", WAIVER)
+        results = [
+            result(known, "satisfied", "R1"),
+            result(known, "satisfied", "R1", run="logs/b.mcap", hashes={"log": "cd" * 32}),
+            result(known, "violated", "R2", violations=[violation(14, 20, 11)]),
+        ]
+        write("build/evidence.json", json.dumps(evidence(known, *results)))
+
+    made_once("a project for all forms", make)
     return fretc
 
 

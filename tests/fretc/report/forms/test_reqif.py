@@ -22,7 +22,7 @@ from compiler.project.parents import Parent, parents
 from fretc.report.forms.reqif import reqif as form
 from fretc.report.model.views import HazardView, Report, verdict_mark
 from fretish.diagnostics import extras
-from tests.command import Fretc, write
+from tests.command import Fretc, made_once, write
 from tests.effort import FULL, examples
 from tests.fretc.report.cases import (
     HAZARDS,
@@ -114,22 +114,36 @@ def read(text: str) -> Content:
 @pytest.fixture
 def exported(fretc: Fretc) -> Callable[[], str]:
     """Requirements that are satisfied, violated, waived, not FRETish and retired."""
-    known = project(Path("requirements"), *TEXTS, hazards=MORE)
-    write("requirements/waivers.toml", WAIVER)
-    results = [
-        result(known, "satisfied", "R1"),
-        result(known, "satisfied", "R1", run="logs/b.mcap"),
-        result(known, "satisfied", "R2"),
-        result(known, "violated", "R2", run="logs/b.mcap", violations=[violation(14, 20, 11)]),
-    ]
-    write("build/evidence.json", json.dumps(evidence(known, *results)))
+
+    def make() -> None:
+        known = project(Path("requirements"), *TEXTS, hazards=MORE)
+        write("requirements/waivers.toml", WAIVER)
+        results = [
+            result(known, "satisfied", "R1"),
+            result(known, "satisfied", "R1", run="logs/b.mcap"),
+            result(known, "satisfied", "R2"),
+            result(known, "violated", "R2", run="logs/b.mcap", violations=[violation(14, 20, 11)]),
+        ]
+        write("build/evidence.json", json.dumps(evidence(known, *results)))
 
     def export() -> str:
         run = fretc("report", "--reqif", "out.reqif")
         assert run.status == 2  # R4 is an error, and the report tells it
         return Path("out.reqif").read_text(encoding="utf-8")
 
+    made_once("a project for ReqIF", make)
     return export
+
+
+@pytest.fixture
+def text(request: pytest.FixtureRequest) -> str:
+    """The export, made once for all who change nothing before."""
+    if not _exports:
+        _exports.append(request.getfixturevalue("exported")())
+    return _exports[0]
+
+
+_exports: list[str] = []
 
 
 @pytest.fixture(scope="module")
@@ -143,15 +157,12 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Report:
 
 
 @pytest.mark.slow
-def test_it_fits_the_schema(exported: Callable[[], str], schema: XMLSchema) -> None:
-    schema.validate(exported())
+def test_it_fits_the_schema(text: str, schema: XMLSchema) -> None:
+    schema.validate(text)
 
 
 @pytest.mark.slow
-def test_the_schema_notices_what_does_not_fit(
-    exported: Callable[[], str], schema: XMLSchema
-) -> None:
-    text = exported()
+def test_the_schema_notices_what_does_not_fit(text: str, schema: XMLSchema) -> None:
     for right, wrong in (
         ("<xhtml:br/>", "<xhtml:nothing/>"),
         ('IDENTIFIER="requirement-R2"', 'IDENTIFIER="requirement-R1"'),
@@ -162,8 +173,8 @@ def test_the_schema_notices_what_does_not_fit(
         assert not schema.is_valid(text.replace(right, wrong, 1))
 
 
-def test_every_reference_has_what_it_refers_to(exported: Callable[[], str]) -> None:
-    root = ElementTree.fromstring(exported())
+def test_every_reference_has_what_it_refers_to(text: str) -> None:
+    root = ElementTree.fromstring(text)
     known = {node.get("IDENTIFIER") for node in root.iter()}
     referred = {node.text for node in root.iter() if node.tag.endswith("-REF")}
     assert len(referred) > 40
@@ -171,8 +182,8 @@ def test_every_reference_has_what_it_refers_to(exported: Callable[[], str]) -> N
 
 
 @pytest.mark.slow
-def test_each_object_has_what_is_known_of_it(exported: Callable[[], str]) -> None:
-    objects = read(exported()).objects
+def test_each_object_has_what_is_known_of_it(text: str) -> None:
+    objects = read(text).objects
     assert tuple(objects) == IDS
     fingerprint = objects["R2"].pop("Fingerprint SHA-256")
     assert re.fullmatch("[0-9a-f]{64}", fingerprint)
@@ -207,8 +218,8 @@ def test_each_object_has_what_is_known_of_it(exported: Callable[[], str]) -> Non
 
 
 @pytest.mark.slow
-def test_the_verdicts_are_those_of_the_report(exported: Callable[[], str]) -> None:
-    objects = read(exported()).objects
+def test_the_verdicts_are_those_of_the_report(text: str) -> None:
+    objects = read(text).objects
     verdicts = {id: values["Verdict"] for id, values in objects.items() if "Verdict" in values}
     assert verdicts == {
         "R1": "satisfied",
@@ -236,10 +247,8 @@ def test_suspect_evidence_is_reported_as_such(exported: Callable[[], str]) -> No
 
 
 @pytest.mark.slow
-def test_relations_go_from_the_child_to_each_parent_that_is_there(
-    exported: Callable[[], str],
-) -> None:
-    assert read(exported()).relations == [
+def test_relations_go_from_the_child_to_each_parent_that_is_there(text: str) -> None:
+    assert read(text).relations == [
         ("R1", "HAZ-1"),
         ("R1", "HAZ-2"),
         ("R2", "R1"),
@@ -248,8 +257,8 @@ def test_relations_go_from_the_child_to_each_parent_that_is_there(
     ]
 
 
-def test_an_object_stands_once_below_its_first_hazard(exported: Callable[[], str]) -> None:
-    assert read(exported()).places == [
+def test_an_object_stands_once_below_its_first_hazard(text: str) -> None:
+    assert read(text).places == [
         (1, "HAZ-1"),
         (2, "R1"),
         (2, "R2"),
@@ -262,8 +271,8 @@ def test_an_object_stands_once_below_its_first_hazard(exported: Callable[[], str
 
 
 @pytest.mark.slow
-def test_texts_come_back_as_they_were(exported: Callable[[], str]) -> None:
-    values = read(exported()).objects["R1"]
+def test_texts_come_back_as_they_were(text: str) -> None:
+    values = read(text).objects["R1"]
     assert values["ReqIF.Text"] == TEXT
     assert values["ReqIF.Name"] == " ".join(TEXT.split())
 
