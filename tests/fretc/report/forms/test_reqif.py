@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import unicodedata
 from collections.abc import Callable, Mapping
@@ -26,12 +25,12 @@ from tests.command import Fretc, made_once, write
 from tests.effort import FULL, examples
 from tests.fretc.report.cases import (
     HAZARDS,
-    evidence,
     project,
     report_of,
     requirement,
     result,
     violation,
+    write_evidence,
 )
 
 if TYPE_CHECKING:
@@ -124,7 +123,7 @@ def exported(fretc: Fretc) -> Callable[[], str]:
             result(known, "satisfied", "R2"),
             result(known, "violated", "R2", run="logs/b.mcap", violations=[violation(14, 20, 11)]),
         ]
-        write("build/evidence.json", json.dumps(evidence(known, *results)))
+        write_evidence(known, Path("build"), *results)
 
     def export() -> str:
         run = fretc("report", "--reqif", "out.reqif")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import Any
@@ -10,12 +9,7 @@ from typing import Any
 import pytest
 
 from compiler.project.folder import Project
-from fretc.audit.evidence import reader as reading
-from fretc.audit.evidence.briefs import Briefs
 from fretc.report.make import make
-from fretc.report.traceability.chain import chains
-from fretc.report.traceability.lock import Lock, accepted, text
-from fretish.diagnostics.diagnostic import Diagnostic
 from tests.browsing import Visits, serious
 from tests.effort import some
 from tests.fretc.report.cases import (
@@ -23,32 +17,15 @@ from tests.fretc.report.cases import (
     HAZARDS,
     R1,
     as_html,
-    evidence,
     project,
     requirement,
     result,
     violation,
+    write_evidence,
+    write_lock,
 )
 
 HOSTILE = "<script>document.title = 'broken'</script></del>\u202egnp.exe\u202c " + "x" * 3000
-
-
-def written(folder: Path, known: Project, *results: dict[str, Any]) -> str:
-    path = folder / "evidence.json"
-    path.write_text(json.dumps(evidence(known, *results)), encoding="utf-8")
-    return str(path)
-
-
-def locked(known: Project, audited: str, folder: Path) -> str:
-    """Everything as it is now, accepted."""
-    found = reading.read(audited)
-    assert not isinstance(found, Diagnostic)
-    reviews = [
-        accepted(each, "A", "B", "2026-01-01", "c") for each in chains(known, Briefs.of(found))
-    ]
-    path = folder / "fretc.lock"
-    path.write_text(text(Lock({each.requirement: each for each in reviews})), encoding="utf-8")
-    return str(path)
 
 
 @pytest.fixture(scope="module")
@@ -67,8 +44,8 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ]
 
     before = project(folder, R1, other)
-    audited = written(folder, before, *judged(before, "satisfied"))
-    lock = locked(before, audited, folder)
+    audited = write_evidence(before, folder, *judged(before, "satisfied"))
+    lock = write_lock(before, folder, audited)
     now = project(
         folder,
         R1.replace("Stop when something is near", "Stop when something is within 5 cm"),
@@ -76,7 +53,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
         bindings=BINDINGS.replace("< 5 cm", "< 9 cm"),
         hazards=HAZARDS.replace("A drum can break.", "A drum can leak."),
     )
-    html = as_html(make(now, written(folder, now, *judged(now, "violated")), lock=lock))
+    html = as_html(make(now, write_evidence(now, folder, *judged(now, "violated")), lock=lock))
     path = folder / "report.html"
     path.write_text(html, encoding="utf-8")
     return path
@@ -118,15 +95,17 @@ def test_texts_of_a_lock_are_shown_and_not_followed(page: Path) -> None:
 def test_of_many_runs_the_violated_ones_come_first_and_the_rest_is_counted(tmp_path: Path) -> None:
     known = project(tmp_path)
     runs = [f"logs/{n:02}.mcap" for n in range(30)]
-    audited = written(tmp_path, known, *(result(known, "satisfied", run=run) for run in runs))
-    lock = locked(known, audited, tmp_path)
+    audited = write_evidence(
+        known, tmp_path, *(result(known, "satisfied", run=run) for run in runs)
+    )
+    lock = write_lock(known, tmp_path, audited)
     now = [
         result(known, "violated", run=run, violations=[violation(14, 20, 11)])
         if run >= "logs/05"
         else result(known, "vacuous", run=run)
         for run in runs
     ]
-    html = make(known, written(tmp_path, known, *now), lock=lock).html
+    html = make(known, write_evidence(known, tmp_path, *now), lock=lock).html
     (tmp_path / "report.html").write_text(html or "", encoding="utf-8")
     changes = section(tmp_path / "report.html")
     assert "25 verdicts became violated" in changes

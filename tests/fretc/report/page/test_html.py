@@ -273,10 +273,7 @@ def _everywhere(folder: Path, text: str) -> str:
             assumptions=[text],
             violations=[{**violation(1, 2), "values": {text: 1.0}}],
             units={text: text},
-            health={
-                "findings": [{**finding, **place}],
-                "topics": {text: {**ODOM, "type": text}},
-            },
+            health={"findings": [{**finding, **place}], "topics": {text: {**ODOM, "type": text}}},
         ),
         result(known, "satisfied", id="R0" if text == "harmless" else text),
     )
@@ -305,8 +302,6 @@ def test_a_hundred_thousand_triggers_fit_into_a_small_page(tmp_path: Path) -> No
     ticks = 200_000 if FULL else 20_000
     triggers = [moment(tick) for tick in range(0, ticks, 2)]
     report = report_of(
-        known,
-        tmp_path,
-        result(known, "satisfied", ticks=ticks, triggers=triggers, latencies_s=[]),
+        known, tmp_path, result(known, "satisfied", ticks=ticks, triggers=triggers, latencies_s=[])
     )
     assert len(as_html(report)) < 70_000

@@ -25,11 +25,11 @@ from tests.fretc.report.cases import (
     HAZARDS,
     as_html,
     as_json,
-    evidence,
     project,
     requirement,
     result,
     words,
+    write_evidence,
 )
 from tests.json_schemas import validate
 
@@ -63,13 +63,12 @@ def reported(
         beside: further requirements.
     """
     known = project(folder, requirement("R1", SENTENCE, verify=verify), *beside)
-    path, proofs = folder / "evidence.json", folder / "verification.json"
-    audited = evidence(known, result(known, "satisfied", latencies_s=[]))
-    path.write_text(json.dumps(audited), encoding="utf-8")
+    audited = write_evidence(known, folder, result(known, "satisfied", latencies_s=[]))
+    proofs = folder / "verification.json"
     document = {"schema": "fretc-verification-1", "fretc": "0.1.0"}
     records = [proof(known, **line) for line in lines]
     proofs.write_text(json.dumps({**document, "evidence": records}), encoding="utf-8")
-    return make(known, str(path), verification=str(proofs))
+    return make(known, audited, verification=str(proofs))
 
 
 def plan(report: ReportBuild) -> tuple[str, bool, bool]:
