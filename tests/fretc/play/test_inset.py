@@ -11,6 +11,7 @@ import pytest
 
 from tests.browsing import Visits
 from tests.command import Fretc
+from tests.play_pages import expected_to
 from tests.simulation.missions import Missions, cut_off
 
 ROOT = Path(__file__).parents[3]
@@ -41,7 +42,8 @@ def test_a_report_opens_the_page_at_a_requirement(fretc: Fretc, visits: Visits) 
     first = inset.locator("td[aria-label^='q at tick 0']")
     first.click()
     verdict = inset.locator("td[aria-label^='b at this tick at tick 0']")
-    assert verdict.get_attribute("aria-label") == "b at this tick at tick 0: violated"
+    violated = "b at this tick at tick 0: violated"
+    expected_to(verdict).to_have_attribute("aria-label", violated)  # the frame takes its time
     with page.expect_download() as download:
         inset.get_by_role("button", name="Save CSV").click()
     assert download.value.suggested_filename == "b.csv"

@@ -292,7 +292,6 @@ def test_junit_has_the_elements_of_the_schema_that_jenkins_has(reported: Fretc) 
     assert {element.tag for element in root.iter()} == set(junit_schema.MAY)
 
 
-@pytest.mark.slow
 def test_a_suspect_requirement_fails_whatever_its_verdict(reported: Fretc) -> None:
     path = Path("requirements/bindings.toml")
     path.write_text(path.read_text().replace("< 0.01 m/s", "< 0.02 m/s"))

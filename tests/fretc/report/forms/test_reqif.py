@@ -180,7 +180,6 @@ def test_every_reference_has_what_it_refers_to(text: str) -> None:
     assert referred <= known
 
 
-@pytest.mark.slow
 def test_each_object_has_what_is_known_of_it(text: str) -> None:
     objects = read(text).objects
     assert tuple(objects) == IDS
@@ -216,7 +215,6 @@ def test_each_object_has_what_is_known_of_it(text: str) -> None:
     }
 
 
-@pytest.mark.slow
 def test_the_verdicts_are_those_of_the_report(text: str) -> None:
     objects = read(text).objects
     verdicts = {id: values["Verdict"] for id, values in objects.items() if "Verdict" in values}
@@ -233,7 +231,6 @@ def test_the_verdicts_are_those_of_the_report(text: str) -> None:
     assert "F107" in objects["R4"]["Reasons"]
 
 
-@pytest.mark.slow
 def test_suspect_evidence_is_reported_as_such(exported: Callable[[], str]) -> None:
     path = Path("requirements/bindings.toml")
     path.write_text(path.read_text().replace("< 5 cm", "< 6 cm"))
@@ -245,7 +242,6 @@ def test_suspect_evidence_is_reported_as_such(exported: Callable[[], str]) -> No
     ]
 
 
-@pytest.mark.slow
 def test_relations_go_from_the_child_to_each_parent_that_is_there(text: str) -> None:
     assert read(text).relations == [
         ("R1", "HAZ-1"),
@@ -269,7 +265,6 @@ def test_an_object_stands_once_below_its_first_hazard(text: str) -> None:
     ]
 
 
-@pytest.mark.slow
 def test_texts_come_back_as_they_were(text: str) -> None:
     values = read(text).objects["R1"]
     assert values["ReqIF.Text"] == TEXT
@@ -284,7 +279,6 @@ def ours(text: str) -> Mapping[str, Parent]:
     return objects
 
 
-@pytest.mark.slow
 def test_it_can_be_the_parents_of_another_project(exported: Callable[[], str]) -> None:
     objects = ours(exported())
     assert tuple(objects) == IDS
@@ -306,6 +300,7 @@ def test_the_same_report_gives_the_same_bytes(
     assert "<CREATION-TIME>2026-09-21T14:13:20+00:00</CREATION-TIME>" in dated
 
 
+@pytest.mark.slow
 def test_a_project_without_hazards_and_runs_fits_the_schema(
     fretc: Fretc, schema: XMLSchema
 ) -> None:
@@ -318,10 +313,12 @@ def test_a_project_without_hazards_and_runs_fits_the_schema(
     assert "Runs" not in content.objects["R1"]
 
 
+@pytest.mark.slow
 def test_a_project_of_nothing_fits_the_schema(small: Report, schema: XMLSchema) -> None:
     schema.validate(form(replace(small, hazards=(), matrix=(), requirements=())))
 
 
+@pytest.mark.slow
 def test_requirements_that_share_an_id_are_two_objects(tmp_path: Path, schema: XMLSchema) -> None:
     same = requirement("R1", "the robot shall never satisfy near")
     report = report_of(project(tmp_path, same, same), tmp_path).report

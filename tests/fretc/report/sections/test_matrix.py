@@ -2,8 +2,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 from compiler.project.folder import Project
 from fretish.diagnostics.diagnostic import Code, Severity
 from tests.fretc.report.cases import (
@@ -90,7 +88,6 @@ def test_every_missing_link_is_listed(tmp_path: Path) -> None:
     assert warning.message == "there is evidence of R9, which is not among the requirements"
 
 
-@pytest.mark.slow
 def test_a_row_counts_the_runs_that_have_its_verdict(tmp_path: Path) -> None:
     known = project(tmp_path)
     runs = [result(known, "satisfied", run=f"{i}.mcap") for i in range(20)]

@@ -271,6 +271,7 @@ def test_several_changes_are_told_each_by_itself(reviewed: Fretc) -> None:
     assert [one.what for one in r1.changes] == ["sentence", "p", "max_age of x", "title"]
 
 
+@pytest.mark.slow
 def test_a_suspect_link_has_a_change_that_makes_it_suspect(reviewed: Fretc) -> None:
     """Whatever is suspect, something is told of it."""
     for name in ("sentence: a scope", "header: no plan", "clock: tick", "signal: another topic"):
