@@ -25,12 +25,11 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)
     import spot  # noqa: F401
 
-from tests import programs  # noqa: E402
+from tests import browsing, programs  # noqa: E402
 from tests.command import Fretc, runner  # noqa: E402
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser
-
+    from tests.browsing import Visits
     from tests.simulation.missions import Missions
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -121,19 +120,24 @@ def fretc(
     return runner(monkeypatch, capsys)
 
 
-@pytest.fixture(scope="module")
-def browser() -> "Iterator[Browser]":
-    """A browser for the tests of a module; they are skipped where there is none.
+@pytest.fixture
+def visits() -> "Iterator[Visits]":
+    """Documents in a browser, which complain of nothing, and are complete alone.
 
-    It ends with the module: its event loop would be in the way of other tests.
+    A folder's tests share it, and are skipped where there is none.
     """
-    from playwright.sync_api import sync_playwright
+    there = browsing.started()
+    there.begin()
+    yield there
+    assert there.messages == []
+    assert not [url for url in there.asked if not url.startswith(("file:", "blob:", "about:"))]
 
-    path = programs.installed("chromium")
-    with sync_playwright() as started:
-        chromium = started.chromium.launch(executable_path=path, args=["--no-sandbox"])
-        yield chromium
-        chromium.close()
+
+@pytest.hookimpl(trylast=True)
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """End the browser with its folder: its event loop would be in the way of other tests."""
+    if nextitem is None or nextitem.path.parent != item.path.parent:
+        browsing.end()
 
 
 @pytest.fixture(scope="session")

@@ -30,6 +30,7 @@ from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth, Verdict
 from monitors.loading import load
 from tests.each import each
+from tests.effort import FULL, some
 from tests.emitting import rule
 from tests.monitoring import packed
 from tests.strategies import Template, templates
@@ -77,7 +78,7 @@ def seen(found: Judgement) -> tuple[object, ...]:
 
 
 @pytest.mark.slow
-@each("sentence", SENTENCES)
+@each("sentence", some(SENTENCES, 2))
 def test_all_mutants_in_one_monitor_are_judged_as_each_by_its_own(sentence: str) -> None:
     of = suspects(rule(sentence))
     assert of.mutants
@@ -94,7 +95,7 @@ def test_all_mutants_in_one_monitor_are_judged_as_each_by_its_own(sentence: str)
 
 
 @pytest.mark.slow
-@each("template", [*templates((2,))][::30])
+@each("template", [*templates((2,))][:: 30 if FULL else 90])
 def test_a_difference_is_there_whatever_the_unknown_values_were(template: Template) -> None:
     of = suspects(rule(template.sentence))
     for run in runs(template.sentence, 0.0):

@@ -21,7 +21,7 @@ from tests.play_pages import Open, everything, expected_to, told
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from playwright.sync_api import Browser
+    from tests.browsing import Visits
 
 pytestmark = pytest.mark.slow
 SENTENCES = (
@@ -129,7 +129,7 @@ def test_a_chain_of_gestures_leaves_the_trace_that_they_say(opened: Open, seed: 
 ODD = ["u", "</script><script>document.title = 1</script>", "a*3", "?", " x", "x", "a_b", "é%", "1"]
 
 
-def test_odd_words_stay_what_they_are(browser: Browser, tmp_path: Path) -> None:
+def test_odd_words_stay_what_they_are(visits: Visits, tmp_path: Path) -> None:
     """In the address, in a table, and where they are chosen; names of prototypes are names."""
     (tmp_path / "bindings.toml").write_text(
         '[clock]\ntick = "1 s"\n'
@@ -145,9 +145,7 @@ def test_odd_words_stay_what_they_are(browser: Browser, tmp_path: Path) -> None:
     assert not has_errors(project.diagnostics), project.diagnostics
     path = tmp_path / "p.html"
     path.write_text(html(project.rules, [], []), encoding="utf-8")
-    context = browser.new_context(offline=True)
-    page = context.new_page()
-    page.goto(f"{path.as_uri()}#ticks={len(ODD)}")
+    page = visits.open(path, address=f"#ticks={len(ODD)}")
     assert page.title() == "Play: r"
     page.locator("#grid td").first.focus()
     for tick in range(len(ODD)):
@@ -155,8 +153,7 @@ def test_odd_words_stay_what_they_are(browser: Browser, tmp_path: Path) -> None:
         page.locator("#value select").select_option(index=tick + 1)
     assert told(page, "mode") == ODD
     expected_to(page).to_have_url(re.compile("at=8.*mode"))
-    other = context.new_page()
-    other.goto(page.url)
+    other = visits.again(page)
     assert everything(other) == everything(page)
     with page.expect_download() as download:
         page.get_by_role("button", name="Save CSV").click()
@@ -165,4 +162,3 @@ def test_odd_words_stay_what_they_are(browser: Browser, tmp_path: Path) -> None:
     page.locator("#load").set_input_files(download.value.path())
     expected_to(page.locator("#status")).to_contain_text("9 ticks")
     assert everything(page) == shown
-    context.close()

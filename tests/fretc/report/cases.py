@@ -8,9 +8,16 @@ from typing import Any
 from compiler.formalization.record import wording
 from compiler.project.folder import Project, load
 from fretc.audit.bases import bases
+from fretc.audit.evidence import reader as reading
 from fretc.audit.evidence.basis import BINDINGS as BINDINGS_PART
 from fretc.audit.evidence.basis import KINDS, of_all
+from fretc.audit.evidence.briefs import Briefs
 from fretc.report.make import ReportBuild, make
+from fretc.report.traceability.chain import chains
+from fretc.report.traceability.lock import Lock, accepted
+from fretc.report.traceability.lock import text as lock_text
+from fretish.diagnostics.diagnostic import Diagnostic
+from tests.command import write
 
 BINDINGS = """\
 [clock]
@@ -212,9 +219,15 @@ def result(
 
 def basis(known: Project, name: str) -> Mapping[str, str]:
     """What an audit would record of a requirement now."""
-    basis_of = bases(known)
+    if not _latest or _latest[0] is not known:  # asked once as long as one project is in use
+        _latest[:] = known, bases(known)
+    found: Mapping[int, Mapping[str, str]] = _latest[1]
     requirement = next((each for each in known.requirements if each.id == name), None)
-    return basis_of[id(requirement)] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
+    return found[id(requirement)] if requirement is not None else dict.fromkeys(KINDS, "0" * 64)
+
+
+_latest: list[Any] = []
+"""The latest project, and its bases."""
 
 
 ODOM = {
@@ -257,16 +270,41 @@ def evidence(known: Project, *results: Mapping[str, Any]) -> dict[str, Any]:
 
 def report_of(known: Project, folder: Path, *results: Mapping[str, Any]) -> ReportBuild:
     """The report about these results."""
-    file = folder / "evidence.json"
-    file.write_text(json.dumps(evidence(known, *results)), encoding="utf-8")
-    return make(known, str(file))
+    return make(known, write_evidence(known, folder, *results))
+
+
+def write_evidence(known: Project, folder: Path, *results: Mapping[str, Any]) -> str:
+    """The path of a file of evidence in the folder."""
+    return write(str(folder / "evidence.json"), json.dumps(evidence(known, *results)))
+
+
+def write_lock(known: Project, folder: Path, evidence: str, day: str = "2026-01-01") -> str:
+    """The path of a lock in the folder, in which everything is accepted as it is now."""
+    audited = reading.read(evidence)
+    assert not isinstance(audited, Diagnostic)
+    accepting = chains(known, Briefs.of(audited))
+    reviews = {each.requirement: accepted(each, "A", "B", day, "c") for each in accepting}
+    return write(str(folder / "fretc.lock"), lock_text(Lock(reviews)))
 
 
 def as_json(report: ReportBuild) -> dict[str, Any]:
     """What the report says, as plain data."""
-    assert report.json is not None
-    content: dict[str, Any] = json.loads(report.json)
+    text = report.json  # made whenever it is asked for
+    assert text is not None
+    content: dict[str, Any] = json.loads(text)
     return content
+
+
+def content_of(known: Project, folder: Path, *results: Mapping[str, Any]) -> dict[str, Any]:
+    """What the report about these results says, as plain data."""
+    return as_json(report_of(known, folder, *results))
+
+
+def as_html(report: ReportBuild) -> str:
+    """Its page."""
+    text = report.html  # made whenever it is asked for
+    assert text is not None
+    return text
 
 
 def words(marks: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -93,10 +93,7 @@ DEFINITIONS = {
         "tool",
         tool=ref("tool"),
         invocations=many("invocation", unique=False),
-        originalUriBaseIds={
-            "type": "object",
-            "additionalProperties": ref("artifactLocation"),
-        },
+        originalUriBaseIds={"type": "object", "additionalProperties": ref("artifactLocation")},
         artifacts=many("artifact"),
         columnKind={"enum": ["utf16CodeUnits", "unicodeCodePoints"]},
         results=many("result", unique=False),

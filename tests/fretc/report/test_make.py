@@ -14,7 +14,9 @@ from fretish.diagnostics.diagnostic import Code, Severity
 from tests.fretc.report.cases import (
     BINDINGS,
     R1,
+    as_html,
     as_json,
+    content_of,
     evidence,
     moment,
     project,
@@ -24,6 +26,7 @@ from tests.fretc.report.cases import (
     violation,
     word,
     words,
+    write_evidence,
 )
 from tests.json_schemas import validate
 
@@ -80,12 +83,7 @@ UNVIOLABLE = (
 @pytest.mark.slow
 @pytest.mark.parametrize(("verdict", "changes", "word", "headline", "sentence"), VERDICTS)
 def test_each_verdict_has_its_overall_result(
-    tmp_path: Path,
-    verdict: str,
-    changes: dict[str, Any],
-    word: str,
-    headline: str,
-    sentence: str,
+    tmp_path: Path, verdict: str, changes: dict[str, Any], word: str, headline: str, sentence: str
 ) -> None:
     known = project(tmp_path)
     report = report_of(known, tmp_path, result(known, verdict, **changes))
@@ -101,20 +99,17 @@ def test_each_verdict_has_its_overall_result(
     )
     assert report.diagnostics == ()
     validate("report.schema.json", content)
-    assert report.html is not None
-    assert f"</span>{verdict}</span>" in report.html
+    assert f"</span>{verdict}</span>" in as_html(report)
 
 
 def test_the_worst_run_decides_and_every_reason_is_reported(tmp_path: Path) -> None:
     known = project(tmp_path)
-    content = as_json(
-        report_of(
-            known,
-            tmp_path,
-            result(known, "satisfied", run="a.mcap"),
-            result(known, "vacuous", run="b.mcap", hashes={"log": "cd" * 32}),
-            result(known, "inconclusive", run="c.mcap", hashes={"log": "ef" * 32}),
-        )
+    content = content_of(
+        known,
+        tmp_path,
+        result(known, "satisfied", run="a.mcap"),
+        result(known, "vacuous", run="b.mcap", hashes={"log": "cd" * 32}),
+        result(known, "inconclusive", run="c.mcap", hashes={"log": "ef" * 32}),
     )
     assert words(content["requirements"]) == ["inconclusive"]
     assert content["not_shown"][0]["reasons"] == [
@@ -133,8 +128,8 @@ def test_the_worst_run_decides_and_every_reason_is_reported(tmp_path: Path) -> N
 
 def test_several_requirements_are_counted_in_words(tmp_path: Path) -> None:
     known = project(tmp_path, R1, requirement("R2", "the robot shall always satisfy stopped"))
-    overall = as_json(
-        report_of(known, tmp_path, result(known, "satisfied"), result(known, "vacuous", "R2"))
+    overall = content_of(
+        known, tmp_path, result(known, "satisfied"), result(known, "vacuous", "R2")
     )["overall"]
     assert overall["headline"] == "Not everything that was claimed is shown."
     assert overall["sentences"][0] == "1 of 2 requirements held in the audited run."
@@ -142,14 +137,12 @@ def test_several_requirements_are_counted_in_words(tmp_path: Path) -> None:
 
 def test_a_requirement_that_one_run_left_out_is_not_said_to_hold_in_all(tmp_path: Path) -> None:
     known = project(tmp_path, R1, requirement("R2", "the robot shall always satisfy stopped"))
-    overall = as_json(
-        report_of(
-            known,
-            tmp_path,
-            result(known, "satisfied"),
-            result(known, "satisfied", "R2"),
-            result(known, "satisfied", "R2", run="b.mcap"),
-        )
+    overall = content_of(
+        known,
+        tmp_path,
+        result(known, "satisfied"),
+        result(known, "satisfied", "R2"),
+        result(known, "satisfied", "R2", run="b.mcap"),
     )["overall"]
     assert overall["sentences"][0] == (
         "2 of 2 requirements held in each run in which they were audited."
@@ -168,14 +161,13 @@ def test_without_evidence_every_requirement_is_not_exercised(tmp_path: Path) -> 
     assert [(d.code, d.severity) for d in report.diagnostics] == [
         (Code.NO_SUCH_FILE, Severity.NOTE)
     ]
-    assert report.html is not None
-    assert "Not exercised: <bdi>no run has been audited</bdi>." in report.html
+    assert "Not exercised: <bdi>no run has been audited</bdi>." in as_html(report)
     validate("report.schema.json", content)
 
 
 def test_a_requirement_that_the_audit_left_out_is_not_exercised(tmp_path: Path) -> None:
     known = project(tmp_path, R1, requirement("R2", "the robot shall always satisfy stopped"))
-    content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
+    content = content_of(known, tmp_path, result(known, "satisfied"))
     assert words(content["requirements"]) == ["satisfied", "not exercised"]
     assert content["not_shown"][0]["reasons"] == ["the audit did not cover it"]
 
@@ -184,7 +176,7 @@ def test_a_project_without_a_requirement_shows_nothing(tmp_path: Path) -> None:
     project(tmp_path)
     known = load([], str(tmp_path / "bindings.toml"), str(tmp_path / "hazards.toml"))
     assert known.requirements == ()
-    content = as_json(report_of(known, tmp_path))
+    content = content_of(known, tmp_path)
     assert content["overall"]["mark"]["word"] == "nothing shown"
     assert content["overall"]["sentences"] == [
         "There is no requirement to show.",
@@ -236,24 +228,19 @@ def test_evidence_of_something_else_is_suspect_and_never_satisfied(
     (warning,) = report.diagnostics
     assert (warning.code, warning.severity) == (Code.STALE_EVIDENCE, Severity.WARNING)
     assert warning.message == f"the evidence of R1 is suspect in 1 run: {why}"
-    assert report.html is not None
-    assert '<section class="result satisfied suspect"' in report.html
+    assert '<section class="result satisfied suspect"' in as_html(report)
 
 
 def test_a_changed_binding_makes_real_evidence_suspect(tmp_path: Path) -> None:
     before = project(tmp_path)
-    old = evidence(before, result(before, "satisfied"))
-    after = project(tmp_path, R1, bindings=BINDINGS.replace("5 cm", "90 cm"))
-    (tmp_path / "evidence.json").write_text(json.dumps(old), encoding="utf-8")
-    report = make(after, str(tmp_path / "evidence.json"))
+    old = write_evidence(before, tmp_path, result(before, "satisfied"))
+    report = make(project(tmp_path, R1, bindings=BINDINGS.replace("5 cm", "90 cm")), old)
     assert words(as_json(report)["requirements"]) == ["satisfied, suspect"]
 
 
 def test_a_damaged_log_never_shows_that_something_held(tmp_path: Path) -> None:
     known = project(tmp_path)
-    content = as_json(
-        report_of(known, tmp_path, result(known, "satisfied", health={"intact": False}))
-    )
+    content = content_of(known, tmp_path, result(known, "satisfied", health={"intact": False}))
     assert words(content["requirements"]) == ["satisfied, suspect"]
     assert content["overall"]["sentences"][-1] == "a is damaged or could not be read."
 
@@ -271,24 +258,21 @@ def test_a_violation_that_is_listed_is_one_whatever_the_word_of_the_evidence(
     tmp_path: Path, verdict: str, mark: str
 ) -> None:
     known = project(tmp_path)
-    content = as_json(
-        report_of(known, tmp_path, result(known, verdict, violations=[violation(1, 2)]))
-    )
+    content = content_of(known, tmp_path, result(known, verdict, violations=[violation(1, 2)]))
     assert words(content["requirements"]) == [mark]
 
 
 def test_a_violation_on_a_damaged_log_counts(tmp_path: Path) -> None:
     known = project(tmp_path)
     bad = result(known, "violated", violations=[violation(1, 2)], health={"intact": False})
-    assert words(as_json(report_of(known, tmp_path, bad))["requirements"]) == ["violated"]
+    assert words(content_of(known, tmp_path, bad)["requirements"]) == ["violated"]
 
 
 def test_without_bindings_nothing_is_compared_and_nothing_counts(tmp_path: Path) -> None:
     before = project(tmp_path)
-    old = evidence(before, result(before, "satisfied"))
-    (tmp_path / "evidence.json").write_text(json.dumps(old), encoding="utf-8")
+    old = write_evidence(before, tmp_path, result(before, "satisfied"))
     (tmp_path / "bindings.toml").unlink()
-    content = as_json(make(project(tmp_path, R1, bindings=None), str(tmp_path / "evidence.json")))
+    content = as_json(make(project(tmp_path, R1, bindings=None), old))
     (view,) = content["requirements"][0]["results"]
     assert view["suspicions"] == ["the bindings have changed since the audit"]
     assert content["requirements"][0]["propositions"][0]["is_bound"] is False
@@ -309,7 +293,7 @@ def test_a_sentence_with_an_error_is_listed_as_unformalized(tmp_path: Path) -> N
     }
     assert content["not_shown"][0]["reasons"] == ["F107: `alwys` is no word of FRETish here"]
     assert content["overall"]["mark"]["word"] == "not all shown"
-    assert report.html is not None
+    as_html(report)
     validate("report.schema.json", content)
 
 
@@ -319,7 +303,7 @@ def test_a_retired_requirement_is_neither_claimed_nor_missing(tmp_path: Path) ->
     )
     known = project(tmp_path, R1, retired)
     broken = result(known, "violated", "R2", violations=[violation(1, 2)])
-    content = as_json(report_of(known, tmp_path, result(known, "satisfied"), broken))
+    content = content_of(known, tmp_path, result(known, "satisfied"), broken)
     assert words(content["requirements"]) == ["satisfied", "retired"]
     assert content["not_shown"] == []
     assert content["planned"] == [
@@ -338,16 +322,14 @@ def test_a_retired_requirement_is_neither_claimed_nor_missing(tmp_path: Path) ->
 
 def test_two_requirements_of_one_id_have_sections_of_their_own(tmp_path: Path) -> None:
     known = project(tmp_path, R1, R1.replace("eventually", "always"))
-    content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
+    content = content_of(known, tmp_path, result(known, "satisfied"))
     assert [view["anchor"] for view in content["requirements"]] == ["req-R1", "req-R1--2"]
     assert words(content["requirements"]) == ["satisfied", "satisfied, suspect"]
 
 
 def test_a_project_with_errors_is_never_all_shown(tmp_path: Path) -> None:
     known = project(tmp_path, R1, "+++\nid = 1\n+++\nthe robot shall satisfy stopped\n")
-    overall = as_json(report_of(known, tmp_path, result(known, "satisfied", latencies_s=[])))[
-        "overall"
-    ]
+    overall = content_of(known, tmp_path, result(known, "satisfied", latencies_s=[]))["overall"]
     assert overall["headline"] == "Not everything that was claimed is shown."
     assert overall["sentences"] == [
         "1 of 2 requirements held in the audited run.",
@@ -372,7 +354,7 @@ def test_bindings_with_an_error_make_a_report_of_what_is_not_known(tmp_path: Pat
 def test_a_planned_method_without_a_result_is_reported(tmp_path: Path) -> None:
     sentence = "whenever near the robot shall eventually satisfy stopped"
     known = project(tmp_path, requirement("R1", sentence, verify=["audit", "ajpf", "inspection"]))
-    overall = as_json(report_of(known, tmp_path, result(known, "satisfied", latencies_s=[0.0])))
+    overall = content_of(known, tmp_path, result(known, "satisfied", latencies_s=[0.0]))
     assert [(p["method"], p["has_result"], p["result"]) for p in overall["planned"]] == [
         ("audit", True, "1 run audited: satisfied"),
         (
@@ -396,7 +378,7 @@ def test_a_planned_method_without_a_result_is_reported(tmp_path: Path) -> None:
 def test_what_a_target_cannot_say_is_not_expressible(tmp_path: Path) -> None:
     sentence = "when near the robot shall within 3 ticks satisfy stopped"
     known = project(tmp_path, requirement("R1", sentence, verify=["ajpf"]))
-    content = as_json(report_of(known, tmp_path))
+    content = content_of(known, tmp_path)
     (section,) = content["requirements"]
     artefacts = {view["target"]: view for view in section["artefacts"]}
     assert list(artefacts) == ["monitor", "ltl", "ajpf", "json"]
@@ -411,7 +393,7 @@ def test_what_a_target_cannot_say_is_not_expressible(tmp_path: Path) -> None:
 
 def test_a_response_without_a_bound_is_shown_with_a_reservation(tmp_path: Path) -> None:
     known = project(tmp_path)
-    content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
+    content = content_of(known, tmp_path, result(known, "satisfied"))
     latency = content["requirements"][0]["results"][0]["latency"]
     assert latency == {
         "answered": 3,
@@ -436,7 +418,7 @@ def test_where_the_end_of_a_log_violates_the_reservation_is_the_missing_bound(
 ) -> None:
     ends = BINDINGS.replace('end = "inconclusive"', 'end = "violated"')
     known = project(tmp_path, bindings=ends)
-    content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
+    content = content_of(known, tmp_path, result(known, "satisfied"))
     assert content["reservations"] == [
         f"{NAME} sets no bound on its response. The longest answer of {NAME} took 2.5 s, after the "
         "trigger at 1 s, in a."
@@ -445,10 +427,9 @@ def test_where_the_end_of_a_log_violates_the_reservation_is_the_missing_bound(
 
 def test_a_bound_is_reported_beside_the_latency(tmp_path: Path) -> None:
     known = project(
-        tmp_path,
-        requirement("R1", "whenever near the robot shall within 30 ticks satisfy stopped"),
+        tmp_path, requirement("R1", "whenever near the robot shall within 30 ticks satisfy stopped")
     )
-    content = as_json(report_of(known, tmp_path, result(known, "satisfied")))
+    content = content_of(known, tmp_path, result(known, "satisfied"))
     latency = content["requirements"][0]["results"][0]["latency"]
     assert latency["bound"] == "The sentence allows 30 ticks (3 s)."
     assert content["reservations"] == []
@@ -474,8 +455,7 @@ def test_each_threshold_is_shown_with_its_values_and_its_margin(tmp_path: Path) 
             "nearest": "-0.1 s",
         },
     ]
-    assert report.html is not None
-    assert "abs(vx) &lt; 0.01 m/s" in report.html
+    assert "abs(vx) &lt; 0.01 m/s" in as_html(report)
 
 
 def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) -> None:
@@ -487,7 +467,7 @@ def test_violations_open_demands_and_unknown_ticks_are_listed(tmp_path: Path) ->
         open=[moment(tick) for tick in (90, 91, 92, 95)],
         unknown=[[3, 5], [9, 9]],
     )
-    (view,) = as_json(report_of(known, tmp_path, bad))["requirements"][0]["results"]
+    (view,) = content_of(known, tmp_path, bad)["requirements"][0]["results"]
     assert view["violations"][0] == {
         "start": "1.4 s",
         "end": "2 s",
@@ -520,7 +500,7 @@ def test_what_is_uncertain_among_answers_and_open_demands_is_named(tmp_path: Pat
         open=[moment(tick) for tick in (90, 91, 92, 95, 97)],
         uncertain=[10, 40, 91, 92, 95],
     )
-    (view,) = as_json(report_of(known, tmp_path, bad))["requirements"][0]["results"]
+    (view,) = content_of(known, tmp_path, bad)["requirements"][0]["results"]
     assert view["open"]["lines"] == [
         "triggered from 9 s to 9.2 s (ticks 90 to 92): 3 demands, 2 of them uncertain for "
         "propositions are unknown",
@@ -539,9 +519,9 @@ def test_thousands_of_violations_keep_the_report_small(tmp_path: Path) -> None:
     report = report_of(known, tmp_path, result(known, "violated", ticks=5000, violations=many))
     (view,) = as_json(report)["requirements"][0]["results"]
     assert (len(view["violations"]), view["violations_total"]) == (100, 5000)
-    assert report.html is not None
-    assert "Violations: 5000, of which the first 100 are listed" in report.html
-    assert len(report.html) < 150_000
+    page = as_html(report)
+    assert "Violations: 5000, of which the first 100 are listed" in page
+    assert len(page) < 150_000
 
 
 # The runs --------------------------------------------------------------------------------------
@@ -563,7 +543,7 @@ def test_a_run_is_shown_with_its_health(tmp_path: Path) -> None:
         "gaps": [{"start_ns": 2 * 10**9, "end_ns": 3 * 10**9}],
         "findings": [finding],
     }
-    (run,) = as_json(report_of(known, tmp_path, result(known, "no data", health=health)))["runs"]
+    (run,) = content_of(known, tmp_path, result(known, "no data", health=health))["runs"]
     assert run == {
         "anchor": "run-1",
         "label": "a",
@@ -618,7 +598,7 @@ def test_a_log_that_could_not_be_read_is_a_run_without_hash(tmp_path: Path) -> N
         health={"intact": False, "size": None, "topics": {}},
     )
     del unread["hashes"]["log"]
-    content = as_json(report_of(known, tmp_path, unread))
+    content = content_of(known, tmp_path, unread)
     assert content["runs"][0]["health"]["word"] == "not readable"
     assert content["runs"][0]["sha256"] == ""
     assert "run" not in [line["kind"] for line in content["manifest"]]
@@ -669,14 +649,13 @@ def _args(case: tuple[Any, Sequence[dict[str, Any]]], folder: Path) -> tuple[Any
 @pytest.mark.slow
 def test_a_report_names_no_place_of_this_machine(tmp_path: Path) -> None:
     report = report_of(*_args(everything(tmp_path / "a"), tmp_path / "a"))
-    assert report.html is not None
-    assert str(tmp_path) not in report.html
+    assert str(tmp_path) not in as_html(report)
     assert str(tmp_path) not in json.dumps(as_json(report))
 
 
 @pytest.mark.slow
 def test_every_verdict_fits_the_schema(tmp_path: Path) -> None:
-    content = as_json(report_of(*_args(everything(tmp_path), tmp_path)))
+    content = content_of(*_args(everything(tmp_path), tmp_path))
     assert sorted(words(content["requirements"])) == [
         "inconclusive",
         "no data, suspect",
@@ -690,7 +669,7 @@ def test_every_verdict_fits_the_schema(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_report_that_says_less_does_not_fit_the_schema(tmp_path: Path) -> None:
-    content = as_json(report_of(*_args(everything(tmp_path), tmp_path)))
+    content = content_of(*_args(everything(tmp_path), tmp_path))
     del content["requirements"][0]["reasons"]
     with pytest.raises(jsonschema.ValidationError, match="'reasons' is a required property"):
         validate("report.schema.json", content)
@@ -725,6 +704,6 @@ def test_a_log_that_was_not_hashed_is_reported_as_such(tmp_path: Path) -> None:
     audited = result(known, "satisfied")
     hashes = {name: value for name, value in audited["hashes"].items() if name != "log"}
     hashes["log_summary"] = "cd" * 32
-    (run,) = as_json(report_of(known, tmp_path, {**audited, "hashes": hashes}))["runs"]
+    (run,) = content_of(known, tmp_path, {**audited, "hashes": hashes})["runs"]
     assert run["sha256"] == ""
     assert run["checked"].endswith("; not hashed")

@@ -52,14 +52,21 @@ def known(folder: Path) -> Project:
 
 
 FORMS = [JSON, STORE]
+RUNS = 20 if FULL else 4
 
 
 @pytest.fixture(scope="module", params=FORMS)
 def audited(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Evidence of 3 requirements in 20 runs, half of them violated, in either form."""
+    """Evidence of 3 requirements in some runs, half of them violated, in either form."""
     folder = tmp_path_factory.mktemp("audited")
-    written(folder, 3, 20, 0.5, request.param)
+    written(folder, 3, RUNS, 0.5, request.param)
     return folder / str(request.param)
+
+
+@pytest.fixture(scope="module")
+def made(audited: Path) -> tuple[Any, Details]:
+    """The report about it."""
+    return whole(make(project(audited.parent, 3), str(audited)))
 
 
 def opened(path: Path) -> EvidenceSource:
@@ -83,7 +90,7 @@ def test_a_source_counts_what_it_has_in_full(audited: Path) -> None:
     briefs = [*known.briefs()]
     results = dict(known.details(range(len(briefs))))
     assert briefs == [(place, brief(result)) for place, result in enumerate(results.values())]
-    assert [*results] == [*range(60)]
+    assert [*results] == [*range(3 * RUNS)]
     runs = {run: [r for r in results.values() if r.run == run] for run in known_runs(results)}
     assert [*known.runs()] == [run_facts(of) for of in runs.values()]
     for ids in (("R0",), ("R2", "R0"), ()):
@@ -144,9 +151,10 @@ class Counted:
 
 
 @pytest.mark.slow
-def test_a_page_reads_those_results_in_full_that_it_shows(audited: Path) -> None:
-    build = make(project(audited.parent, 3), str(audited))
-    report, details = whole(build)
+def test_a_page_reads_those_results_in_full_that_it_shows(
+    audited: Path, made: tuple[Any, Details]
+) -> None:
+    report, details = made
     counted = Counted(opened(audited))
     chosen = selection(report, replace(details, evidence=counted))
     shown = [view.anchor for each in chosen.by_anchor.values() for view in each.details]
@@ -161,8 +169,8 @@ def test_a_page_reads_those_results_in_full_that_it_shows(audited: Path) -> None
 
 @pytest.mark.slow
 @pytest.mark.parametrize("audited", some(FORMS, 2), indirect=True)
-def test_the_json_form_in_pieces_is_that_in_one(audited: Path) -> None:
-    report, details = whole(make(project(audited.parent, 3), str(audited)))
+def test_the_json_form_in_pieces_is_that_in_one(made: tuple[Any, Details]) -> None:
+    report, details = made
     anchors = [view.anchor for view in report.requirements]
     histograms = dict(details.histograms(anchors))
     every = [row for view in report.requirements for row in view.results]
@@ -187,17 +195,19 @@ def test_the_json_form_in_pieces_is_that_in_one(audited: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("audited", some(FORMS, 2, 1), indirect=True)
 def test_how_much_is_read_at_once_changes_nothing(
-    audited: Path, monkeypatch: pytest.MonkeyPatch
+    made: tuple[Any, Details], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    report, details = whole(make(project(audited.parent, 3), str(audited)))
-    once = "".join(json_pieces(report, details)), html(report, details)
+    report, details = made
+    text, page = "".join(json_pieces(report, details)), html(report, details)
+    monkeypatch.setattr(json_text, "_AT_ONCE", 2 * RUNS)  # two requirements, then the third
+    assert "".join(json_pieces(report, details)) == text
     monkeypatch.setattr(json_text, "_AT_ONCE", 1)
     monkeypatch.setattr(reading, "_AT_ONCE", 1)
-    assert ("".join(json_pieces(report, details)), html(report, details)) == once
+    assert ("".join(json_pieces(report, details)), html(report, details)) == (text, page)
 
 
 def test_briefs_stand_by_requirement_in_their_order(audited: Path) -> None:
     briefs = Briefs.of(opened(audited)).by_requirement
     assert {id: [place for place, _ in some] for id, some in briefs.items()} == {
-        f"R{n}": [*range(n, 60, 3)] for n in range(3)
+        f"R{n}": [*range(n, 3 * RUNS, 3)] for n in range(3)
     }

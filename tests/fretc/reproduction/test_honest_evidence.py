@@ -243,7 +243,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.slow
 @settings(
-    max_examples=300 if FULL else 4,
+    max_examples=300 if FULL else 3,
     deadline=None,
     suppress_health_check=[*HealthCheck],
     phases=[*Phase] if FULL else [Phase.explicit, Phase.generate],  # an example takes seconds

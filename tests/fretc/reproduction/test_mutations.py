@@ -6,6 +6,7 @@ The logs are audited once for each integrity, and every change is compared with 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
+from functools import lru_cache
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -28,11 +29,13 @@ from compiler.project.folder import Project, load_folder
 from fretc.audit.evidence.briefs import Briefs
 from fretc.audit.evidence.reader import read
 from fretc.audit.many_logs import SEQUENTIAL, LogAudits, LogResult, audit_logs
+from fretc.audit.measurements import confidence_intervals
 from fretc.audit.plan import Plan, planned
 from fretc.audit.store.anywhere import required
 from fretc.report.traceability.chain import chains
 from fretc.report.traceability.lock import Lock, accepted
 from fretc.reproduction import proofs as reproving
+from fretc.reproduction import results
 from fretc.reproduction.completeness import Scope
 from fretc.reproduction.manifest import Manifest
 from fretc.reproduction.manifest import read as read_manifest
@@ -242,6 +245,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     with pytest.MonkeyPatch.context() as patch:
         place = tmp_path_factory.mktemp("project")
         patch.chdir(place)
+        patch.setattr(results, "_wording", lru_cache(results._wording))
+        least = lru_cache(confidence_intervals._least)
+        patch.setattr(confidence_intervals, "_least", lambda runs, c: least(tuple(runs), c))
         yield place
 
 

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -15,12 +13,10 @@ from fretc.trends.charts import strip
 from fretc.trends.page import html
 from fretc.trends.trends import Trends
 from fretc.trends.trends import trends as trends_of
+from tests.browsing import Visits, serious
 from tests.effort import some
 from tests.fretc.audit.results import SHA
 from tests.fretc.trends.nights import document, judged
-
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser
 
 HOSTILE = "</style><script>document.title = 'broken'</script>\u202egnp.exe\x1b" + "x" * 100
 
@@ -98,28 +94,12 @@ def test_a_strip_is_read_without_colours() -> None:
     ("scheme", "width"), some([(s, w) for w in (1440, 390) for s in ("light", "dark")], 3)
 )
 def test_axe_finds_nothing_serious_and_nothing_is_too_wide(
-    browser: Browser, tmp_path: Path, scheme: Any, width: int
+    visits: Visits, tmp_path: Path, scheme: str, width: int
 ) -> None:
     path = tmp_path / "trends.html"
     path.write_text(html(nights(HOSTILE)), encoding="utf-8")
-    messages: list[str] = []
-    context = browser.new_context(
-        offline=True, color_scheme=scheme, viewport={"width": width, "height": 900}
-    )
-    page = context.new_page()
-    page.on("console", lambda message: messages.append(message.text))
-    page.on("pageerror", lambda error: messages.append(str(error)))
-    page.goto(path.as_uri())
+    page = visits.open(path, width, scheme=scheme)
     assert page.title().startswith("Trends: ")
     assert page.evaluate("document.documentElement.scrollWidth") == width
     assert page.locator("svg.strip:visible").count() > 5
-    assert messages == []
-    context.close()
-    axe = browser.new_context(color_scheme=scheme, viewport={"width": width, "height": 900})
-    page = axe.new_page()
-    page.goto(path.as_uri())
-    page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
-    violations = page.evaluate("axe.run({resultTypes: ['violations']})")["violations"]
-    serious = [each for each in violations if each["impact"] in ("serious", "critical")]
-    assert [(each["id"], each["nodes"][0]["html"][:200]) for each in serious] == []
-    axe.close()
+    assert serious(page) == []

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.audit.evidence.reader import EvidenceFile
@@ -15,6 +15,7 @@ from fretc.trends.changes import RED, Change
 from fretc.trends.comparisons import Finding
 from fretc.trends.trends import Trends, gone, not_selected
 from fretc.trends.trends import trends as trends_of
+from tests.effort import examples
 from tests.fretc.audit.results import SHA
 from tests.fretc.trends.nights import document, judged, sample
 
@@ -289,7 +290,7 @@ RUNS = st.lists(
 
 
 @pytest.mark.slow
-@settings(max_examples=60)
+@examples(25)
 @given(st.lists(RUNS, min_size=1, max_size=4))
 def test_no_violation_of_the_newest_round_is_lost(
     nights: list[list[tuple[str, str, str, bool]]],

@@ -7,7 +7,16 @@ from typing import Any
 import pytest
 
 from fretc.report.model.across import Lanes
-from tests.fretc.report.cases import R1, moment, project, report_of, requirement, result, violation
+from tests.fretc.report.cases import (
+    R1,
+    as_html,
+    moment,
+    project,
+    report_of,
+    requirement,
+    result,
+    violation,
+)
 
 TEXTS = (R1, requirement("R2", "whenever near the robot shall within 3 ticks satisfy stopped"))
 
@@ -61,9 +70,9 @@ def test_every_link_of_a_picture_leads_somewhere(tmp_path: Path) -> None:
             for id in ("R1", "R2")
         ),
     )
-    assert build.html is not None
-    ids = set(re.findall(r' id="([^"]+)"', build.html))
-    figures = re.findall(r'<figure class="across".*?</figure>', build.html, re.DOTALL)
+    page = as_html(build)
+    ids = set(re.findall(r' id="([^"]+)"', page))
+    figures = re.findall(r'<figure class="across".*?</figure>', page, re.DOTALL)
     assert len(figures) == 3 + 2
     links = [link for figure in figures for link in re.findall(r'href="#([^"]+)"', figure)]
     assert len(links) > 100

@@ -4,13 +4,14 @@ from collections import Counter
 from itertools import pairwise
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.audit.evidence.briefs import Stretches
 from fretc.report.across.lanes import MOST_LANES, RunStretches, plan
 from fretc.report.model.across import LaneMark, Lanes
 from fretc.report.model.marks import verdict_mark
+from tests.effort import examples
 
 times = st.floats(0, 1e4).map(lambda number: round(number, 3))
 spans = st.lists(st.tuples(times, times).map(lambda pair: (min(pair), max(pair))), max_size=60)
@@ -69,7 +70,7 @@ def covers(mark: LaneMark, kind: str, start: float, end: float, id: str) -> bool
 
 @pytest.mark.slow
 @given(results(), st.integers(1, 40), st.sampled_from([1, 30, 1000]))
-@settings(deadline=None, max_examples=60)
+@examples(20)
 def test_each_stretch_is_in_exactly_one_mark_at_its_time(
     drawn: Drawn, most: int, marks: int
 ) -> None:
@@ -96,7 +97,7 @@ def test_each_stretch_is_in_exactly_one_mark_at_its_time(
 
 @pytest.mark.slow
 @given(results(), st.integers(1, 5))
-@settings(deadline=None, max_examples=60)
+@examples(20)
 def test_what_is_left_out_is_counted_and_never_worse(drawn: Drawn, most: int) -> None:
     picture = lanes(drawn, most)
     runs = {each.run for each, _ in drawn}

@@ -5,12 +5,13 @@ from math import inf
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fretc.audit.evidence.schema import Threshold
 from fretc.report.across.uses import RunNumbers, percent, uses
 from fretc.report.model.marks import verdict_mark
+from tests.effort import examples
 
 
 def threshold(comparison: Any, least: Any, greatest: Any, **changes: Any) -> Threshold:
@@ -111,7 +112,7 @@ def test_a_percentage_is_never_rounded_onto_the_bound() -> None:
     ),
     st.integers(1, 4),
 )
-@settings(deadline=None, max_examples=80)
+@examples(25)
 def test_what_is_left_out_is_never_worse(drawn: list[Any], most: int) -> None:
     runs = [
         run(n, word, latency=late, thresholds=(threshold(kept, -abs(value), value),))

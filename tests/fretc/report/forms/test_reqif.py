@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import unicodedata
 from collections.abc import Callable, Mapping
@@ -22,15 +21,16 @@ from compiler.project.parents import Parent, parents
 from fretc.report.forms.reqif import reqif as form
 from fretc.report.model.views import HazardView, Report, verdict_mark
 from fretish.diagnostics import extras
-from tests.command import Fretc, write
+from tests.command import Fretc, made_once, write
+from tests.effort import FULL, examples
 from tests.fretc.report.cases import (
     HAZARDS,
-    evidence,
     project,
     report_of,
     requirement,
     result,
     violation,
+    write_evidence,
 )
 
 if TYPE_CHECKING:
@@ -113,22 +113,36 @@ def read(text: str) -> Content:
 @pytest.fixture
 def exported(fretc: Fretc) -> Callable[[], str]:
     """Requirements that are satisfied, violated, waived, not FRETish and retired."""
-    known = project(Path("requirements"), *TEXTS, hazards=MORE)
-    write("requirements/waivers.toml", WAIVER)
-    results = [
-        result(known, "satisfied", "R1"),
-        result(known, "satisfied", "R1", run="logs/b.mcap"),
-        result(known, "satisfied", "R2"),
-        result(known, "violated", "R2", run="logs/b.mcap", violations=[violation(14, 20, 11)]),
-    ]
-    write("build/evidence.json", json.dumps(evidence(known, *results)))
+
+    def make() -> None:
+        known = project(Path("requirements"), *TEXTS, hazards=MORE)
+        write("requirements/waivers.toml", WAIVER)
+        results = [
+            result(known, "satisfied", "R1"),
+            result(known, "satisfied", "R1", run="logs/b.mcap"),
+            result(known, "satisfied", "R2"),
+            result(known, "violated", "R2", run="logs/b.mcap", violations=[violation(14, 20, 11)]),
+        ]
+        write_evidence(known, Path("build"), *results)
 
     def export() -> str:
         run = fretc("report", "--reqif", "out.reqif")
         assert run.status == 2  # R4 is an error, and the report tells it
         return Path("out.reqif").read_text(encoding="utf-8")
 
+    made_once("a project for ReqIF", make)
     return export
+
+
+@pytest.fixture
+def text(request: pytest.FixtureRequest) -> str:
+    """The export, made once for all who change nothing before."""
+    if not _exports:
+        _exports.append(request.getfixturevalue("exported")())
+    return _exports[0]
+
+
+_exports: list[str] = []
 
 
 @pytest.fixture(scope="module")
@@ -142,15 +156,12 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Report:
 
 
 @pytest.mark.slow
-def test_it_fits_the_schema(exported: Callable[[], str], schema: XMLSchema) -> None:
-    schema.validate(exported())
+def test_it_fits_the_schema(text: str, schema: XMLSchema) -> None:
+    schema.validate(text)
 
 
 @pytest.mark.slow
-def test_the_schema_notices_what_does_not_fit(
-    exported: Callable[[], str], schema: XMLSchema
-) -> None:
-    text = exported()
+def test_the_schema_notices_what_does_not_fit(text: str, schema: XMLSchema) -> None:
     for right, wrong in (
         ("<xhtml:br/>", "<xhtml:nothing/>"),
         ('IDENTIFIER="requirement-R2"', 'IDENTIFIER="requirement-R1"'),
@@ -161,17 +172,16 @@ def test_the_schema_notices_what_does_not_fit(
         assert not schema.is_valid(text.replace(right, wrong, 1))
 
 
-def test_every_reference_has_what_it_refers_to(exported: Callable[[], str]) -> None:
-    root = ElementTree.fromstring(exported())
+def test_every_reference_has_what_it_refers_to(text: str) -> None:
+    root = ElementTree.fromstring(text)
     known = {node.get("IDENTIFIER") for node in root.iter()}
     referred = {node.text for node in root.iter() if node.tag.endswith("-REF")}
     assert len(referred) > 40
     assert referred <= known
 
 
-@pytest.mark.slow
-def test_each_object_has_what_is_known_of_it(exported: Callable[[], str]) -> None:
-    objects = read(exported()).objects
+def test_each_object_has_what_is_known_of_it(text: str) -> None:
+    objects = read(text).objects
     assert tuple(objects) == IDS
     fingerprint = objects["R2"].pop("Fingerprint SHA-256")
     assert re.fullmatch("[0-9a-f]{64}", fingerprint)
@@ -205,9 +215,8 @@ def test_each_object_has_what_is_known_of_it(exported: Callable[[], str]) -> Non
     }
 
 
-@pytest.mark.slow
-def test_the_verdicts_are_those_of_the_report(exported: Callable[[], str]) -> None:
-    objects = read(exported()).objects
+def test_the_verdicts_are_those_of_the_report(text: str) -> None:
+    objects = read(text).objects
     verdicts = {id: values["Verdict"] for id, values in objects.items() if "Verdict" in values}
     assert verdicts == {
         "R1": "satisfied",
@@ -222,7 +231,6 @@ def test_the_verdicts_are_those_of_the_report(exported: Callable[[], str]) -> No
     assert "F107" in objects["R4"]["Reasons"]
 
 
-@pytest.mark.slow
 def test_suspect_evidence_is_reported_as_such(exported: Callable[[], str]) -> None:
     path = Path("requirements/bindings.toml")
     path.write_text(path.read_text().replace("< 5 cm", "< 6 cm"))
@@ -234,11 +242,8 @@ def test_suspect_evidence_is_reported_as_such(exported: Callable[[], str]) -> No
     ]
 
 
-@pytest.mark.slow
-def test_relations_go_from_the_child_to_each_parent_that_is_there(
-    exported: Callable[[], str],
-) -> None:
-    assert read(exported()).relations == [
+def test_relations_go_from_the_child_to_each_parent_that_is_there(text: str) -> None:
+    assert read(text).relations == [
         ("R1", "HAZ-1"),
         ("R1", "HAZ-2"),
         ("R2", "R1"),
@@ -247,8 +252,8 @@ def test_relations_go_from_the_child_to_each_parent_that_is_there(
     ]
 
 
-def test_an_object_stands_once_below_its_first_hazard(exported: Callable[[], str]) -> None:
-    assert read(exported()).places == [
+def test_an_object_stands_once_below_its_first_hazard(text: str) -> None:
+    assert read(text).places == [
         (1, "HAZ-1"),
         (2, "R1"),
         (2, "R2"),
@@ -260,9 +265,8 @@ def test_an_object_stands_once_below_its_first_hazard(exported: Callable[[], str
     ]
 
 
-@pytest.mark.slow
-def test_texts_come_back_as_they_were(exported: Callable[[], str]) -> None:
-    values = read(exported()).objects["R1"]
+def test_texts_come_back_as_they_were(text: str) -> None:
+    values = read(text).objects["R1"]
     assert values["ReqIF.Text"] == TEXT
     assert values["ReqIF.Name"] == " ".join(TEXT.split())
 
@@ -275,7 +279,6 @@ def ours(text: str) -> Mapping[str, Parent]:
     return objects
 
 
-@pytest.mark.slow
 def test_it_can_be_the_parents_of_another_project(exported: Callable[[], str]) -> None:
     objects = ours(exported())
     assert tuple(objects) == IDS
@@ -297,6 +300,7 @@ def test_the_same_report_gives_the_same_bytes(
     assert "<CREATION-TIME>2026-09-21T14:13:20+00:00</CREATION-TIME>" in dated
 
 
+@pytest.mark.slow
 def test_a_project_without_hazards_and_runs_fits_the_schema(
     fretc: Fretc, schema: XMLSchema
 ) -> None:
@@ -309,10 +313,12 @@ def test_a_project_without_hazards_and_runs_fits_the_schema(
     assert "Runs" not in content.objects["R1"]
 
 
+@pytest.mark.slow
 def test_a_project_of_nothing_fits_the_schema(small: Report, schema: XMLSchema) -> None:
     schema.validate(form(replace(small, hazards=(), matrix=(), requirements=())))
 
 
+@pytest.mark.slow
 def test_requirements_that_share_an_id_are_two_objects(tmp_path: Path, schema: XMLSchema) -> None:
     same = requirement("R1", "the robot shall never satisfy near")
     report = report_of(project(tmp_path, same, same), tmp_path).report
@@ -338,6 +344,7 @@ def held(text: str) -> str:
 
 
 @pytest.mark.slow
+@examples(8)
 @given(text=st.text(LETTERS, min_size=1))
 def test_any_text_comes_back(small: Report, schema: XMLSchema, text: str) -> None:
     hazard = HazardView(f"{text}.", text, f".{text}.", "", "")
@@ -349,14 +356,17 @@ def test_any_text_comes_back(small: Report, schema: XMLSchema, text: str) -> Non
 
 @pytest.mark.slow
 def test_a_thousand_requirements_are_all_there(small: Report) -> None:
+    """By default a tenth of them."""
+    count = 1000 if FULL else 100
     (view,), (row,) = small.requirements, small.matrix
     (one,) = view.results
     many = replace(view, results=(one,) * 30)
-    views = [replace(many, id=f"R{n}", anchor=f"req-R{n}") for n in range(1000)]
+    views = [replace(many, id=f"R{n}", anchor=f"req-R{n}") for n in range(count)]
     rows = [replace(row, anchor=view.anchor) for view in views]
     text = form(replace(small, requirements=tuple(views), matrix=tuple(rows)))
     content = read(text)
-    assert (len(content.objects), len(content.relations), len(content.places)) == (1001, 1000, 1001)
+    sizes = len(content.objects), len(content.relations), len(content.places)
+    assert sizes == (count + 1, count, count + 1)
 
 
 def test_of_many_runs_the_worst_are_listed(small: Report) -> None:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from compiler.project.folder import Project
 from fretc.report.front.speech import days, duration
 from tests.effort import FULL
-from tests.fretc.report.cases import as_json, project, report_of, requirement, result
+from tests.fretc.report.cases import content_of, project, requirement, result
 
 ALWAYS = "the robot shall always satisfy stopped"
 VERDICTS = ("satisfied", "violated", "inconclusive", "vacuous", "no data")
@@ -38,7 +38,7 @@ def known(folder: Path) -> Project:
 
 
 def front(known: Project, folder: Path, *results: Mapping[str, Any]) -> dict[str, Any]:
-    page: dict[str, Any] = as_json(report_of(known, folder, *results))["front"]
+    page: dict[str, Any] = content_of(known, folder, *results)["front"]
     return page
 
 
@@ -73,7 +73,7 @@ def test_each_requirement_in_force_is_shown_violated_or_not_shown_for_a_cause(
         result(known, word, id, run=f"{n}.mcap", **changes)
         for n, (id, word, changes) in enumerate(cells)
     ]
-    report = as_json(report_of(known, folder, *runs))
+    report = content_of(known, folder, *runs)
     page = report["front"]
     count = figures(page)
     assert count["claimed"] == 4

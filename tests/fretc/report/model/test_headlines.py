@@ -7,7 +7,7 @@ import pytest
 
 from compiler.project.folder import Project
 from tests.fretc.report.cases import BINDINGS as DECLARED
-from tests.fretc.report.cases import R1, as_json, project, report_of, requirement, result, violation
+from tests.fretc.report.cases import R1, content_of, project, requirement, result, violation
 
 ALWAYS = "the robot shall always satisfy stopped"
 OLD = {"bindings": "0" * 64}
@@ -28,7 +28,7 @@ def overall(folder: Path, *cases: tuple[str, dict[str, str]]) -> dict[str, Any]:
         else red(known, f"R{n}", hashes=hashes)
         for n, (word, hashes) in enumerate(cases, 1)
     ]
-    outcome: dict[str, Any] = as_json(report_of(known, folder, *results))["overall"]
+    outcome: dict[str, Any] = content_of(known, folder, *results)["overall"]
     return outcome
 
 
@@ -89,7 +89,7 @@ def test_red_stays_red_where_the_sentence_cannot_be_read_any_more(tmp_path: Path
     before = project(tmp_path)
     broken = red(before, "R1")
     now = project(tmp_path, R1.replace("eventually", "evntually"))
-    content = as_json(report_of(now, tmp_path, broken))
+    content = content_of(now, tmp_path, broken)
     assert content["overall"]["headline"] == (
         f"{NAME} was violated, "
         "and the sentence could be formalized at the audit, and cannot be now."
@@ -102,7 +102,7 @@ def test_a_sentence_that_could_never_be_read_is_not_called_one_that_could_be(
     tmp_path: Path,
 ) -> None:
     known = project(tmp_path, R1.replace("eventually", "evntually"))
-    content = as_json(report_of(known, tmp_path, red(known, "R1")))
+    content = content_of(known, tmp_path, red(known, "R1"))
     assert content["overall"]["headline"] == (
         f"{NAME} was violated, and the sentence cannot be formalized, and could not at the audit."
     )
@@ -111,7 +111,7 @@ def test_a_sentence_that_could_never_be_read_is_not_called_one_that_could_be(
 def test_one_current_violation_is_enough_for_a_current_verdict(tmp_path: Path) -> None:
     known = project(tmp_path)
     old = red(known, "R1", run="old.mcap", hashes=OLD)
-    content = as_json(report_of(known, tmp_path, old, red(known, "R1", run="new.mcap")))
+    content = content_of(known, tmp_path, old, red(known, "R1", run="new.mcap"))
     assert content["overall"]["headline"] == f"{NAME} is violated."
     assert [reason.split(",")[0] for reason in content["requirements"][0]["reasons"]] == [
         "new: violated",
@@ -122,7 +122,7 @@ def test_one_current_violation_is_enough_for_a_current_verdict(tmp_path: Path) -
 def test_a_new_good_run_of_another_log_does_not_hide_an_old_violation(tmp_path: Path) -> None:
     known = project(tmp_path)
     old = red(known, "R1", run="old.mcap", hashes=OLD)
-    content = as_json(report_of(known, tmp_path, old, result(known, "satisfied", run="new.mcap")))
+    content = content_of(known, tmp_path, old, result(known, "satisfied", run="new.mcap"))
     assert content["overall"]["headline"] == f"{NAME} was violated, and {BINDINGS}."
 
 
@@ -136,7 +136,7 @@ def test_runs_with_errors_come_first_and_are_named(tmp_path: Path) -> None:
     ]
     good = result(known, "satisfied", run="a.mcap")
     wrong = result(known, "no data", run="b.mcap", health={"findings": findings})
-    content = as_json(report_of(known, tmp_path, good, wrong))
+    content = content_of(known, tmp_path, good, wrong)
     assert [run["file"] for run in content["runs"]] == ["b.mcap", "a.mcap"]
     assert [finding["code"] for finding in content["runs"][0]["findings"]] == [
         "F405",
@@ -146,7 +146,7 @@ def test_runs_with_errors_come_first_and_are_named(tmp_path: Path) -> None:
     sentences = content["overall"]["sentences"]
     assert "b (F405) has an error: read them before the verdicts." in sentences
     other = result(known, "no data", run="c.mcap", health={"findings": findings})
-    sentences = as_json(report_of(known, tmp_path, wrong, other))["overall"]["sentences"]
+    sentences = content_of(known, tmp_path, wrong, other)["overall"]["sentences"]
     assert any(each.endswith("have errors: read them before the verdicts.") for each in sentences)
 
 
@@ -154,7 +154,7 @@ def test_values_are_in_the_declared_unit_and_bounds_are_exact(tmp_path: Path) ->
     known = project(tmp_path, bindings=DECLARED.replace('unit = "m/s"', 'unit = "km/h"'))
     broken = red(known, "R1", thresholds=[near(5 / 3.6, 4.99999999 / 3.6)])
     broken["violations"][0]["values"] = {"vx": 4.99999999 / 3.6}
-    content = as_json(report_of(known, tmp_path, broken))
+    content = content_of(known, tmp_path, broken)
     (view,) = content["requirements"][0]["results"]
     assert view["violations"][0]["values"] == [["vx", "4.99999999 km/h"]]
     (threshold,) = view["thresholds"]

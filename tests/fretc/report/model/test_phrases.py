@@ -4,8 +4,7 @@ from fretc.report.model import phrases
 
 
 @pytest.mark.parametrize(
-    ("count", "text"),
-    [(0, "0 runs"), (1, "1 run"), (2, "2 runs"), (12345, "12\u202f345 runs")],
+    ("count", "text"), [(0, "0 runs"), (1, "1 run"), (2, "2 runs"), (12345, "12\u202f345 runs")]
 )
 def test_a_count_has_its_noun(count: int, text: str) -> None:
     assert phrases.times(count, "run") == text

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from importlib.resources import files
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from tests.browsing import Visits, serious
+from tests.effort import some
 from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
     R1,
+    as_html,
     moment,
     project,
     report_of,
@@ -23,7 +26,7 @@ from tests.fretc.report.cases import (
 )
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Page
 
 pytestmark = pytest.mark.slow
 LONG = "x" * 10_000
@@ -65,34 +68,21 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for id in ("R1", "R2", "R3")
         for run in range(9)
     ]
-    html = report_of(known, folder, *runs).html
-    assert html is not None
+    html = as_html(report_of(known, folder, *runs))
     path = folder / "report.html"
     path.write_text(html, encoding="utf-8")
     return path
 
 
 @pytest.fixture
-def opened(browser: Browser, report: Path) -> Iterator[Open]:
-    """Opens the report; at the end nothing was asked of the network and nothing complained."""
-    messages: list[str] = []
-    asked: list[str] = []
-    contexts = []
+def opened(visits: Visits, report: Path) -> Iterator[Open]:
+    """Opens the report; at the end nothing else was asked for."""
 
-    def open_it(**options: Any) -> Page:
-        contexts.append(browser.new_context(offline=True, **options))
-        page = contexts[-1].new_page()
-        page.on("console", lambda message: messages.append(message.text))
-        page.on("pageerror", lambda error: messages.append(str(error)))
-        page.on("request", lambda request: asked.append(request.url))
-        page.goto(report.as_uri())
-        return page
+    def open_it(*size: int, **options: Any) -> Page:
+        return visits.open(report, *size, **options)
 
     yield open_it
-    for context in contexts:
-        context.close()
-    assert messages == []
-    assert set(asked) == {report.as_uri()}
+    assert set(visits.asked) == {report.as_uri()}
 
 
 def rows(page: Page) -> list[str]:
@@ -155,7 +145,7 @@ def test_a_link_to_a_filtered_row_shows_it_again(opened: Open) -> None:
 
 
 def test_without_its_script_all_is_there_and_nothing_offers_to_filter(opened: Open) -> None:
-    page = opened(java_script_enabled=False)
+    page = opened(scripts=False)
     assert page.locator(".controls, button").count() == 0
     assert page.locator("#matrix tr[data-order]:visible").count() == 4
     assert page.locator("#matrix td > a:visible").count() == 27
@@ -165,18 +155,13 @@ def test_without_its_script_all_is_there_and_nothing_offers_to_filter(opened: Op
     assert page.locator("#req-R2 figure:visible").count() >= 3
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [1200, 400])
+@pytest.mark.parametrize(("scheme", "width"), some(product(("light", "dark"), (1200, 400)), 4))
 def test_axe_finds_nothing_serious(opened: Open, scheme: str, width: int) -> None:
-    page = opened(color_scheme=scheme, viewport={"width": width, "height": 900})
-    page.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
-    violations = page.evaluate("axe.run({resultTypes: ['violations']})")["violations"]
-    serious = [each for each in violations if each["impact"] in ("serious", "critical")]
-    assert [(each["id"], each["nodes"][0]["html"][:200]) for each in serious] == []
+    assert serious(opened(width, scheme=scheme)) == []
 
 
 def test_the_page_is_never_wider_than_a_telephone(opened: Open) -> None:
-    page = opened(viewport={"width": 400, "height": 800})
+    page = opened(400, 800)
     assert page.evaluate("document.documentElement.scrollWidth") == 400
 
 
@@ -190,7 +175,7 @@ def test_texts_from_outside_are_shown_and_not_followed(opened: Open) -> None:
 
 def test_on_paper_nothing_is_cut(opened: Open) -> None:
     """At the width of the text on A4, with what is only for the screen left out."""
-    page = opened(viewport={"width": 665, "height": 979})
+    page = opened(665, 979)
     page.emulate_media(media="print")
     assert page.locator(".controls:visible, nav:visible").count() == 0
     wide = page.evaluate(

@@ -2,55 +2,30 @@
 
 from __future__ import annotations
 
-import json
 import re
-from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 
 from compiler.project.folder import Project
-from fretc.audit.evidence import reader as reading
-from fretc.audit.evidence.briefs import Briefs
 from fretc.report.make import make
-from fretc.report.traceability.chain import chains
-from fretc.report.traceability.lock import Lock, accepted, text
-from fretish.diagnostics.diagnostic import Diagnostic
+from tests.browsing import Visits, serious
 from tests.effort import some
 from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
     R1,
-    evidence,
+    as_html,
     project,
     requirement,
     result,
     violation,
+    write_evidence,
+    write_lock,
 )
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser
-
 HOSTILE = "<script>document.title = 'broken'</script></del>\u202egnp.exe\u202c " + "x" * 3000
-
-
-def written(folder: Path, known: Project, *results: dict[str, Any]) -> str:
-    path = folder / "evidence.json"
-    path.write_text(json.dumps(evidence(known, *results)), encoding="utf-8")
-    return str(path)
-
-
-def locked(known: Project, audited: str, folder: Path) -> str:
-    """Everything as it is now, accepted."""
-    found = reading.read(audited)
-    assert not isinstance(found, Diagnostic)
-    reviews = [
-        accepted(each, "A", "B", "2026-01-01", "c") for each in chains(known, Briefs.of(found))
-    ]
-    path = folder / "fretc.lock"
-    path.write_text(text(Lock({each.requirement: each for each in reviews})), encoding="utf-8")
-    return str(path)
 
 
 @pytest.fixture(scope="module")
@@ -69,8 +44,8 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ]
 
     before = project(folder, R1, other)
-    audited = written(folder, before, *judged(before, "satisfied"))
-    lock = locked(before, audited, folder)
+    audited = write_evidence(before, folder, *judged(before, "satisfied"))
+    lock = write_lock(before, folder, audited)
     now = project(
         folder,
         R1.replace("Stop when something is near", "Stop when something is within 5 cm"),
@@ -78,8 +53,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
         bindings=BINDINGS.replace("< 5 cm", "< 9 cm"),
         hazards=HAZARDS.replace("A drum can break.", "A drum can leak."),
     )
-    html = make(now, written(folder, now, *judged(now, "violated")), lock=lock).html
-    assert html is not None
+    html = as_html(make(now, write_evidence(now, folder, *judged(now, "violated")), lock=lock))
     path = folder / "report.html"
     path.write_text(html, encoding="utf-8")
     return path
@@ -121,15 +95,17 @@ def test_texts_of_a_lock_are_shown_and_not_followed(page: Path) -> None:
 def test_of_many_runs_the_violated_ones_come_first_and_the_rest_is_counted(tmp_path: Path) -> None:
     known = project(tmp_path)
     runs = [f"logs/{n:02}.mcap" for n in range(30)]
-    audited = written(tmp_path, known, *(result(known, "satisfied", run=run) for run in runs))
-    lock = locked(known, audited, tmp_path)
+    audited = write_evidence(
+        known, tmp_path, *(result(known, "satisfied", run=run) for run in runs)
+    )
+    lock = write_lock(known, tmp_path, audited)
     now = [
         result(known, "violated", run=run, violations=[violation(14, 20, 11)])
         if run >= "logs/05"
         else result(known, "vacuous", run=run)
         for run in runs
     ]
-    html = make(known, written(tmp_path, known, *now), lock=lock).html
+    html = make(known, write_evidence(known, tmp_path, *now), lock=lock).html
     (tmp_path / "report.html").write_text(html or "", encoding="utf-8")
     changes = section(tmp_path / "report.html")
     assert "25 verdicts became violated" in changes
@@ -143,22 +119,10 @@ def test_of_many_runs_the_violated_ones_come_first_and_the_rest_is_counted(tmp_p
     ("width", "scheme"), some([(390, "dark"), (1440, "dark"), (390, "light"), (1440, "light")], 3)
 )
 def test_the_section_fits_and_is_accessible(
-    browser: Browser, page: Path, width: int, scheme: Any
+    visits: Visits, page: Path, width: int, scheme: str
 ) -> None:
-    context = browser.new_context(
-        offline=True, color_scheme=scheme, viewport={"width": width, "height": 900}
-    )
-    shown = context.new_page()
-    shown.goto(page.as_uri())
+    shown = visits.open(page, width, scheme=scheme)
     assert shown.evaluate("document.documentElement.scrollWidth") == width
     shown.locator("#changes summary").first.click()
     assert shown.locator("#changes tbody tr").first.is_visible()
-    shown.evaluate((files("axe_playwright_python") / "axe.min.js").read_text("utf-8"))
-    run = "axe.run('#changes', {resultTypes: ['violations']})"
-    serious = [
-        (each["id"], each["nodes"][0]["html"][:200])
-        for each in shown.evaluate(run)["violations"]
-        if each["impact"] in ("serious", "critical")
-    ]
-    assert serious == []
-    context.close()
+    assert serious(shown, "#changes") == []

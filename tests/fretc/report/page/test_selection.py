@@ -10,8 +10,9 @@ from fretc.report.model.views import Report
 from fretc.report.page import selection as choosing
 from fretc.report.page.selection import DETAILED, PICTURES, Selection
 from fretc.report.page.selection import selection as chosen_of
+from tests.effort import some
+from tests.fretc.report.cases import as_html, report_of, result
 from tests.fretc.report.cases import project as small_project
-from tests.fretc.report.cases import report_of, result
 
 
 def reported(folder: Path, requirements: int, runs: int, share: float) -> tuple[ReportBuild, str]:
@@ -19,8 +20,7 @@ def reported(folder: Path, requirements: int, runs: int, share: float) -> tuple[
     path = folder / "evidence.json"
     path.write_text(json.dumps(evidence(known, runs, share)), encoding="utf-8")
     build = make(known, str(path))
-    assert build.html is not None
-    return build, build.html
+    return build, as_html(build)
 
 
 def whole(build: ReportBuild) -> Report:
@@ -35,8 +35,12 @@ def selection(build: ReportBuild) -> Selection:
 
 
 @pytest.mark.slow
-def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(tmp_path: Path) -> None:
-    build, html = reported(tmp_path, 50, 20, 0.05)
+@pytest.mark.parametrize(("count", "share"), some([(5, 0.2), (50, 0.05)], 2))
+def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(
+    tmp_path: Path, count: int, share: float
+) -> None:
+    """By default five."""
+    build, html = reported(tmp_path, count, 20, share)
     assert len(html.encode()) <= 2_000_000
     chosen = selection(build)
     assert all(len(section.rows) == 20 for section in chosen.by_anchor.values())
@@ -46,15 +50,22 @@ def test_fifty_requirements_in_twenty_runs_are_at_most_two_megabytes(tmp_path: P
 
 
 @pytest.mark.slow
-def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(tmp_path: Path) -> None:
-    build, html = reported(tmp_path, 12, 10, 1.0)
+@pytest.mark.parametrize(
+    ("count", "most", "drawn"), some([(3, 16, 4), (12, DETAILED, PICTURES)], 2)
+)
+def test_when_all_is_violated_each_requirement_gets_a_share_of_the_details(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, count: int, most: int, drawn: int
+) -> None:
+    monkeypatch.setattr(choosing, "DETAILED", most)
+    monkeypatch.setattr(choosing, "PICTURES", drawn)
+    build, html = reported(tmp_path, count, 10, 1.0)
     chosen = selection(build)
     counts = [len(section.details) for section in chosen.by_anchor.values()]
-    assert sum(counts) == DETAILED
+    assert sum(counts) == most
     assert max(counts) - min(counts) <= 1
     pictures = [len(r.timelines) for s in chosen.by_anchor.values() for r in s.details]
-    assert sum(pictures) == PICTURES
-    assert "Details below: of 8 of 10 runs that are not satisfied." in html
+    assert sum(pictures) == drawn
+    assert f"Details below: of {most // count} of 10 runs that are not satisfied." in html
 
 
 @pytest.mark.slow
@@ -69,16 +80,16 @@ def test_a_few_satisfied_runs_can_be_opened_in_the_page(tmp_path: Path) -> None:
 def test_a_compact_page_lists_what_is_not_satisfied_and_says_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(choosing, "COMPACT", 50)
-    monkeypatch.setattr(choosing, "_RUN_ROWS", 9)
-    build, html = reported(tmp_path, 3, 20, 0.5)
+    monkeypatch.setattr(choosing, "COMPACT", 20)
+    monkeypatch.setattr(choosing, "_RUN_ROWS", 7)
+    build, html = reported(tmp_path, 3, 10, 0.5)
     chosen = selection(build)
     assert chosen.is_compact
     rows = [row for section in chosen.by_anchor.values() for row in section.rows]
     assert {row.mark.word for row in rows} == {"violated"}
     assert len(rows) < sum(len(view.results) for view in whole(build).requirements)
-    assert "This page is compact, because 60 results are more than 50" in html
-    assert "Left out here: 11 runs without a row. The evidence file has them all." in html
+    assert "This page is compact, because 30 results are more than 20" in html
+    assert "Left out here: 3 runs without a row. The evidence file has them all." in html
     links = set(re.findall(r'href="#([^"]+)"', html))
     assert links <= set(re.findall(r'id="([^"]+)"', html))
 

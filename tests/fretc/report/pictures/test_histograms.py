@@ -11,15 +11,7 @@ from compiler.files.templating import render
 from fretc.report.model.pictures import Bin, Histogram
 from fretc.report.pictures.histograms import step
 from fretc.report.pictures.plots import histogram as layout
-from tests.fretc.report.cases import (
-    THRESHOLDS,
-    as_json,
-    moment,
-    project,
-    report_of,
-    requirement,
-    result,
-)
+from tests.fretc.report.cases import THRESHOLDS, content_of, moment, project, requirement, result
 
 WITHIN = requirement("R1", "whenever near the robot shall within 30 ticks satisfy stopped")
 
@@ -30,7 +22,7 @@ def view(folder: Path, *changes: dict[str, Any], text: str = WITHIN) -> dict[str
         result(known, "satisfied", run=f"{i}.mcap", **{"hashes": {"log": f"{i:064x}"}, **each})
         for i, each in enumerate(changes)
     ]
-    requirement_view: dict[str, Any] = as_json(report_of(known, folder, *runs))["requirements"][0]
+    requirement_view: dict[str, Any] = content_of(known, folder, *runs)["requirements"][0]
     return requirement_view
 
 
@@ -82,8 +74,7 @@ def test_each_trigger_is_counted_answered_or_not(tmp_path: Path) -> None:
     """Ten triggers: three answers, five whose time ran out, two that wait when the log ends."""
     triggers = [moment(tick) for tick in range(10)]
     section = view(
-        tmp_path,
-        {"triggers": triggers, "latencies_s": [0.1, 0.2, 0.2], "open": triggers[8:]},
+        tmp_path, {"triggers": triggers, "latencies_s": [0.1, 0.2, 0.2], "open": triggers[8:]}
     )
     (histogram,) = section["histograms"]
     assert (histogram["unanswered"], histogram["open"]) == (5, 2)

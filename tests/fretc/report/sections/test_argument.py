@@ -16,12 +16,12 @@ from fretc.report.sections.argument import Element, argument
 from tests.fretc.report.cases import (
     BINDINGS,
     HAZARDS,
-    evidence,
     moment,
     project,
     requirement,
     result,
     violation,
+    write_evidence,
 )
 from tests.fretc.report.forms.test_forms import complaints
 from tests.fretc.report.sections.test_proofs import proof
@@ -35,7 +35,6 @@ def reported(
     known: Project, folder: Path, *results: Mapping[str, Any], proofs: Any = None
 ) -> Report:
     """The report, with an argument that every rule of gsn2x lets pass."""
-    (folder / "evidence.json").write_text(json.dumps(evidence(known, *results)), "utf-8")
     path = folder / "verification.json"
     if proofs is not None:
         document = {"schema": "fretc-verification-1", "fretc": "0.1.0", "evidence": proofs}
@@ -43,7 +42,7 @@ def reported(
     waivers = folder / "waivers.toml"
     report = make(
         known,
-        str(folder / "evidence.json"),
+        write_evidence(known, folder, *results),
         waivers=str(waivers) if waivers.exists() else None,
         verification=str(path) if proofs is not None else None,
     ).report

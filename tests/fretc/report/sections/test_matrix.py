@@ -2,14 +2,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 from compiler.project.folder import Project
 from fretish.diagnostics.diagnostic import Code, Severity
 from tests.fretc.report.cases import (
     HAZARDS,
     R1,
     as_json,
+    content_of,
     moment,
     project,
     report_of,
@@ -22,7 +21,7 @@ ALWAYS = "the robot shall always satisfy stopped"
 
 def test_a_row_leads_from_hazard_to_verdict(tmp_path: Path) -> None:
     known = project(tmp_path)
-    (row,) = as_json(report_of(known, tmp_path, result(known, "satisfied")))["matrix"]
+    (row,) = content_of(known, tmp_path, result(known, "satisfied"))["matrix"]
     assert (row["hazard"], row["requirement"], row["via"]) == ("HAZ-1", "R1", "")
     mark = {"word": "satisfied", "glyph": "✔", "kind": "satisfied", "suspect": False}
     assert (row["mark"], row["runs"], row["proof"]) == (mark, 1, None)
@@ -36,7 +35,7 @@ def test_a_requirement_below_another_traces_to_its_hazard(tmp_path: Path) -> Non
         requirement("R2", ALWAYS, parents=["R1"]),
         requirement("R3", ALWAYS, parents=["R2"]),
     )
-    content = as_json(report_of(known, tmp_path))
+    content = content_of(known, tmp_path)
     assert [(row["requirement"], row["hazard"], row["via"]) for row in content["matrix"]] == [
         ("R1", "HAZ-1", ""),
         ("R2", "HAZ-1", "R1"),
@@ -51,7 +50,7 @@ def test_parents_in_a_circle_end(tmp_path: Path) -> None:
         requirement("R1", ALWAYS, parents=["R2"]),
         requirement("R2", ALWAYS, parents=["R1"]),
     )
-    content = as_json(report_of(known, tmp_path))
+    content = content_of(known, tmp_path)
     assert [(row["requirement"], row["hazard"]) for row in content["matrix"]] == [
         ("R1", ""),
         ("R2", ""),
@@ -89,25 +88,24 @@ def test_every_missing_link_is_listed(tmp_path: Path) -> None:
     assert warning.message == "there is evidence of R9, which is not among the requirements"
 
 
-@pytest.mark.slow
 def test_a_row_counts_the_runs_that_have_its_verdict(tmp_path: Path) -> None:
     known = project(tmp_path)
     runs = [result(known, "satisfied", run=f"{i}.mcap") for i in range(20)]
     bad = [result(known, "vacuous", run=f"bad{i}.mcap", triggers=[]) for i in range(2)]
-    (row,) = as_json(report_of(known, tmp_path, *runs[:10], *bad, *runs[10:]))["matrix"]
+    (row,) = content_of(known, tmp_path, *runs[:10], *bad, *runs[10:])["matrix"]
     assert (row["mark"]["word"], row["runs"]) == ("vacuous", 2)
 
 
 def test_without_hazards_the_requirements_are_still_in_the_matrix(tmp_path: Path) -> None:
     known = project(tmp_path, hazards=None)
-    content = as_json(report_of(known, tmp_path))
+    content = content_of(known, tmp_path)
     assert [(row["hazard"], row["requirement"]) for row in content["matrix"]] == [("", "R1")]
     assert content["orphans"]["parents"] == ["R1 names HAZ-1, which is not declared"]
 
 
 def shown(known: Project, folder: Path, *results: Mapping[str, Any]) -> list[Any] | None:
     """What the matrix and the section of R1 say of situations."""
-    content = as_json(report_of(known, folder, *results))
+    content = content_of(known, folder, *results)
     (row,) = content["matrix"]
     (section,) = content["requirements"]
     assert row["situations"] == section["situations"]

@@ -6,7 +6,16 @@ from compiler.files.text_files import sha256
 from compiler.project.folder import load
 from compiler.targets import ltl
 from fretc.report.make import make
-from tests.fretc.report.cases import LOG, R1, as_json, project, report_of, requirement, result
+from tests.fretc.report.cases import (
+    LOG,
+    R1,
+    as_json,
+    content_of,
+    project,
+    report_of,
+    requirement,
+    result,
+)
 
 
 def test_the_commands_can_be_typed_as_they_stand(
@@ -30,7 +39,7 @@ def test_the_commands_can_be_typed_as_they_stand(
 
 def test_the_manifest_has_the_hash_of_everything(tmp_path: Path) -> None:
     known = project(tmp_path)
-    manifest = as_json(report_of(known, tmp_path, result(known, "satisfied")))["manifest"]
+    manifest = content_of(known, tmp_path, result(known, "satisfied"))["manifest"]
     assert [(line["kind"], line["name"]) for line in manifest] == [
         ("sentence", "R1"),
         ("bindings", "bindings.toml"),
@@ -50,7 +59,7 @@ def test_the_manifest_has_the_hash_of_everything(tmp_path: Path) -> None:
 def test_defaults_that_were_taken_are_reported(tmp_path: Path) -> None:
     known = project(tmp_path)
     one = result(known, "satisfied", assumptions=["signal old: something else"])
-    assert as_json(report_of(known, tmp_path, one))["assumptions"] == [
+    assert content_of(known, tmp_path, one)["assumptions"] == [
         "signal clearance: readings that are no measurement are as REP 117 says",
         "signal old: something else (in the audit)",
     ]

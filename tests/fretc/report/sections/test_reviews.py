@@ -1,27 +1,23 @@
 """What the report says of reviews, changes, waivers, and how far each requirement has come."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from compiler.project.folder import Project
-from fretc.audit.evidence import reader as reading
-from fretc.audit.evidence.briefs import Briefs
 from fretc.report.make import make
-from fretc.report.traceability.chain import chains
-from fretc.report.traceability.lock import Lock, accepted, text
-from fretish.diagnostics.diagnostic import Code, Diagnostic
+from fretish.diagnostics.diagnostic import Code
 from tests.fretc.report.cases import (
     BINDINGS,
     R1,
     as_json,
-    evidence,
     project,
     requirement,
     result,
     violation,
+    write_evidence,
+    write_lock,
 )
 
 WAIVER = """\
@@ -42,21 +38,15 @@ def _day(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def lock(known: Project, folder: Path) -> None:
     """Everything as it is now, accepted; the evidence is in the folder."""
-    audited = reading.read(str(folder / "evidence.json"))
-    assert not isinstance(audited, Diagnostic)
-    reviews = {
-        c.requirement: accepted(c, "A", "B", "2026-09-01", "c")
-        for c in chains(known, Briefs.of(audited))
-    }
-    (folder / "fretc.lock").write_text(text(Lock(reviews)), encoding="utf-8")
+    write_lock(known, folder, str(folder / "evidence.json"), "2026-09-01")
 
 
 def reported(known: Project, folder: Path, *results: dict[str, Any]) -> dict[str, Any]:
     """The report about these results, with the lock and the waivers of the folder."""
-    (folder / "evidence.json").write_text(json.dumps(evidence(known, *results)), encoding="utf-8")
+    audited = write_evidence(known, folder, *results)
     paths = [folder / name for name in ("fretc.lock", "waivers.toml")]
     locked, waived = [str(path) if path.exists() else None for path in paths]
-    return as_json(make(known, str(folder / "evidence.json"), lock=locked, waivers=waived))
+    return as_json(make(known, audited, lock=locked, waivers=waived))
 
 
 def only(report: dict[str, Any]) -> dict[str, Any]:
@@ -179,10 +169,8 @@ def test_a_waiver_covers_the_verdict_that_it_names_and_no_other(
     known = project(tmp_path)
     (tmp_path / "waivers.toml").write_text(WAIVER.replace("violated", waived))
     broken = [violation(14, 20, 11)] if verdict == "violated" else []
-    (tmp_path / "evidence.json").write_text(
-        json.dumps(evidence(known, result(known, verdict, violations=broken)))
-    )
-    build = make(known, str(tmp_path / "evidence.json"), waivers=str(tmp_path / "waivers.toml"))
+    audited = write_evidence(known, tmp_path, result(known, verdict, violations=broken))
+    build = make(known, audited, waivers=str(tmp_path / "waivers.toml"))
     idle = [d.message for d in build.diagnostics if d.code is Code.IDLE_WAIVER]
     if verdict == waived:
         assert (only(as_json(build))["mark"]["word"], idle) == ("waived", [])

@@ -1,4 +1,3 @@
-import json
 from collections.abc import Mapping
 from itertools import combinations
 from pathlib import Path
@@ -28,9 +27,7 @@ whenever near the robot shall within 300 milliseconds satisfy stopped
 
 
 def chain(project: Project, *results: Mapping[str, Any]) -> Chain:
-    path = Path("evidence.json")
-    path.write_text(json.dumps(cases.evidence(project, *results)), encoding="utf-8")
-    audited = reading.read(str(path))
+    audited = reading.read(cases.write_evidence(project, Path(), *results))
     assert not isinstance(audited, Diagnostic), audited
     (only,) = chains(project, Briefs.of(audited))
     return only
@@ -164,10 +161,7 @@ def test_requirements_that_name_each_other_as_parents_have_a_chain(folder: Path)
 NODES = [Node("text", str(i)) for i in range(7)]
 
 
-@given(
-    st.sets(st.sampled_from([*combinations(range(7), 2)])),
-    st.sets(st.integers(0, 6)),
-)
+@given(st.sets(st.sampled_from([*combinations(range(7), 2)])), st.sets(st.integers(0, 6)))
 def test_a_link_is_suspect_exactly_if_a_change_reaches_its_source(
     edges: set[tuple[int, int]], wrong: set[int]
 ) -> None:

@@ -19,6 +19,7 @@ from fretc.report.traceability.meanings import agree
 from fretc.report.traceability.texts import as_table
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.command import Fretc, write
+from tests.effort import FULL, pairwise, some
 from tests.fretc.audit.evidence.test_basis import (
     BINDINGS,
     BY,
@@ -206,18 +207,38 @@ def listed(found: dict[str, Difference]) -> dict[str, list[Expected]]:
     }
 
 
+def kind(name: str) -> str:
+    """What a change is told as, whichever thing and value it is about."""
+    told = {tuple(w) for each in EXPECTED.get(name, {}).values() for w in each}
+    words = {
+        (re.sub(r"\b(?:of [a-z]|of R1|p|q|ok|fine|HAZ-.)\b", "one", what), bool(old), bool(new))
+        for what, old, new in told
+    }
+    return str(sorted(words)) if words else name
+
+
+QUIET = [
+    n for n in CHANGES if n not in EXPECTED and n.removeprefix("evidence: ") not in OF_EVIDENCE
+]
+GROUPS = len(QUIET) if FULL else 5
+LOUD = {name if FULL else kind(name): (name,) for name in CHANGES if name not in QUIET}
+TOLD = [*LOUD.values(), *(tuple(QUIET[i::GROUPS]) for i in range(GROUPS))]
+"""In quick tests one of each kind, and what changes nothing beside others."""
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("name", CHANGES)
+@pytest.mark.parametrize("names", TOLD, ids="; ".join)
 def test_a_change_is_told_with_what_the_files_said_and_nothing_else_is(
-    reviewed: Fretc, name: str
+    reviewed: Fretc, names: tuple[str, ...]
 ) -> None:
-    CHANGES[name].make()
+    for name in names:
+        CHANGES[name].make()
     found = compared()
-    kind, _, what = name.partition(": ")
-    if kind == "evidence" and what in OF_EVIDENCE:
+    what = names[0].removeprefix("evidence: ")
+    if what != names[0] and what in OF_EVIDENCE:
         assert {one.text for each in found.values() for one in each.changes} == {OF_EVIDENCE[what]}
         return
-    assert listed(found) == EXPECTED.get(name, {})
+    assert listed(found) == EXPECTED.get(names[0], {})
     for one in (one for each in found.values() for one in each.changes):
         shown = {"before": one.before, "after": one.after}
         for side, other in (("before", "after"), ("after", "before")):
@@ -250,6 +271,7 @@ def test_several_changes_are_told_each_by_itself(reviewed: Fretc) -> None:
     assert [one.what for one in r1.changes] == ["sentence", "p", "max_age of x", "title"]
 
 
+@pytest.mark.slow
 def test_a_suspect_link_has_a_change_that_makes_it_suspect(reviewed: Fretc) -> None:
     """Whatever is suspect, something is told of it."""
     for name in ("sentence: a scope", "header: no plan", "clock: tick", "signal: another topic"):
@@ -357,18 +379,21 @@ def test_a_lock_without_texts_is_read_and_says_that_it_does_not_know(reviewed: F
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new"),
-    [
-        ("x > 1 m for", "x > 7 m for"),
-        ('title = "Answer"', 'title = "Question"'),
-        ('p = "1 m"', 'p = "7 m"'),
-        ('tick = "100 ms"', 'tick = "70 ms"'),
-        ('severity = "minor"', 'severity = "none"'),
-        ('canonical = "whenever', 'canonical = "never whenever'),
-        ("milliseconds satisfy q", "milliseconds satisfy p"),
-        ('role = "input"', 'role = "output"'),
-        ('max_age = "300 ms"', ""),
-        ('fretc = "', 'fretc = "0'),
-    ],
+    some(
+        [
+            ("x > 1 m for", "x > 7 m for"),
+            ('title = "Answer"', 'title = "Question"'),
+            ('p = "1 m"', 'p = "7 m"'),
+            ('tick = "100 ms"', 'tick = "70 ms"'),
+            ('severity = "minor"', 'severity = "none"'),
+            ('canonical = "whenever', 'canonical = "never whenever'),
+            ("milliseconds satisfy q", "milliseconds satisfy p"),
+            ('role = "input"', 'role = "output"'),
+            ('max_age = "300 ms"', ""),
+            ('fretc = "', 'fretc = "0'),
+        ],
+        3,
+    ),
 )
 def test_texts_that_are_edited_are_refused_and_forged_ones_are_not_shown(
     reviewed: Fretc, old: str, new: str
@@ -490,22 +515,23 @@ role = "internal"
 """
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("bindings", [None, CLOCK, CLOCK + SIGNALS, '[clock]\ntick = "/s"\n'])
-@pytest.mark.parametrize(
-    "sentence",
-    [
-        '"free text: it must  stop"',
-        "the rover shal satisfy near",
-        "the rover shall always satisfy near",
-        "whenever near the rover shall within 250 milliseconds satisfy !near",
-        "when v > 1.5 m/s the rover shall\n  always  satisfy v < 50 km/h & near",
-        "if fast the rover shall with probability > 0.9 eventually satisfy near",
-        'in dock mode the rover shall always satisfy mode = dock | "odd  name" > 3',
-        "the rover shall immediately satisfy persisted(2, near) & previous(v) <= v",
-    ],
+SENTENCES = (
+    '"free text: it must  stop"',
+    "the rover shal satisfy near",
+    "the rover shall always satisfy near",
+    "whenever near the rover shall within 250 milliseconds satisfy !near",
+    "when v > 1.5 m/s the rover shall\n  always  satisfy v < 50 km/h & near",
+    "if fast the rover shall with probability > 0.9 eventually satisfy near",
+    'in dock mode the rover shall always satisfy mode = dock | "odd  name" > 3',
+    "the rover shall immediately satisfy persisted(2, near) & previous(v) <= v",
 )
-@pytest.mark.parametrize("status", ["draft", "retired"])
+TICKS = (CLOCK + SIGNALS, CLOCK, '[clock]\ntick = "/s"\n', None)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("bindings", "sentence", "status"), pairwise(TICKS, SENTENCES, ("draft", "retired"))
+)
 def test_the_texts_of_any_requirement_give_its_fingerprints(
     tmp_path: Path, bindings: str | None, sentence: str, status: str
 ) -> None:
