@@ -13,7 +13,7 @@ from compiler.files.text_files import read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.fixes import Fix, applied
 from fretish.diagnostics.source import Source, Span
-from fretish.documents import Requirement, requirements
+from fretish.documents import RequirementEntry, requirements
 from fretish.parser import mistakes
 from fretish.reading.limits import with_budget
 from fretish.reading.recursion import with_recursion_limit
@@ -71,7 +71,7 @@ def _safe_fixes(source: Source) -> list[Fix]:
     return sorted(fixes, key=lambda fix: (fix.span.start, fix.span.end))
 
 
-def _has_a_sentence(requirement: Requirement) -> bool:
+def _has_a_sentence(requirement: RequirementEntry) -> bool:
     """Whether its wording is meant as FRETish, so that a fix cannot spoil another text.
 
     Free text is not. Nor is the wording below a header that does not end: it is the whole file.

@@ -65,18 +65,18 @@ class Counter:
 
 @with_recursion_limit
 def counter(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     alphabet: Alphabet,
     fresh: Numbers,
     shared: dict[Function, Bit],
     *,
     as_fret: bool = False,
 ) -> Counter:
-    """The counter of a rule.
+    """The counter of a requirement.
 
     Args:
-        rule: what is formalized.
-        alphabet: of all rules.
+        requirement: what is formalized.
+        alphabet: of all requirements.
         fresh: variables for its bits.
         shared: bits that keep the value of the tick before, of all counters, by that value.
         as_fret: whether nothing may be owed at the end of any tick, as where FRET's past form
@@ -85,9 +85,9 @@ def counter(
     Raises:
         UnsupportedError: it says something that has no counter.
     """
-    if rule.sentence.probability is not None:
+    if requirement.sentence.probability is not None:
         raise UnsupportedError("it states a probability")
-    demanded = rule.demanded
+    demanded = requirement.demanded
     memory = Memory(fresh, shared)
     past = Past(alphabet.atom, memory)
     tick = _Tick(demanded, memory, past.value)
@@ -99,7 +99,7 @@ def counter(
     bits = memory.needed(roots)
     steps = tuple(memory.steps[bit] for bit in bits)
     return Counter(
-        rule.id, bits, steps, safe, fair, tuple(memory.words), tick.enforced, tick.triggered
+        requirement.id, bits, steps, safe, fair, tuple(memory.words), tick.enforced, tick.triggered
     )
 
 

@@ -29,7 +29,7 @@ class Cells:
     """An `Alphabet`: comparisons by groups, all other atoms as `Propositions` has them.
 
     Args:
-        rules: whose atoms it has.
+        requirements: whose atoms it has.
         roles: of their variables.
         fresh: variables for its bits.
         favoured: who chooses what is not known: numbers of the tick before, as far as nothing is
@@ -44,7 +44,7 @@ class Cells:
 
     def __init__(
         self,
-        rules: Sequence[FormalizedRequirement],
+        requirements: Sequence[FormalizedRequirement],
         roles: Roles,
         fresh: Numbers,
         favoured: Role,
@@ -54,7 +54,7 @@ class Cells:
         of_moments: bool = False,
     ) -> None:
         self._favoured = favoured
-        self._atoms = Atoms(rules, of_moments=of_moments)
+        self._atoms = Atoms(requirements, of_moments=of_moments)
         self._pairs = remembered(self._atoms, steps)
         self._fresh = fresh
         self._kept = Memory(fresh, {})
@@ -85,7 +85,7 @@ class Cells:
             parts = self._atoms.lasting[name].atoms
             refused[name] = next(refused[each] for each in parts if each in refused)
         elsewhere = frozenset([*self._of, *self._lasting])
-        self._plain = Propositions(rules, roles, fresh, elsewhere, refused)
+        self._plain = Propositions(requirements, roles, fresh, elsewhere, refused)
 
     def atom(self, name: str) -> Function:
         """When an atom is true; over what is remembered, too, where it depends on that."""

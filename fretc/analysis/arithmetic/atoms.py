@@ -33,16 +33,18 @@ class Atom:
 
 
 class Atoms:
-    """The atoms of some rules that are linear, by the names that formulas give them."""
+    """The atoms of some requirements that are linear, by the names that formulas give them."""
 
-    def __init__(self, rules: Sequence[FormalizedRequirement], *, of_moments: bool = False) -> None:
+    def __init__(
+        self, requirements: Sequence[FormalizedRequirement], *, of_moments: bool = False
+    ) -> None:
         """The atoms.
 
         Args:
-            rules: whose they are.
+            requirements: whose they are.
             of_moments: whether those alone are read that are of one sample, and known.
         """
-        self._terms = Terms(rules)
+        self._terms = Terms(requirements)
         self.found: dict[str, Atom] = {}
         self.refused: dict[str, str] = {}
         """Why another comparison has no formula here."""
@@ -53,7 +55,7 @@ class Atoms:
         self._flags: set[str] = set()
         self._parts: set[str] = set()
         moments: dict[str, Moment] = {}
-        for name, reading in readings(rules):
+        for name, reading in readings(requirements):
             if of_moments and not reading.is_of_moment:
                 continue
             if name not in moments and name not in self.refused and name not in self.lasting:

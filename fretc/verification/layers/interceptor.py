@@ -22,7 +22,7 @@ CLAIM = "the interceptor keeps its contracts"
 
 
 def prove(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
     """A proof for each contract."""
     file = interceptor_of(project, request)
