@@ -38,7 +38,7 @@ class FixedFile:
 def fixed(paths: Sequence[str]) -> tuple[FixedFile, ...]:
     """The files that have a safe fix, with all of their safe fixes applied.
 
-    Files without a safe fix are left out, and so are those that cannot be read: whoever reads
+    Files without a safe fix are left out, and so are those that cannot be read: anyone who reads
     them next reports that.
     """
     sources = (read(path) for path in paths)

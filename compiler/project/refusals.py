@@ -64,7 +64,7 @@ def refused(
 def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
     """The requirements whose chain up to the hazards a mistake reaches, by their `id()`.
 
-    Beside those that nothing can be made of: whoever is to trace, review or compare a requirement
+    Beside those that nothing can be made of: a trace, a review or a comparison of a requirement
     reads the headers and hazards above it, and the warnings that are accepted.
     """
     found = {id(each.requirement): [*each.why] for each in project.refused}

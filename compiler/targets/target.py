@@ -76,7 +76,7 @@ class Target:
     together: bool = False
     """Whether all requirements always become one monitor; `per_rule` is False then."""
     next_step: str = ""
-    """A command for the first file, `{}`, and what it does; for whoever makes one anew."""
+    """A command for the first file, `{}`, and what it does; for a person who makes one again."""
     names: Callable[[FormalizedRequirement], Mapping[str, str]] = lambda requirement: {}
     """What its texts call the propositions of a requirement that it does not refuse."""
     weak: Target | None = None

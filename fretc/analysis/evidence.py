@@ -1,4 +1,4 @@
-"""An analysis as evidence: what it is of, to the letter, and whether that is what there is now.
+"""An analysis as evidence: what it is of, exactly, and whether that is what there is now.
 
 Nothing in a file is trusted: a verdict that does not follow from what stands beside it is F503.
 """

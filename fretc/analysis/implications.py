@@ -1,4 +1,4 @@
-"""What requirements say of one another, whoever chooses the outputs: of runs, not of games."""
+"""Implications among requirements, for any choice of outputs: of runs, not of games."""
 
 from __future__ import annotations
 

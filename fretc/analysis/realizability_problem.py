@@ -42,7 +42,7 @@ class RealizabilityProblem:
     as_fret: bool
     favoured: Role = Role.INPUT
     """Who chooses what nothing is known of: a number of the tick before, a signal that may be
-    unknown, what was before the first tick. Whoever loses even so loses."""
+    unknown, what was before the first tick. A player who loses even so loses."""
     steps: int = 0
     """How many ticks before a bound of a number it is remembered whether that is within reach."""
     fresh: Numbers = field(default_factory=numbers, compare=False, repr=False)

@@ -45,7 +45,7 @@ class Plan:
     integrity: Integrity
     """How closely a log is read."""
     digest: str
-    """SHA-256 of all of it to the letter that one log is judged by."""
+    """SHA-256 of all of it exactly that one log is judged by."""
     confidence: float = odds.CONFIDENCE
     """Of the bounds of a probability over all logs."""
     refused: tuple[RefusedRequirement, ...] = field(default=(), compare=False, repr=False)
@@ -152,7 +152,7 @@ def _digest(
 @lru_cache(maxsize=4)
 @with_recursion_limit
 def keys(plan: Plan) -> Mapping[str, str]:
-    """Of each claim SHA-256 of all that its result in a log rests on beside the log, to the letter.
+    """Of each claim SHA-256 of all that its result in a log rests on beside the log, exactly.
 
     Left out is what a log shows to all claims alike (its health, its labels), and where something
     stands in the bindings: no result says that.

@@ -178,7 +178,7 @@ def _emit(
     options: Options,
     remarks: Sequence[Diagnostic],
 ) -> None:
-    """Write whatever can be; what a target refuses is told and keeps nothing else from it."""
+    """Write whatever can be; what a target refuses is reported and keeps nothing else from it."""
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
     outputs = [(target, *_emitted(target, project, options)) for target in targets]

@@ -241,7 +241,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     return {run: place for run, place in places.items() if run not in refusals}
 
 
-# What it is held against ------------------------------------------------------------------------
+# What it is compared with ------------------------------------------------------------------------
 
 
 def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:

@@ -1,7 +1,7 @@
 """Requirements as they are and as they were: what has changed, and what tells both apart.
 
-Two sentences are held against each other only where a tick is the same and all that both read means
-the same in the bindings: a run of the one is then a run of the other.
+Two sentences are compared with each other only where a tick is the same and all that both read
+means the same in the bindings: a run of the one is then a run of the other.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def versions(new: Side, old: Side, seconds: float) -> Versions:
 
     Args:
         new: as they are.
-        old: as they were; an only one is held against an only one, whatever their ids are.
+        old: as they were; an only one is compared with an only one, whatever their ids are.
         seconds: of a processor, for each pair.
     """
     ids, earlier = new.ids, old.ids

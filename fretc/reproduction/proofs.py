@@ -194,7 +194,7 @@ _COMPARED = ("result", "artefacts")
 def _twice(records: Sequence[Proof]) -> Iterator[Recheck]:
     for (requirement, layer, claim, _), count in Counter(map(_key, records)).items():
         if count > 1:
-            yield differs(PROOFS, requirement, "it is told twice", claim=f"{layer}: {claim}")
+            yield differs(PROOFS, requirement, "it appears twice", claim=f"{layer}: {claim}")
 
 
 def _left_out(records: Sequence[Proof], proofs_now: Sequence[Proof]) -> Iterator[Recheck]:

@@ -137,7 +137,7 @@ def merged(proofs: Sequence[Proof], present: Sequence[Proof]) -> tuple[Proof, ..
 def _unheld(one: Proof) -> Proof:
     if one.result is Result.COUNTEREXAMPLE:
         return one
-    reason = "the file of AJPF's result is not there, to be held against what is made now"
+    reason = "the file of AJPF's result is not there, to be compared with what is made now"
     outcome = not_checked(f"it was {one.result}; {reason}")
     return proof(
         one.requirement, Layer.AJPF, one.claim, outcome, one.engine, one.assumptions, one.artefacts
@@ -316,7 +316,7 @@ def _changed(file: str, hashed: str) -> str | None:
     try:
         own = content(file)
     except (OSError, ValueError):
-        return f"the agent {file} cannot be read, to be held against the one that was checked"
+        return f"the agent {file} cannot be read, to be compared with the one that was checked"
     if hashlib.sha256(own).hexdigest() != hashed:
         return f"the agent {file} was changed since: run AJPF again"
     return None

@@ -1,1 +1,1 @@
-"""Texts of strangers read within bounds: TOML, YAML, encodings, cost, depth."""
+"""Untrusted texts read within bounds: TOML, YAML, encodings, cost, depth."""

@@ -64,7 +64,7 @@ class Alphabet(Protocol):
 
     @property
     def possible(self) -> Function:
-        """Which letters there can be, whoever sets them. What follows from these is certain."""
+        """Which letters there can be, for any setter. What follows from these is certain."""
 
     @property
     def certain(self) -> Function:
@@ -120,7 +120,7 @@ class UnsupportedError(Exception):
 
 
 Numbers = Iterator[int]
-"""Variables that nothing has yet, in their order: whoever needs one takes the next."""
+"""Variables that nothing has yet, in their order: the next one is free."""
 
 
 def numbers(start: int = 0) -> Numbers:

@@ -224,7 +224,7 @@ class Cells:
         return frozenset(found)
 
     def memory(self) -> Counter | None:
-        """What is remembered of earlier ticks: whoever chooses numbers of these keeps to it."""
+        """What is remembered of earlier ticks: the player who chooses their numbers keeps to it."""
         pairs = [each for each in self._pairs if each.now in self._of and each.then in self._of]
         agrees = self._agreement(pairs) if pairs else bdd.true()
         bits = self._kept.needed([agrees, *(each.is_so for each in self._lasted.values())])

@@ -24,7 +24,7 @@ class Atom:
     reads: frozenset[str]
     """Variables: of signals at one step, or of whether they are known there."""
     names: tuple[str, ...] = ()
-    """Those of the sentence: whoever chooses them chooses the variables."""
+    """Those of the sentence: the player who chooses them chooses the variables."""
 
     @property
     def formula(self) -> Term:

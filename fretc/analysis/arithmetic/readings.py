@@ -19,7 +19,7 @@ class Reading:
 
     expression: e.Expression
     names: tuple[str, ...]
-    """Those of the sentence: whoever chooses them chooses the signals."""
+    """Those of the sentence: the player who chooses them chooses the signals."""
     aggregate: Aggregate = Aggregate.LAST
     on_unknown: bool | None = None
     """What it is where its signals are unknown; None: unknown, too."""

@@ -1,4 +1,4 @@
-"""Runs that keep requirements, whoever chooses what: reachability, and what can last for ever.
+"""Runs that keep requirements, for any choices: reachability, and what can last for ever.
 
 Source: Emerson, Lei, Efficient model checking in fragments of the propositional mu-calculus, LICS
 1986 (runs that are fair).

@@ -1,7 +1,7 @@
 """What a verdict rests on beside its log, as fingerprints of canonical meaning.
 
 This is the one notion of change. Evidence records the basis of each of its results, a lock that of
-each review, and whoever asks later what has changed compares with the basis of now.
+each review, and a later comparison uses the basis of now.
 
 Fingerprints are of canonical meaning (`fretish.bindings.canonical`), and only what a requirement
 reads is part of its basis.

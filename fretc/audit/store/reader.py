@@ -1,4 +1,4 @@
-"""A store as it is read: part by part, each table held against the manifest.
+"""A store as it is read: part by part, each table compared with the manifest.
 
 Nothing in it is trusted: a table that does not fit the manifest, or that holds what no evidence
 does, is F516, never half a report.

@@ -152,7 +152,7 @@ def _waived(active: Sequence[Assessment]) -> str:
 
 
 def _unsigned(sections: Sequence[RequirementView]) -> str:
-    """A waiver lets a requirement pass, whoever has written it."""
+    """A waiver lets a requirement pass, no matter who has written it."""
     waived = [view for view in sections if view.waiver and view.mark.word == WAIVED]
     names = [view.name for view in waived if view.waiver and not view.waiver.signature.is_good]
     return f"Nobody is known to have signed the waiver of {phrases.some(names)}." if names else ""

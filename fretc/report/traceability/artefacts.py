@@ -79,7 +79,7 @@ def joint_monitors(
 ) -> frozenset[str]:
     """SHA-256 of each file with one monitor for several of the requirements, as it is made now.
 
-    It is made of all of them, and of those that the proofs about one text are of: whoever names
+    It is made of all of them, and of those that the proofs about one text are of: anyone who names
     some requirements gets a file of these.
 
     Args:

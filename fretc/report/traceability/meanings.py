@@ -284,7 +284,7 @@ def _declarations(bindings: Bindings) -> Declarations | None:
 def agree(id: str, texts: ReviewedTexts, prints: Mapping[Node, str]) -> bool:
     """Whether the texts of a review are those that its fingerprints were taken of.
 
-    A lock may be a stranger's. What its fingerprints do not vouch for is never shown as what was
+    A lock may be untrusted. What its fingerprints do not vouch for is never shown as what was
     accepted; the seal of a review, and so its signature, covers both.
     """
     own = dict(_fingerprints(id, texts))

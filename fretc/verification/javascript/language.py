@@ -61,7 +61,7 @@ def _windows(program: Program) -> dict[str, int]:
 
 
 def _ages(requirement: Requirement) -> tuple[str, ...]:
-    """The marks whose age counts: those that a deadline is told by."""
+    """The marks whose age counts: those that a deadline is reported by."""
     if requirement.horizon is None:
         return ()
     return ("open", "last") if requirement.renewed else ("open",)

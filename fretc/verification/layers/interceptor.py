@@ -37,7 +37,7 @@ def prove(
 
 
 def _contracts(file: NamedText, declared: Interception, limits: Limits) -> Iterator[Proof]:
-    """Of the module that flies: its core may be any, the rest is what fretc writes."""
+    """Of the deployed module: its core may be any, the rest is what fretc writes."""
     deviation = otherwise(file.text, declared)
     proofs: Stopped | tuple[Proof, ...]
     if deviation is not None:

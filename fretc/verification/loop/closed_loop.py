@@ -198,8 +198,8 @@ def assumptions(
         yield "the planner sends a command in every tick (`planner`, [assume])"
     braking = "`braking`" if any_time else f"{in_words(assumed.braking)} (`braking`, [assume])"
     yield (
-        f"`{assumed.stands}` is false while the wheels are told to move, and true once they have "
-        f"had zero for {braking}, or earlier"
+        f"`{assumed.stands}` is false while the wheels are commanded to move, and true once they "
+        f"have had zero for {braking}, or earlier"
     )
     for exclusion in problem.excluded:
         yield f"never at one tick: {exclusion_in_words(exclusion)}, for no numbers compare so"
