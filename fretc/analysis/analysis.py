@@ -12,9 +12,9 @@ from compiler.files.records import replace
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons, temporal_predicate
 from fretc.analysis import implications as of_runs
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.components import by_outputs, by_variables
 from fretc.analysis.controllers.circuit import Circuit
 from fretc.analysis.controllers.files import Form

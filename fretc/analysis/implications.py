@@ -11,7 +11,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Counter
 from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vacuity
 from fretc.analysis.games.cores import minimal
 from fretc.analysis.realizability_problem import RealizabilityProblem

@@ -11,13 +11,14 @@ from compiler.formalization.letters import comparisons
 from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, UnsupportedError, numbers
+from fretc.analysis.arena.alphabet import Alphabet, Tick
 from fretc.analysis.arena.budget import ENDLESS, Budget
-from fretc.analysis.arena.counters import Counter, counter
-from fretc.analysis.arena.memory import side_by_side
+from fretc.analysis.arena.counters import counter
+from fretc.analysis.arena.memory import Counter, side_by_side
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
 from fretc.analysis.components import about
 from fretc.analysis.games.game import Game, upheld
 from fretc.analysis.games.game_traces import Run

@@ -12,7 +12,7 @@ from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Counter
 from fretc.analysis.games.game import Game
 from fretc.analysis.games.game_traces import GameTrace
 from fretc.analysis.games.replay import broken, columns

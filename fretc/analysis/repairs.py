@@ -17,9 +17,9 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Counter
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.findings import Conflict, OpenQuestion, Repair
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretish import expressions as e

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 
 from compiler.files.records import replace as altered
 from compiler.formalization.formalized import FormalizedRequirement
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.controllers.circuit import Circuit, circuit
 from fretc.analysis.controllers.files import Form
 from fretc.analysis.controllers.machine import NoMachineError, machine

@@ -29,7 +29,7 @@ from fretc.audit.many_logs import (
     labelled,
 )
 from fretc.audit.plan import Plan, keys
-from fretc.audit.store.anywhere import StoreError
+from fretc.audit.store.errors import StoreError
 from fretc.audit.store.manifest import FILE, REUSE, SCHEMA, UNFINISHED, Manifest, Part
 from fretc.audit.store.parts import parts
 from fretc.audit.store.reader import Store, manifest, opened

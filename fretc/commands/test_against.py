@@ -54,9 +54,9 @@ def against(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from fretc.analysis.arena.alphabet import UnsupportedError
     from fretc.analysis.arena.budget import OutOfTimeError
     from fretc.analysis.arena.roles import roles
+    from fretc.analysis.arena.variables import UnsupportedError
     from fretc.terminal.progress import at_work
     from fretc.testing.conformance.conformance_run import ConformanceRun
     from fretc.testing.conformance.program import Program, ProgramError

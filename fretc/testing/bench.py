@@ -17,12 +17,13 @@ from compiler.formalization.predicates import Past as PastWords
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.formula import Formula, atoms
-from fretc.analysis.arena.alphabet import Alphabet, Numbers, UnsupportedError, numbers
+from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter, counter
-from fretc.analysis.arena.memory import Bit, Memory, Past, side_by_side
+from fretc.analysis.arena.counters import counter
+from fretc.analysis.arena.memory import Bit, Counter, Memory, Past, side_by_side
 from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.transition import Transition
+from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
 from fretc.analysis.games.runs import Runs
 from fretc.analysis.realizability_problem import alphabet_of
 from fretc.testing.search import Endings, Letter, Words

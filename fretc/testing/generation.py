@@ -11,7 +11,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.situations.mutants import Mutant, mutants
 from compiler.situations.situations import Situation, situations
 from compiler.targets.python import monitor as emitted
-from fretc.analysis.arena.alphabet import UnsupportedError
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.testing.bench import Ids
 from fretc.testing.cover import cover
 from fretc.testing.runs import Absence, Answer, Need, Run, Runs

@@ -15,7 +15,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.situations.situations import Situation
-from fretc.analysis.arena.alphabet import UnsupportedError
+from fretc.analysis.arena.variables import UnsupportedError
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.expressions import ticks_back

@@ -14,8 +14,8 @@ from compiler.logic.evaluation import evaluate
 from compiler.logic.formula import Formula
 from compiler.situations.mutants import Mutant, mutants
 from compiler.situations.situations import Situation, situations
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.games.cores import minimal
 from fretc.testing.bench import Bench, Ids, demands
 from fretc.testing.places import Places

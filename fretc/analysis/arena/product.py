@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Alphabet, Numbers, UnsupportedError
-from fretc.analysis.arena.counters import Counter, counter
-from fretc.analysis.arena.memory import Bit
+from fretc.analysis.arena.alphabet import Alphabet
+from fretc.analysis.arena.counters import counter
+from fretc.analysis.arena.memory import Bit, Counter
+from fretc.analysis.arena.variables import Numbers, UnsupportedError
 
 
 @dataclass(frozen=True, slots=True)

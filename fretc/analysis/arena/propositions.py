@@ -18,9 +18,10 @@ from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.orders import Exclusion, exclusions
-from fretc.analysis.arena.alphabet import Numbers, Tick, UnsupportedError
+from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
 from fretish.bindings.types import Kind

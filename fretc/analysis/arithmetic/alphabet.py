@@ -10,12 +10,12 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Term
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Numbers, Tick, UnsupportedError
+from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter
-from fretc.analysis.arena.memory import Memory
+from fretc.analysis.arena.memory import Counter, Memory
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.course import NumberCourse
 from fretc.analysis.arithmetic.durations import Duration, Held, held

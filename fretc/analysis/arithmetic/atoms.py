@@ -10,7 +10,8 @@ import z3
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Before, NoTermError, Term, Terms, read_by
-from fretc.analysis.arena.alphabet import Tick, UnsupportedError
+from fretc.analysis.arena.alphabet import Tick
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.arithmetic.durations import Lasting, parted
 from fretc.analysis.arithmetic.readings import Reading, readings
 from fretc.analysis.arithmetic.steps import AtomOfTick, Moment, Steps, linked, tick, unknown

@@ -19,11 +19,11 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Term, read_by
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import numbers
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Counter
 from fretc.analysis.arena.product import arena
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import numbers
 from fretc.analysis.arithmetic.alphabet import Cells
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.games.replay import ROUNDS, kept

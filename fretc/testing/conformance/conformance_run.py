@@ -11,9 +11,9 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.evaluation import evaluate
 from compiler.logic.formula import Formula
 from compiler.targets.python import monitor as emitted
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.components import about, by_variables
 from fretc.testing.conformance.driving import Driver, Start
 from fretc.testing.conformance.findings import SCHEMA, Conformance, Failure, Outcome, Situated

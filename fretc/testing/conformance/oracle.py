@@ -9,8 +9,8 @@ from typing import Any
 from compiler.explanation.reasons import why
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python.monitor import text
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.testing.exports.tables import Cell
 from fretc.testing.words import Word, letters
 from fretish.bindings.declarations import Role

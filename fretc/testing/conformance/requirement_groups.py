@@ -19,13 +19,14 @@ from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
 from compiler.situations.situations import Situation, situations
-from fretc.analysis.arena.alphabet import Tick, UnsupportedError, numbers
+from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter, counter
-from fretc.analysis.arena.memory import Bit, Memory, Past
+from fretc.analysis.arena.counters import counter
+from fretc.analysis.arena.memory import Bit, Counter, Memory, Past
 from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.transition import State, Transition
+from fretc.analysis.arena.variables import UnsupportedError, numbers
 from fretc.analysis.games.game import upheld
 from fretc.analysis.realizability_problem import alphabet_of
 from fretc.testing.bench import demands
