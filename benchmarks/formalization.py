@@ -12,7 +12,7 @@ from pathlib import Path
 from compiler.formalization.formalize import formalize
 from compiler.formalization.record import formulas
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 DATA = Path(__file__).parent.parent / "tests/data"
 LIMIT = 2.0
@@ -32,9 +32,9 @@ def mixed(count: int) -> list[str]:
 
 def work(sentence: str) -> None:
     """From text to the printed formulas."""
-    rule, _ = formalize(Requirement("b", Source("b.fret", sentence).span()), None)
-    assert rule is not None, sentence
-    formulas(rule)
+    requirement, _ = formalize(RequirementEntry("b", Source("b.fret", sentence).span()), None)
+    assert requirement is not None, sentence
+    formulas(requirement)
 
 
 def work_all(sentences: Sequence[str]) -> None:

@@ -83,8 +83,8 @@ def package(folder: Path, kind: str, count: int, time: str) -> Path:
         TARGETS["ros1-package"],
         Options(declarations=project.declarations, attribution=project.attribution),
     )
-    assert [target.refuse(rule) for rule in project.rules] == [None] * count
-    files = target.emit(project.rules, options)
+    assert [target.refuse(requirement) for requirement in project.formalized] == [None] * count
+    files = target.emit(project.formalized, options)
     assert deliver({folder / file.path: file.text for file in files}) is None
     return folder / files[0].path.parts[0]
 

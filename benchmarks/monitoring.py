@@ -26,7 +26,7 @@ from compiler.logic import formula as f
 from compiler.targets.python.monitor import text
 from fretc.logs.signals.traces import bits
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from monitors.kernel import Column, Monitor, evaluate
 from monitors.kernel.columns import once, reuse_memory
 from monitors.kernel.verdicts import PENDING, VIOLATED, Verdict
@@ -38,8 +38,8 @@ STEPS = 200_000
 # What is monitored ----------------------------------------------------------------------------
 
 
-def rule(sentence: str, id: str = "R1") -> FormalizedRequirement:
-    made, said = formalize(Requirement(id, Source("b.fret", sentence).span()), None)
+def requirement(sentence: str, id: str = "R1") -> FormalizedRequirement:
+    made, said = formalize(RequirementEntry(id, Source("b.fret", sentence).span()), None)
     assert made is not None, said
     return made
 
@@ -48,7 +48,7 @@ def always(trigger: f.Formula, demanded: f.Formula, id: str = "R1") -> Formalize
     """`H(trigger -> demanded)` as a monitor: FRETish has no `since` of its own."""
     breach = f.and_(trigger, f.not_(demanded))
     watch = MonitorSpec(trigger, breach, f.FALSE, f.FALSE, f.FALSE, f.FALSE, None, 0, renewed=False)
-    return replace(rule("whenever a sw shall immediately satisfy b", id), watch=watch)
+    return replace(requirement("whenever a sw shall immediately satisfy b", id), watch=watch)
 
 
 A, B, C = f.Atom("a"), f.Atom("b"), f.Atom("c")
@@ -56,8 +56,8 @@ A, B, C = f.Atom("a"), f.Atom("b"), f.Atom("c")
 
 def workload_rules() -> Mapping[str, FormalizedRequirement]:
     return {
-        "W1": rule("whenever a sw shall eventually satisfy b"),
-        "W2": rule("whenever a sw shall within 10 ticks satisfy b"),
+        "W1": requirement("whenever a sw shall eventually satisfy b"),
+        "W2": requirement("whenever a sw shall within 10 ticks satisfy b"),
         "W3": always(A, f.once(B, f.Interval(0, 100))),
         "W4": always(f.and_(A, f.previous(f.not_(A))), f.since(f.not_(C), B)),
     }
@@ -81,12 +81,12 @@ def mixed(count: int, names: int = 12) -> list[FormalizedRequirement]:
     for i in range(count):
         places = [(7 * i + 3 * k) % names for k in range(3)]
         bound = (10, 100, 1000)[i % 3] - i // len(forms) % 9
-        found.append(rule(forms[i % len(forms)].format(*places, n=bound), f"R{i + 1}"))
+        found.append(requirement(forms[i % len(forms)].format(*places, n=bound), f"R{i + 1}"))
     return found
 
 
-def monitor(*rules: FormalizedRequirement) -> Monitor:
-    return load("monitor.py", text(*rules))
+def monitor(*requirements: FormalizedRequirement) -> Monitor:
+    return load("monitor.py", text(*requirements))
 
 
 # Measuring ------------------------------------------------------------------------------------
@@ -224,7 +224,7 @@ def bounds(ticks: int) -> None:
     columns, every = from_numpy(arrays), (1 << ticks) - 1
     rows = []
     for bound in (10, 100, 1_000, 100_000):
-        machine = monitor(rule(f"whenever a sw shall within {bound} ticks satisfy b"))
+        machine = monitor(requirement(f"whenever a sw shall within {bound} ticks satisfy b"))
         past = monitor(always(A, f.once(B, f.Interval(0, bound))))
         times = []
         for made in (machine, past):
@@ -387,7 +387,7 @@ _CALLS = ("run of two rows", "two steps", "first unknown")
 
 def _of_window(sentence: str, bound: int) -> tuple[float, ...]:
     """Microseconds of `_CALLS`, after each proposition was true at every other tick for long."""
-    machine: Any = monitor(rule(sentence))
+    machine: Any = monitor(requirement(sentence))
     pair = [(value,) * len(machine.PROPOSITIONS) for value in (False, True)]
     named = [dict.fromkeys(machine.PROPOSITIONS.values(), value) for value in (False, True, None)]
     machine.run(pair * bound)
@@ -424,7 +424,7 @@ def wide() -> None:
     rows = []
     for count in (10, 100, 2_000):
         names = [f"p{i}" for i in range(count)]
-        machine: Any = monitor(rule(f"sw shall always satisfy {' | '.join(names)}"))
+        machine: Any = monitor(requirement(f"sw shall always satisfy {' | '.join(names)}"))
         in_order = machine.rows_of(names[::-1])
         named, row = dict.fromkeys(machine.PROPOSITIONS.values(), True), (True,) * count
         calls = (
@@ -466,9 +466,9 @@ def many() -> None:
     """W5, and one file of up to 1 000 requirements: microseconds a tick and requirement."""
     rows = []
     for count, names in ((1, 12), (20, 12), (100, 12), (1_000, 12), (1_000, 1_000)):
-        rules = mixed(count, names)
+        requirements = mixed(count, names)
         start = time.process_time()
-        made = text(*rules)
+        made = text(*requirements)
         written = time.process_time() - start
         machine: Any = load("m", made)
         ticks = max(50, 50_000 // count)
@@ -477,7 +477,7 @@ def many() -> None:
         table_rows = [tuple(row) for row in values.tolist()]
         spent = seconds(lambda m=machine, x=table_rows: m.run(x), 3) / ticks / count * 1e6
         named = [dict(zip(machine.PROPOSITIONS, row, strict=True)) for row in table_rows]
-        parts = [load("m", text(*rules[i : i + 20])) for i in range(0, count, 20)]
+        parts = [load("m", text(*requirements[i : i + 20])) for i in range(0, count, 20)]
         rows.append(
             (
                 f"{count:,}",
@@ -513,7 +513,7 @@ def _steps(machines: Sequence[Any], rows: Sequence[Mapping[str, bool]]) -> float
 
 def memory() -> None:
     """What a monitor holds after 10^3 and after 10^7 ticks."""
-    machine = monitor(rule("in c mode, upon a sw shall within 1000 ticks satisfy b"))
+    machine = monitor(requirement("in c mode, upon a sw shall within 1000 ticks satisfy b"))
     generator = np.random.default_rng(2)
     piece = [tuple(row) for row in (generator.random((10_000, 3)) < 0.5).tolist()]
     machine.advance(piece[:1_000])
@@ -532,7 +532,7 @@ def compiling() -> None:
     rows = []
     for bound in (10, 10**6):
         sentence = f"in m mode, upon p sw shall within {bound} ticks satisfy q"
-        spent = seconds(lambda s=sentence: [text(rule(s)) for _ in range(20)]) / 20
+        spent = seconds(lambda s=sentence: [text(requirement(s)) for _ in range(20)]) / 20
         rows.append((f"{bound:,}", f"{spent * 1e3:.2f}"))
     table("Compiling one requirement", ("bound", "ms"), rows)
 

@@ -99,10 +99,17 @@ def evidence(known: Project, runs: int, share: float) -> dict[str, Any]:
 def head(known: Project) -> dict[str, Any]:
     """The same without its results."""
     known_bases = bases(known)
-    bound = {rule.id: known_bases[id(rule.requirement)][BOUND] for rule in known.rules}
+    bound = {
+        requirement.id: known_bases[id(requirement.entry)][BOUND]
+        for requirement in known.formalized
+    }
     texts = [
-        {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
-        for rule in known.rules
+        {
+            "id": requirement.id,
+            "sentence": wording(requirement.entry),
+            "sha256": requirement.fingerprint,
+        }
+        for requirement in known.formalized
     ]
     bindings = {"file": "b", "sha256": of_all(bound)}
     return {"schema": SCHEMA, "fretc": __version__, "bindings": bindings, "requirements": texts}
@@ -115,12 +122,12 @@ def results(known: Project, runs: int, share: float) -> Iterator[list[dict[str, 
         yield [
             _result(
                 choose,
-                rule,
-                known_bases[id(rule.requirement)],
+                requirement,
+                known_bases[id(requirement.entry)],
                 run,
                 violated=choose.random() < share,
             )
-            for rule in known.rules
+            for requirement in known.formalized
         ]
 
 
@@ -129,7 +136,7 @@ def _moment(tick: int) -> dict[str, Any]:
 
 
 def _result(
-    choose: random.Random, rule: Any, basis: Mapping[str, str], run: int, *, violated: bool
+    choose: random.Random, requirement: Any, basis: Mapping[str, str], run: int, *, violated: bool
 ) -> dict[str, Any]:
     triggers = sorted(choose.sample(range(TICKS - 200), 40))
     broken = triggers[:8] if violated else []
@@ -137,7 +144,7 @@ def _result(
     clear = choose.uniform(0.06, 2)
     return {
         "run": f"runs/{run:04}.mcap",
-        "requirement": rule.id,
+        "requirement": requirement.id,
         "verdict": "violated" if violated else "satisfied",
         "finite": not violated,
         "reason": "broken 8 times" if violated else "held, 40 triggers",
@@ -148,7 +155,7 @@ def _result(
         "states": [],
         "answers": [],
         "triggers": [_moment(tick) for tick in triggers],
-        "violations": [_violation(choose, tick, rule.ticks or 0) for tick in broken],
+        "violations": [_violation(choose, tick, requirement.ticks or 0) for tick in broken],
         "unknown": [],
         "open": [],
         "latencies_s": late,

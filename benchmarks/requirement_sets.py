@@ -11,28 +11,28 @@ from compiler.logic import printing
 from fretc.analysis.analysis import analyze
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import Roles
-from tests.requirement_sets import ROLES, drawn, roles, rules, staged
+from tests.requirement_sets import ROLES, drawn, requirements, roles, staged
 
 LIMIT = 60
 """Seconds after which a set counts as not answered."""
 
 
 def ours(sentences: Sequence[str], named: Roles = ROLES) -> tuple[bool, float]:
-    """The verdict and the seconds, from rules on."""
-    rules(*sentences)
+    """The verdict and the seconds, from requirements on."""
+    requirements(*sentences)
     start = time.process_time()
     setting = staged(*sentences, roles=named)
     budget = Budget(LIMIT)
-    there = setting.close((rule.id for rule in setting.rules), budget)
+    there = setting.close((requirement.id for requirement in setting.requirements), budget)
     game = there.game(there.arena.counters, budget)
     return game.solution().is_realizable, time.process_time() - start
 
 
 def theirs(sentences: Sequence[str]) -> tuple[bool, float]:
     """The same by Spot: formula, parity automaton, game."""
-    made = rules(*sentences)
+    made = requirements(*sentences)
     start = time.process_time()
-    formula = " & ".join(f"({printing.future(rule.ft_infinite)})" for rule in made)
+    formula = " & ".join(f"({printing.future(requirement.ft_infinite)})" for requirement in made)
     return bool(spot.solve_game(spot.ltl_to_game(formula, ["x", "y"]))), time.process_time() - start
 
 
@@ -78,7 +78,7 @@ def hard() -> None:
         ]
         show(f"a conflict after {bound} ticks", sentences, ROLES)
         start = time.process_time()
-        found = analyze(rules(*sentences), ROLES)
+        found = analyze(requirements(*sentences), ROLES)
         seconds = time.process_time() - start
         print(
             f"  all of it, {len(found.repairs)} repairs: {seconds:.2f} s, open: {len(found.open)}"
@@ -109,7 +109,7 @@ def pump() -> None:
     ]
     sentences = [*exclusive, *alarms, *commands]
     inputs = [*(f"alarm_{i}" for i in range(12)), *(f"command_{i}" for i in range(7))]
-    made, named = rules(*sentences), roles(inputs, modes)
+    made, named = requirements(*sentences), roles(inputs, modes)
     start = time.process_time()
     found = analyze(made, named)
     seconds = time.process_time() - start

@@ -27,7 +27,7 @@ from fretish.diagnostics.source import Source
 from monitors.interceptor import Options
 from monitors.kernel.verdicts import VIOLATED
 from monitors.loading import executed, load
-from tests.requirement_sets import rule
+from tests.requirement_sets import requirement
 
 Row = Mapping[str, Any]
 """Values of the inputs at a tick; then of the outputs, too."""
@@ -250,15 +250,18 @@ SAFETY = Subject(
 # Suites -----------------------------------------------------------------------------------------
 
 
-def rules(subject: Subject) -> list[FormalizedRequirement]:
+def requirements(subject: Subject) -> list[FormalizedRequirement]:
     """Its requirements."""
-    return [rule(f"Q{number}", text) for number, text in enumerate(subject.requirements, 1)]
+    return [requirement(f"Q{number}", text) for number, text in enumerate(subject.requirements, 1)]
 
 
 def ours(subject: Subject) -> list[Run]:
     """The suite of `fretc test`."""
     batches = [
-        batch for each in rules(subject) for job in jobs([each], (), 60) for batch in job.ask(())
+        batch
+        for each in requirements(subject)
+        for job in jobs([each], (), 60)
+        for batch in job.ask(())
     ]
     return [
         [{**subject.usual, **_numbers(row.values)} for row in test.rows for _ in range(row.count)]
@@ -270,7 +273,7 @@ def ours(subject: Subject) -> list[Run]:
 def by_flips(subject: Subject) -> list[Run]:
     """For each atom a shortest accepted word that one flip of it makes a rejected one."""
     runs = []
-    for each in rules(subject):
+    for each in requirements(subject):
         for atom in each.watched:
             bench = Bench(each, (), (), Budget(60))
             found = bench.doubt_of(bdd.true(), atom, ())
@@ -320,7 +323,7 @@ def _numbers(values: Row) -> Row:
 @cache
 def _monitors(subject_name: str) -> list[Any]:
     subject = next(each for each in SUBJECTS if each.name == subject_name)
-    return [load(each.id, monitors.text(each)) for each in rules(subject)]
+    return [load(each.id, monitors.text(each)) for each in requirements(subject)]
 
 
 def is_found(subject: Subject, texts: tuple[str, ...], runs: Sequence[Run]) -> bool:

@@ -17,7 +17,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from benchmarks.monitoring import rule
+from benchmarks.monitoring import requirement
 from benchmarks.timing import least
 from compiler.targets.python.monitor import text
 
@@ -111,7 +111,7 @@ def main() -> None:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         monitor, path = Path(folder, "monitor.py"), Path(folder, "table")
-        monitor.write_text(text(rule(SENTENCE)), encoding="utf-8")
+        monitor.write_text(text(requirement(SENTENCE)), encoding="utf-8")
         print(f"{'':18} {'rows':>9} {'engine':>8} {'CPU':>8} {'x csv.reader':>13} {'memory':>9}")
         for name, lines in TABLES.items():
             for rows in options.rows:

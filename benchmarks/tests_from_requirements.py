@@ -26,7 +26,7 @@ from fretc.testing.assembly import jobs
 from fretc.testing.suite import Fate
 from fretc.testing.words import Word, is_killed, judged
 from fretish.diagnostics.diagnostic import Diagnostic
-from tests.requirement_sets import rule
+from tests.requirement_sets import requirement
 
 MISSION = Path(__file__).parents[1] / "requirements" / "mission"
 MORE = (
@@ -44,29 +44,34 @@ def sentences() -> list[FormalizedRequirement]:
     """Fifteen of a mission, with bounds of up to 200 ticks, and six more."""
     paths = requirement_files(str(MISSION))
     assert not isinstance(paths, Diagnostic)
-    return [*load(paths, None).rules, *(rule(f"X{i}", text) for i, text in enumerate(MORE, 1))]
+    return [
+        *load(paths, None).requirements,
+        *(requirement(f"X{i}", text) for i, text in enumerate(MORE, 1)),
+    ]
 
 
-def as_word(rule: FormalizedRequirement, rows: Sequence[Valuation]) -> Word:
-    """Valuations of the atoms of a rule, tick by tick."""
+def as_word(requirement: FormalizedRequirement, rows: Sequence[Valuation]) -> Word:
+    """Valuations of the atoms of a requirement, tick by tick."""
     columns = {
         name: sum(row[place] << tick for tick, row in enumerate(rows))
-        for place, name in enumerate(rule.watched)
+        for place, name in enumerate(requirement.watched)
     }
     return Word((), columns, len(rows))
 
 
-def by_flips(rule: FormalizedRequirement) -> Iterator[Word]:
+def by_flips(requirement: FormalizedRequirement) -> Iterator[Word]:
     """For each atom a shortest accepted word that one flip of it makes a rejected one."""
-    template = reference.template(rule.sentence, rule.ticks or 0)
-    letters = meanings(rule.sentence, rule.watched)
+    template = reference.template(requirement.sentence, requirement.ticks or 0)
+    letters = meanings(requirement.sentence, requirement.watched)
     start = (reference.initial(template), reference.initial(template), False)
-    for place in range(len(rule.watched)):
+    for place in range(len(requirement.watched)):
         seen, waiting = {start}, deque([(start, ())])
         found: tuple[Valuation, ...] | None = None
         while waiting and found is None:
             (own, other, is_flipped), word = waiting.popleft()
-            for row, flips in product(product((False, True), repeat=len(rule.watched)), (0, 1)):
+            for row, flips in product(
+                product((False, True), repeat=len(requirement.watched)), (0, 1)
+            ):
                 if is_flipped and flips:
                     continue
                 changed = tuple(v ^ (i == place) for i, v in enumerate(row)) if flips else row
@@ -84,23 +89,28 @@ def by_flips(rule: FormalizedRequirement) -> Iterator[Word]:
                     seen.add(key)
                     waiting.append((key, (*word, row)))
         if found is not None:
-            yield as_word(rule, found)
+            yield as_word(requirement, found)
 
 
-def at_random(rule: FormalizedRequirement, lengths: Sequence[int], seed: int) -> Iterator[Word]:
+def at_random(
+    requirement: FormalizedRequirement, lengths: Sequence[int], seed: int
+) -> Iterator[Word]:
     """Words of the same lengths."""
-    drawn = random.Random(f"{rule.id} {seed}")
+    drawn = random.Random(f"{requirement.id} {seed}")
     for ticks in lengths:
         yield as_word(
-            rule, [tuple(drawn.choices((False, True), k=len(rule.watched))) for _ in range(ticks)]
+            requirement,
+            [tuple(drawn.choices((False, True), k=len(requirement.watched))) for _ in range(ticks)],
         )
 
 
 def killed(
-    rule: FormalizedRequirement, wrong: Sequence[FormalizedRequirement], words: Sequence[Word]
+    requirement: FormalizedRequirement,
+    wrong: Sequence[FormalizedRequirement],
+    words: Sequence[Word],
 ) -> int:
     """How many of the mutants some word kills."""
-    own = [judged(rule, word) for word in words]
+    own = [judged(requirement, word) for word in words]
     return sum(
         any(
             is_killed(one, judged(mutant, word), word.ticks)
@@ -112,12 +122,12 @@ def killed(
 
 def main() -> None:
     """One line for each suite, and the time of ours."""
-    rules = sentences()
-    together, alone = rules[: -len(MORE)], rules[-len(MORE) :]
+    requirements = sentences()
+    together, alone = requirements[: -len(MORE)], requirements[-len(MORE) :]
     asked = [*jobs(together, (), 60), *(job for each in alone for job in jobs([each], (), 60))]
     start = time.process_time()
     batches = [batch for job in asked for batch in job.ask(())]
-    print(f"{len(rules)} sentences: {time.process_time() - start:.1f} s of a processor")
+    print(f"{len(requirements)} sentences: {time.process_time() - start:.1f} s of a processor")
     obligations = [one for batch in batches for one in batch.obligations]
     print(
         f"{len(obligations)} obligations:", dict(Counter(str(each.outcome) for each in obligations))
@@ -125,9 +135,9 @@ def main() -> None:
     fates = Counter(str(one.outcome) for batch in batches for one in batch.mutants)
     print(f"{fates.total()} mutants:", dict(fates))
     suites: dict[str, list[tuple[int, int, int]]] = {}
-    for subject, batch in zip(rules, batches, strict=True):
+    for subject, batch in zip(requirements, batches, strict=True):
         same = {one.key for one in batch.mutants if one.outcome is Fate.EQUIVALENT}
-        wrong = [each.rule for each in mutants(subject) if each.key not in same]
+        wrong = [each.requirement for each in mutants(subject) if each.key not in same]
         lengths = [test.ticks for test in batch.tests]
         ours = sum(one.outcome is Fate.KILLED for one in batch.mutants)
         suites.setdefault("ours", []).append((len(lengths), sum(lengths), ours))

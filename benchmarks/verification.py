@@ -47,7 +47,7 @@ def main() -> None:
             "all layers": fretc(*verify),
         }
     project = load([str(REQUIREMENT)], None)
-    text = dafny.text(project.rules[0], project.declarations)
+    text = dafny.text(project.formalized[0], project.declarations)
     peer = cpu(lambda: print(f"Dafny: {answer(text)[0].detail}"))
     for what, seconds in rows.items():
         print(f"{what:12} {seconds:6.2f} s of CPU, {seconds / peer:5.2f} of Dafny's")

@@ -66,8 +66,8 @@ def audited(plan: Plan, log: str) -> float:
 
 def owed(folder: Path) -> float:
     """Nanoseconds of one call, of the first requirement."""
-    rule = read_project(folder).rules[0]
-    module = executed(monitor.text(rule), "owed")
+    requirement = read_project(folder).requirements[0]
+    module = executed(monitor.text(requirement), "owed")
     running = module.MONITOR()
     running.advance([dict.fromkeys(running.PROPOSITIONS, True)])
     start = time.process_time()

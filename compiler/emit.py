@@ -55,11 +55,11 @@ class _Targets(Mapping[str, "Target"]):
 TARGETS: Mapping[str, Target] = _Targets()
 
 
-def renamed(rule: FormalizedRequirement) -> dict[str, dict[str, str]]:
+def renamed(requirement: FormalizedRequirement) -> dict[str, dict[str, str]]:
     """Kind of file → name of the user → what it is called there, where that is another name."""
     found: dict[str, dict[str, str]] = {}
     for kind, target in TARGETS.items():
-        names = target.names(rule).items()
+        names = target.names(requirement).items()
         own = {name: new for name, new in names if name != new and not is_compound(name)}
         found |= {kind: own} if own else {}
     return found

@@ -165,7 +165,7 @@ and by 700, as Python begins, a tenth of a start went into looking through it ag
 def _prepare() -> None:
     """Closed or narrow streams and a termination must cost neither the exit status nor files.
 
-    Nor is anything executed that happens to lie in the present folder.
+    Nor is anything executed that happens to lie in the current folder.
     """
     shield()
     gc.set_threshold(_GARBAGE)
@@ -194,7 +194,7 @@ def _run() -> None:
 
 
 def _no_output(error: OSError) -> None:
-    """Whoever read standard output has gone, or it cannot be written."""
+    """The reader of standard output has gone, or it cannot be written."""
     if not isinstance(error, BrokenPipeError):
         say([not_written("standard output", error.strerror or str(error))])
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

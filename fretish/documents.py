@@ -26,7 +26,7 @@ _FENCE = re.compile(r"^\ufeff?\+\+\+[ \t]*(?:\r?\n|\Z)", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
-class Requirement:
+class RequirementEntry:
     """One requirement as it was written; its sentence is not parsed yet."""
 
     id: str
@@ -78,13 +78,13 @@ def named(id: str, title: str) -> str:
     return f"{title} ({id})" if title else id
 
 
-def requirements(source: Source) -> tuple[tuple[Requirement, ...], tuple[Diagnostic, ...]]:
+def requirements(source: Source) -> tuple[tuple[RequirementEntry, ...], tuple[Diagnostic, ...]]:
     """Read every requirement of a `.fret` text, and what is wrong with their headers.
 
     One whose header cannot be read is kept by its id, so that nobody loses sight of it; by the name
     of its file where its id cannot be read either.
     """
-    found: list[Requirement] = []
+    found: list[RequirementEntry] = []
     diagnostics: list[Diagnostic] = []
     pairs = _pairs(source)
     if isinstance(pairs, Diagnostic):
@@ -96,7 +96,7 @@ def requirements(source: Source) -> tuple[tuple[Requirement, ...], tuple[Diagnos
     return tuple(found), tuple(diagnostics)
 
 
-def unread(path: str, why: Diagnostic) -> Requirement:
+def unread(path: str, why: Diagnostic) -> RequirementEntry:
     """What a file stands for that cannot be read: a requirement, called by the file."""
     source = Source(path, "")
     return _unread(source, source.span(), why)
@@ -126,10 +126,10 @@ def _stripped(span: Span) -> Span:
 
 def _requirement(
     source: Source, header: Span | None, wording: Span, *, alone: bool
-) -> tuple[Requirement, tuple[Diagnostic, ...]]:
+) -> tuple[RequirementEntry, tuple[Diagnostic, ...]]:
     stem = _stem(source)
     if header is None:
-        return Requirement(stem, wording), ()
+        return RequirementEntry(stem, wording), ()
     tables = read(header, Code.BAD_HEADER, "the header")
     if isinstance(tables, Diagnostic):
         return _unread(source, wording, tables, header.text, alone=alone), (tables,)
@@ -138,9 +138,9 @@ def _requirement(
     if mistakes:
         id = data.get("id")
         name = str(id) if _fits("id", id) else _called(source, wording, alone=alone)
-        return Requirement(name, wording, header=tables, mistakes=mistakes), mistakes
+        return RequirementEntry(name, wording, header=tables, mistakes=mistakes), mistakes
     return (
-        Requirement(
+        RequirementEntry(
             id=data.get("id", stem),
             wording=wording,
             title=data.get("title", ""),
@@ -171,11 +171,11 @@ def _called(source: Source, wording: Span, *, alone: bool) -> str:
 
 def _unread(
     source: Source, wording: Span, why: Diagnostic, header: str = "", *, alone: bool = True
-) -> Requirement:
+) -> RequirementEntry:
     """A requirement whose header is no TOML; a line that looks like its id still names it."""
     match = _ID_LINE.search(header)
     id = match["id"] if match else _called(source, wording, alone=alone)
-    return Requirement(id, wording, mistakes=(why,))
+    return RequirementEntry(id, wording, mistakes=(why,))
 
 
 def _mistakes(tables: Tables, *, alone: bool) -> Iterator[Diagnostic]:

@@ -71,7 +71,7 @@ class StopHeard:
 
 @dataclass(frozen=True, slots=True)
 class CommandHeard:
-    """A message of the planner, or of whoever drives."""
+    """A message of the planner, or of another driver."""
 
     command: Velocity
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.monitoring import always, rule
+from benchmarks.monitoring import always, requirement
 from benchmarks.peers import WORKLOADS
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
@@ -31,14 +31,16 @@ class Demand:
     """The propositions that are its `a`, `b` and `c`."""
     bound: int = 0
 
-    def rule(self) -> FormalizedRequirement:
+    def requirement(self) -> FormalizedRequirement:
         """As fretc takes it."""
         a, b, c = (self.names.get(each, "") for each in "abc")
         match self.kind:
             case "W1":
-                return rule(f"whenever {a} sw shall eventually satisfy {b}", self.id)
+                return requirement(f"whenever {a} sw shall eventually satisfy {b}", self.id)
             case "W2":
-                return rule(f"whenever {a} sw shall within {self.bound} ticks satisfy {b}", self.id)
+                return requirement(
+                    f"whenever {a} sw shall within {self.bound} ticks satisfy {b}", self.id
+                )
             case "W3":
                 recent = f.once(f.Atom(b), f.Interval(0, self.bound))
                 return always(f.Atom(a), recent, self.id)
@@ -63,7 +65,7 @@ class Task:
 
 
 def _propositions(demands: Sequence[Demand]) -> list[str]:
-    return list(dict.fromkeys(name for each in demands for name in each.rule().watched))
+    return list(dict.fromkeys(name for each in demands for name in each.requirement().watched))
 
 
 def single(kind: str, bound: int | None = None) -> Task:

@@ -106,7 +106,7 @@ uint64_t monitor_run(const uint8_t *rows, size_t ticks)
 
 
 def _emitted(task: Task) -> Mapping[str, str]:
-    files = C.emit([each.rule() for each in task.demands], Options(one_file=True))
+    files = C.emit([each.requirement() for each in task.demands], Options(one_file=True))
     header, source = (
         next(file.text for file in files if str(file.path).endswith(e)) for e in (".h", ".c")
     )
@@ -131,7 +131,7 @@ def _members(header: str, name: str, kind: str) -> list[str]:
 
 
 def _rust(task: Task, folder: Path) -> Program:
-    files = RUST.emit([each.rule() for each in task.demands], Options(one_file=True))
+    files = RUST.emit([each.requirement() for each in task.demands], Options(one_file=True))
     library = next(file.text for file in files if str(file.path).endswith("src/lib.rs"))
     names = re.findall(r"^    pub (\w+):", _struct(library, "Inputs"), re.M)
     outcomes = re.findall(r"^    pub (\w+):", _struct(library, "Outcomes"), re.M)

@@ -68,7 +68,7 @@ def checked(
 
 @with_recursion_limit
 def agent_evidence(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     files: Mapping[str, str],
     percepts: Sequence[str],
     limit: int = STATES,
@@ -76,7 +76,7 @@ def agent_evidence(
     """Evidence for the texts of a bundle.
 
     Args:
-        rule: the requirement, which gives the lines its id and nothing else.
+        requirement: the requirement, which gives the lines its id and nothing else.
         files: texts by the names `SIF.gwen`, `SIF_mutant.gwen` and `SIF.psl`.
         percepts: those that the environment of the bundle draws.
         limit: how many states are explored.
@@ -87,9 +87,9 @@ def agent_evidence(
     evidence = _checked(sif, properties, percepts, limit, mutant)
     if isinstance(evidence, Diagnostic):
         reason = f"{evidence.code.number} {evidence.message}"
-        claim = f"the agent of {rule.id} has its properties"
-        return (proof(rule.id, Layer.AGENT, claim, not_checked(reason), "fretc"),)
-    return tuple(records.replace(line, requirement=rule.id) for line in evidence)
+        claim = f"the agent of {requirement.id} has its properties"
+        return (proof(requirement.id, Layer.AGENT, claim, not_checked(reason), "fretc"),)
+    return tuple(records.replace(line, requirement=requirement.id) for line in evidence)
 
 
 def _checked(

@@ -265,7 +265,7 @@ class _Reader:
             words.append(self._word(AGENT, "an agent", "letters, digits and `_`"))
         return ".".join(words)
 
-    def _word(self, pattern: re.Pattern[str], kind: str, rule: str) -> str:
+    def _word(self, pattern: re.Pattern[str], kind: str, allowed: str) -> str:
         token = self.next
         if token.kind == "word" and pattern.fullmatch(token.text) and token.text not in KEY_WORDS:
             self.tokens.popleft()
@@ -274,12 +274,12 @@ class _Reader:
         raise misread(
             f"{subject} no name of {kind}",
             token.span,
-            f"AJPF repairs it or crashes: use {rule}, and no key word of AJPF",
+            f"AJPF repairs it or crashes: use {allowed}, and no key word of AJPF",
         )
 
     def _literal(self) -> str:
-        rule = "a small letter, then letters, digits and `_`"
-        functor = self._word(FUNCTOR, "a belief or an action", rule)
+        allowed = "a small letter, then letters, digits and `_`"
+        functor = self._word(FUNCTOR, "a belief or an action", allowed)
         return f"{functor}({self._arguments(')')})" if self.take("(") else functor
 
     def _arguments(self, closing: str) -> str:

@@ -24,18 +24,18 @@ _ByFirst = Mapping[str, Sequence[Exclusion]]
 
 
 @with_recursion_limit
-def constant_parts(rule: FormalizedRequirement) -> tuple[tuple[e.Expression, bool], ...]:
+def constant_parts(requirement: FormalizedRequirement) -> tuple[tuple[e.Expression, bool], ...]:
     """Each part that has one truth value whatever is measured, and which; none within another.
 
     The condition of a scope is looked at together with its mode.
     """
     impossible: dict[str, list[Exclusion]] = {}
-    for each in excluded(rule):
+    for each in excluded(requirement):
         impossible.setdefault(each[0][0], []).append(each)
-    if not impossible or temporal_predicate(rule.sentence):
+    if not impossible or temporal_predicate(requirement.sentence):
         return ()
-    parts = tuple(_constant(tuple(conditions(rule.sentence)), impossible))
-    scope, condition = rule.sentence.scope, rule.sentence.condition
+    parts = tuple(_constant(tuple(conditions(requirement.sentence)), impossible))
+    scope, condition = requirement.sentence.scope, requirement.sentence.condition
     if parts or not scope or not condition or scope.kind is not ScopeKind.IN:
         return parts
     return tuple(_constant([e.both(scope.mode, condition.expression)], impossible))

@@ -102,19 +102,19 @@ class Diagram:
     """What the triggers in the picture ask for."""
 
 
-def diagram(rule: FormalizedRequirement) -> Diagram:
+def diagram(requirement: FormalizedRequirement) -> Diagram:
     """The picture of a formalized sentence, whatever its bound."""
-    drawn = template(rule.sentence, rule.ticks or 0)
+    drawn = template(requirement.sentence, requirement.ticks or 0)
     trace = _trace(drawn)
     found = windows(drawn, trace.m, trace.p, trace.s)
     ticks = len(trace.m)
     ends = s.SHAPES[drawn.timing].extent.needs_end and s.ends_with_run(drawn.scope)
     return Diagram(
-        title=f"What {rule.id} means",
+        title=f"What {requirement.id} means",
         ticks=ticks,
         ends=ends,
-        period=rule.clock.period if rule.clock else None,
-        lanes=tuple(_lanes(rule, drawn, trace, found, ticks if ends else ticks - 1)),
+        period=requirement.clock.period if requirement.clock else None,
+        lanes=tuple(_lanes(requirement, drawn, trace, found, ticks if ends else ticks - 1)),
         trace=trace,
         windows=found,
     )
@@ -182,14 +182,14 @@ def _mode(scope: ScopeKind | None, t: int, left: int, right: int) -> bool:
 
 
 def _lanes(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     drawn: Template,
     trace: Trace,
     found: Sequence[ObligationWindow],
     end: int,
 ) -> Iterator[Lane]:
     """From above: where, when, until when, and what."""
-    sentence = rule.written
+    sentence = requirement.written
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     if scope is not None:
         yield Lane(Kind.MODE, expression(scope.mode), "true", _true(trace.m))
@@ -204,19 +204,19 @@ def _lanes(
     yield Lane(Kind.TRIGGER, "", "triggers" if condition else "begins", starts)
     if stop is not None:
         yield Lane(Kind.STOP, expression(stop), "true", _true(trace.s))
-    yield from _needs(rule, drawn, found, end)
+    yield from _needs(requirement, drawn, found, end)
 
 
 def _needs(
-    rule: FormalizedRequirement, drawn: Template, found: Sequence[ObligationWindow], end: int
+    requirement: FormalizedRequirement, drawn: Template, found: Sequence[ObligationWindow], end: int
 ) -> Iterator[Lane]:
-    q = expression(rule.written.response)
+    q = expression(requirement.written.response)
     several = len(found) > 1
     for window in found:
         whose = window.trigger if several else None
-        if s.duration(rule.sentence.timing) is not None:
+        if s.duration(requirement.sentence.timing) is not None:
             reach = Stretch(window.trigger, window.trigger + drawn.ticks)
-            counted = in_ticks(drawn.ticks, rule.clock)
+            counted = in_ticks(drawn.ticks, requirement.clock)
             yield Lane(Kind.BOUND, "", f"{counted} from tick {window.trigger}", (reach,))
         for number, part in enumerate(window.parts):
             where = Stretch(part.first, part.last, goes_on=_goes_on(drawn, part.last, end))

@@ -68,19 +68,19 @@ class Examples:
     """Whether numbers make the traces was not decided."""
 
 
-def examples(rule: FormalizedRequirement, wanted: int = WANTED) -> Examples:
-    """The traces of a rule: at most so many of either kind, the shortest ones first."""
-    predicate = temporal_predicate(rule.sentence)
+def examples(requirement: FormalizedRequirement, wanted: int = WANTED) -> Examples:
+    """The traces of a requirement: at most so many of either kind, the shortest ones first."""
+    predicate = temporal_predicate(requirement.sentence)
     if predicate is not None:
         return Examples((), (), (), f"`{predicate}` speaks of other ticks, the automaton of one")
-    atoms = atoms_of(rule.sentence)
+    atoms = atoms_of(requirement.sentence)
     if len(atoms) > MOST_ATOMS:
         return Examples(atoms, (), (), f"{len(atoms)} propositions are more than {MOST_ATOMS}")
-    every = meanings(rule.sentence, atoms)
-    possible = only_possible(tuple(every), atoms, excluded(rule))
-    chosen = _chosen(rule, atoms, {valuation: every[valuation] for valuation in possible})
+    every = meanings(requirement.sentence, atoms)
+    possible = only_possible(tuple(every), atoms, excluded(requirement))
+    chosen = _chosen(requirement, atoms, {valuation: every[valuation] for valuation in possible})
     letters = chosen.letters
-    counted = counters.template(rule.sentence, rule.ticks or 0)
+    counted = counters.template(requirement.sentence, requirement.ticks or 0)
     try:
         automaton = explore(counted, letters, MOST_STATES)
     except TooManyStatesError:
@@ -107,14 +107,14 @@ class _Chosen:
 
 
 def _chosen(
-    rule: FormalizedRequirement, atoms: Sequence[str], every: Mapping[Valuation, Letter]
+    requirement: FormalizedRequirement, atoms: Sequence[str], every: Mapping[Valuation, Letter]
 ) -> _Chosen:
     """For each letter the one with the fewest true atoms that real numbers make."""
-    if not comparisons(rule):
+    if not comparisons(requirement):
         return _Chosen(_quiet_first(every))
     from compiler.formalization.numbers.reals import Impossible, Possible, Reals
 
-    reals, excluded = Reals(rule), dict[Letter, Exclusion]()
+    reals, excluded = Reals(requirement), dict[Letter, Exclusion]()
     possible, undecided = dict[Valuation, Letter](), dict[Valuation, Letter]()
     for valuation, letter in _by_noise(every):
         if letter in possible.values():

@@ -52,7 +52,7 @@ class Shown:
 class Explanation:
     """Everything about a requirement, in words."""
 
-    rule: FormalizedRequirement
+    requirement: FormalizedRequirement
     picture: Diagram
     propositions: tuple[str, ...]
     """In the order of the values of a row."""
@@ -61,19 +61,19 @@ class Explanation:
 
 
 @with_recursion_limit
-def explanation(rule: FormalizedRequirement) -> Explanation:
+def explanation(requirement: FormalizedRequirement) -> Explanation:
     """Explain a formalized requirement; every trace in it has been checked."""
-    found = examples(rule)
+    found = examples(requirement)
     every = (*found.satisfied, *found.violated)
-    letters = meanings(rule.sentence, found.atoms) if every else {}
+    letters = meanings(requirement.sentence, found.atoms) if every else {}
     for example in every:
-        _check(rule, found.atoms, example)
-    shown = tuple(_shown(rule, letters, example) for example in every)
-    notes = tuple(_notes(rule, found))
-    return Explanation(rule, diagram(rule), found.atoms, shown, notes)
+        _check(requirement, found.atoms, example)
+    shown = tuple(_shown(requirement, letters, example) for example in every)
+    notes = tuple(_notes(requirement, found))
+    return Explanation(requirement, diagram(requirement), found.atoms, shown, notes)
 
 
-def _notes(rule: FormalizedRequirement, found: Examples) -> Iterator[str]:
+def _notes(requirement: FormalizedRequirement, found: Examples) -> Iterator[str]:
     if found.note:
         yield f"no traces are shown: {found.note}"
         return
@@ -94,10 +94,10 @@ def _notes(rule: FormalizedRequirement, found: Examples) -> Iterator[str]:
         yield "no other way to satisfy the sentence was found"
     if violated == 1:
         yield "no other way to violate the sentence was found"
-    if rule.sentence.probability is not None:
+    if requirement.sentence.probability is not None:
         yield "a run counts as one that satisfies or violates; the probability is over many runs"
-    scope = rule.sentence.scope
-    needs_end = s.SHAPES[type(rule.sentence.timing)].extent.needs_end
+    scope = requirement.sentence.scope
+    needs_end = s.SHAPES[type(requirement.sentence.timing)].extent.needs_end
     if needs_end and s.ends_with_run(scope.kind if scope else None):
         yield "on a run without end nothing is required"
 
@@ -108,7 +108,7 @@ _CHECKED = 30
 """Ticks up to which the slow definition of the operators checks a trace, too."""
 
 
-def _check(rule: FormalizedRequirement, atoms: Sequence[str], example: Example) -> None:
+def _check(requirement: FormalizedRequirement, atoms: Sequence[str], example: Example) -> None:
     """The formulas say of the trace what the automaton does.
 
     Spot has the word of the endless trace, where the bound is small enough for it.
@@ -117,18 +117,21 @@ def _check(rule: FormalizedRequirement, atoms: Sequence[str], example: Example) 
     loop = [dict(zip(atoms, values, strict=True)) for values in example.loop]
     trace = [*prefix, *loop]
     if len(trace) <= _CHECKED:
-        assert holds(rule.ft_finite, trace) is example.satisfied
-        assert holds(rule.pt, trace, len(trace) - 1) is example.satisfied
-    if s.duration(rule.sentence.timing) is None and longest_bound(rule.ft_infinite) == 0:
+        assert holds(requirement.ft_finite, trace) is example.satisfied
+        assert holds(requirement.pt, trace, len(trace) - 1) is example.satisfied
+    if (
+        s.duration(requirement.sentence.timing) is None
+        and longest_bound(requirement.ft_infinite) == 0
+    ):
         from compiler.logic.spot import holds_on
 
         if loop or example.decided is not None:
-            on_all_of_it = holds_on(rule.ft_infinite, prefix, loop or prefix[-1:])
+            on_all_of_it = holds_on(requirement.ft_infinite, prefix, loop or prefix[-1:])
             assert on_all_of_it is example.satisfied
 
 
 def _shown(
-    rule: FormalizedRequirement, letters: Mapping[Valuation, Any], example: Example
+    requirement: FormalizedRequirement, letters: Mapping[Valuation, Any], example: Example
 ) -> Shown:
     prefix = [letters[values] for values in example.prefix]
     loop = [letters[values] for values in example.loop]
@@ -137,7 +140,7 @@ def _shown(
         example.satisfied,
         tuple(_rows(example)),
         example.decided,
-        why(rule, prefix, loop, ends=ends, satisfied=example.satisfied),
+        why(requirement, prefix, loop, ends=ends, satisfied=example.satisfied),
     )
 
 
@@ -171,8 +174,8 @@ _UNDECIDED = "decided at the end only"
 
 def text(explained: Explanation) -> str:
     """What the terminal shows."""
-    rule = explained.rule
-    blocks = [visible_lines(ltl.text(rule)), drawing.text(explained.picture, "    ")]
+    requirement = explained.requirement
+    blocks = [visible_lines(ltl.text(requirement)), drawing.text(explained.picture, "    ")]
     blocks[1] = f"  one run, drawn\n{blocks[1]}\n"
     blocks.extend(_table(explained, shown) for shown in explained.traces)
     if explained.notes:
@@ -186,7 +189,7 @@ def visible_lines(block: str) -> str:
 
 
 def _table(explained: Explanation, shown: Shown) -> str:
-    wordings = explained.rule.wordings
+    wordings = explained.requirement.wordings
     names = [
         drawing.shortened(visible(wordings.get(name, name)), _NAME)
         for name in explained.propositions
@@ -214,8 +217,8 @@ def _label(row: Row) -> str:
 
 def as_record(explained: Explanation) -> dict[str, Any]:
     """Plain values, in a fixed order of keys."""
-    rule, picture = explained.rule, explained.picture
-    everything = record.record(rule)
+    requirement, picture = explained.requirement, explained.picture
+    everything = record.record(requirement)
     kept = ("id", "title", "sentence", "meaning", "ft_infinite", "ft_finite", "pt", "tick_ns")
     return {
         "schema": SCHEMA,

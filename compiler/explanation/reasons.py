@@ -27,7 +27,7 @@ _MOST = 2
 
 
 def why(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     prefix: Sequence[Letter],
     loop: Sequence[Letter] = (),
     *,
@@ -37,35 +37,35 @@ def why(
     """One line.
 
     Args:
-        rule: the sentence.
+        requirement: the sentence.
         prefix: mode, condition, response and stop condition at each tick, at least one.
         loop: what comes again and again after it.
         ends: whether the run ends with the prefix. If it does not, and nothing loops, then what
             follows does not change the verdict: the last tick is taken to last.
         satisfied: the verdict, where it is known; it is a mistake of ours if the reason differs.
     """
-    counted = template(rule.sentence, rule.ticks or 0)
+    counted = template(requirement.sentence, requirement.ticks or 0)
     more = () if ends else tuple(loop or prefix[-1:]) * (counted.ticks + 3)
     m, p, q, stop = (tuple(column) for column in zip(*prefix, *more, strict=True))
     shown = len(prefix) + len(loop)
     every = [w for w in windows(counted, m, p, stop) if w.trigger < shown]
     found = [w for w in every if w.trigger < len(prefix)] or every
-    teller = _Teller(rule, counted, q, len(prefix) - 1, endless=bool(loop))
+    teller = _Teller(requirement, counted, q, len(prefix) - 1, endless=bool(loop))
     broken = [window for window in every if not window.kept(q)]
     assert satisfied is None or satisfied is not bool(broken), (counted, prefix, loop)
     if broken:
         return f"{teller.sentence(broken[0], kept=False)}{teller.bound()}"
     if not found:
-        return _nothing(rule, counted, m)
+        return _nothing(requirement, counted, m)
     sentences = [teller.sentence(window, kept=True) for window in found[:_MOST]]
     left = len(found) - _MOST
     rest = [f"and so on, {left} more time{'s' * (left > 1)}"] if left > 0 else []
     return f"{'; '.join([*sentences, *rest])}{teller.bound()}"
 
 
-def _nothing(rule: FormalizedRequirement, counted: Template, m: Column) -> str:
+def _nothing(requirement: FormalizedRequirement, counted: Template, m: Column) -> str:
     """No demand begins."""
-    scope, condition = rule.written.scope, rule.written.condition
+    scope, condition = requirement.written.scope, requirement.written.condition
     if not intervals(counted.scope, m):
         return "the sentence is enforced at none of these ticks: nothing is demanded"
     assert condition is not None, "without a condition each interval has a trigger"
@@ -77,7 +77,7 @@ def _nothing(rule: FormalizedRequirement, counted: Template, m: Column) -> str:
 class _Teller:
     """What is known of one trace."""
 
-    rule: FormalizedRequirement
+    requirement: FormalizedRequirement
     counted: Template
     q: Column
     """Of the ticks that are shown, and of those that follow."""
@@ -88,7 +88,7 @@ class _Teller:
 
     def sentence(self, window: ObligationWindow, *, kept: bool) -> str:
         """`triggered at tick 1, ...`."""
-        begun = "triggered" if self.rule.sentence.condition else "begins"
+        begun = "triggered" if self.requirement.sentence.condition else "begins"
         start = f"{begun} at tick {window.trigger}"
         if not window.parts:
             return f"{start}, {self._spared(window)}"
@@ -107,15 +107,15 @@ class _Teller:
         """What the duration counts."""
         if not self._extent.counts:
             return ""
-        return f"; the bound is {in_ticks(self.counted.ticks, self.rule.clock)}"
+        return f"; the bound is {in_ticks(self.counted.ticks, self.requirement.clock)}"
 
     @property
     def _name(self) -> str:
-        return f"`{expression(self.rule.written.response)}`"
+        return f"`{expression(self.requirement.written.response)}`"
 
     @property
     def _stop(self) -> str:
-        stop = s.stop(self.rule.written.timing)
+        stop = s.stop(self.requirement.written.timing)
         assert stop is not None
         return f"`{expression(stop)}`"
 
@@ -125,7 +125,7 @@ class _Teller:
 
     @property
     def _stops(self) -> bool:
-        return s.stop(self.rule.sentence.timing) is not None
+        return s.stop(self.requirement.sentence.timing) is not None
 
     def _hit(self, first: int, *, value: bool) -> int | None:
         return next((t for t in range(first, len(self.q)) if self.q[t] is value), None)

@@ -18,34 +18,39 @@ from fretish.clock import End
 _MOST_STATES = 500
 
 
-def is_violable(rule: FormalizedRequirement) -> bool:
+def is_violable(requirement: FormalizedRequirement) -> bool:
     """Whether a run can get the verdict `violated`; where that is not found out, it can."""
-    watch = rule.watch
-    if rule.clock is not None and rule.clock.end is End.VIOLATED and watch.owed != FALSE:
+    watch = requirement.watch
+    if (
+        requirement.clock is not None
+        and requirement.clock.end is End.VIOLATED
+        and watch.owed != FALSE
+    ):
         return True
     if watch.breach == FALSE and watch.doom == FALSE:
         return False
-    return _is_lost_somewhere(rule)
+    return _is_lost_somewhere(requirement)
 
 
-def limit(rule: FormalizedRequirement) -> str:
+def limit(requirement: FormalizedRequirement) -> str:
     """Why no run can violate it, as one sentence; empty where one can."""
-    if is_violable(rule):
+    if is_violable(requirement):
         return ""
-    if rule.watch.owed == FALSE:
-        return f"No run can violate {rule.id}: whatever happens keeps it."
+    if requirement.watch.owed == FALSE:
+        return f"No run can violate {requirement.id}: whatever happens keeps it."
     return (
-        f"No run can violate {rule.id}: it sets no bound, so an answer that has not come may "
+        f"No run can violate {requirement.id}: it sets no bound, so an answer that has not come "
+        "may "
         "always come later."
     )
 
 
-def _is_lost_somewhere(rule: FormalizedRequirement) -> bool:
+def _is_lost_somewhere(requirement: FormalizedRequirement) -> bool:
     """Whether the automaton of the sentence, over the letters that can occur, has a lost state."""
-    sentence = rule.sentence
+    sentence = requirement.sentence
     if temporal_predicate(sentence):
         return True
-    short = template(sentence, min(rule.ticks or 0, SHORT))
+    short = template(sentence, min(requirement.ticks or 0, SHORT))
     try:
         automaton = explore(short, occurring(sentence), _MOST_STATES)
     except TooManyStatesError:

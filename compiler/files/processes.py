@@ -16,7 +16,7 @@ _STOPS = (signal.SIGINT, signal.SIGTERM)
 def shield() -> None:
     """Python processes that begin from now on import nothing from where they happen to run.
 
-    Python would put the present folder first for `-c` and `-m`, which is how children are started:
+    Python would put the current folder first for `-c` and `-m`, which is how children are started:
     a `multiprocessing.py` beside a supplier's logs would be executed. Options such as `-P` are
     handed on by multiprocessing, the environment by every program in between.
     """

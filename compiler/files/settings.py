@@ -2,7 +2,7 @@
 
 The nearest file upwards counts alone; in one folder it is `fretc.toml`. The search goes up to the
 root of the repository (`.git`) and no further: a folder above it may belong to somebody else.
-Outside of a repository it ends at the present folder.
+Outside of a repository it ends at the current folder.
 """
 
 from __future__ import annotations

@@ -72,7 +72,7 @@ def _environment() -> Environment:
 class _Compiled(FileSystemBytecodeCache):
     """Compiled templates, where Python keeps the compiled modules of a folder, and when it does.
 
-    To compile those of the report takes 0.2 s. Whoever can write there can write our own text.
+    To compile those of the report takes 0.2 s. Anyone who can write there can write our own text.
     """
 
     def __init__(self) -> None:

@@ -122,7 +122,7 @@ def write(files: Mapping[Path, str | bytes | Iterable[str]]) -> Diagnostic | Non
     Nothing half-written stays behind: when one cannot be written, none is put in place. A file
     keeps its permissions, and what is no regular file is never replaced. A link is followed where
     it stays in its folder. Until it is renamed, nobody else can read what is written. A text that
-    begins with `#!` may also be run by whoever may read it.
+    begins with `#!` may also be run by those who may read it.
     """
     waiting: list[tuple[Path, Path]] = []
     path = Path()
@@ -178,7 +178,7 @@ def _usual() -> int:
 def destination(path: Path) -> Path:
     """Where an output goes, once links are followed.
 
-    What lies in the present folder may have come from somebody else, links too. A relative path is
+    What lies in the current folder may have come from somebody else, links too. A relative path is
     one below that folder (or the one above that it names by `..`), an absolute one is the user's.
 
     Raises:

@@ -37,7 +37,7 @@ from fretish.syntax import ConditionKind, ScopeKind
 SHORT = 6
 """Ticks that a longer duration is shortened to."""
 _EDGE = 2
-"""Ticks at either end of a duration that are told apart."""
+"""Ticks at either end of a duration that are distinguished."""
 _MOST_STATES = 500
 
 

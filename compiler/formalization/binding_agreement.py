@@ -27,18 +27,18 @@ _MIRRORED: Mapping[str, e.ComparisonOperator] = {**e.MIRRORED, "=": "=", "!=": "
 
 
 def check_binding_consistency(
-    rule: FormalizedRequirement, declarations: Declarations
+    requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
     """F524 for each comparison of the sentence that is bound to another one."""
-    stated = rule.stated
+    stated = requirement.stated
     terms = _Terms.of_signals(declarations)
-    for name in rule.watched:
+    for name in requirement.watched:
         proposition = declarations.propositions.get(name)
         if proposition is None or name not in stated:
             continue
         agreed = _agreed(stated[name], proposition.expression, declarations, terms)
         if agreed is None:
-            yield _drifted(rule, name, stated[name], proposition)
+            yield _drifted(requirement, name, stated[name], proposition)
         else:
             terms = agreed
 
@@ -158,16 +158,16 @@ def _number(digits: str) -> Fraction | None:
 
 
 def _drifted(
-    rule: FormalizedRequirement, name: str, stated: e.Expression, bound: Proposition
+    requirement: FormalizedRequirement, name: str, stated: e.Expression, bound: Proposition
 ) -> Diagnostic:
     place: Span | None = getattr(stated, "span", None)
-    inside = place is not None and place.source is rule.requirement.wording.source
+    inside = place is not None and place.source is requirement.entry.wording.source
     assert bound.span is not None
     where = f"{bound.span.source.name}:{bound.span.line}:{bound.span.column}"
     return Diagnostic(
         Code.NUMBER_DRIFT,
-        f"`{name}` of {rule.id} is bound to another comparison: {bound.span.text} ({where})",
-        place if inside else rule.requirement.wording,
+        f"`{name}` of {requirement.id} is bound to another comparison: {bound.span.text} ({where})",
+        place if inside else requirement.entry.wording,
         help="state the operator and the number of the sentence in the binding, the number with "
         "its unit, or give the proposition a name without a number",
     )
@@ -176,29 +176,31 @@ def _drifted(
 # What has no binding ------------------------------------------
 
 
-def unbound(rule: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
+def unbound(requirement: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
     """F304 for every proposition of the sentence that the bindings do not have.
 
     Where they have one that cannot be used, it is the mistakes in its tables. No other proposition
     is proposed in its place: the nearest name may be another safety claim.
     """
-    for name in rule.watched:
-        mistakes = _mistakes(name, rule.stated.get(name), declarations)
+    for name in requirement.watched:
+        mistakes = _mistakes(name, requirement.stated.get(name), declarations)
         yield from mistakes
         if mistakes or name in declarations.propositions:
             continue
         yield Diagnostic(
             Code.UNBOUND,
-            f"`{name}` of {rule.id} has no binding in {declarations.source.name}",
-            place(rule, name),
-            help=way_out(rule, name, declarations),
+            f"`{name}` of {requirement.id} has no binding in {declarations.source.name}",
+            place(requirement, name),
+            help=way_out(requirement, name, declarations),
         )
 
 
-def broken_tables(rule: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
+def broken_tables(
+    requirement: FormalizedRequirement, declarations: Declarations
+) -> Iterator[Diagnostic]:
     """The mistakes in the tables of propositions and signals that a requirement reads."""
-    for name in rule.watched:
-        yield from _mistakes(name, rule.stated.get(name), declarations)
+    for name in requirement.watched:
+        yield from _mistakes(name, requirement.stated.get(name), declarations)
 
 
 def _mistakes(
@@ -211,13 +213,13 @@ def _mistakes(
 
 
 def missing_signals(
-    rule: FormalizedRequirement, name: str, signals: Mapping[str, Signal]
+    requirement: FormalizedRequirement, name: str, signals: Mapping[str, Signal]
 ) -> tuple[str, ...]:
     """The signals that a comparison of the sentence lacks, without which it must be bound itself.
 
     Beside `=` and `!=` a second name is taken for a word of the first.
     """
-    stated = rule.stated.get(name)
+    stated = requirement.stated.get(name)
     if not isinstance(stated, e.Comparison) or atom(stated) != name:
         return ()
     calls = {part.name for part in e.parts(stated) if isinstance(part, e.Call)}
@@ -229,13 +231,13 @@ def missing_signals(
     return tuple(dict.fromkeys(each.id for each in e.names(read) if each.id not in signals))
 
 
-def way_out(rule: FormalizedRequirement, name: str, declarations: Declarations) -> str:
+def way_out(requirement: FormalizedRequirement, name: str, declarations: Declarations) -> str:
     """What to write in the bindings so that they give `name` a meaning.
 
     Signals for a comparison; a comparison for the word of a signal; else a proposition.
     """
     file = declarations.source.name
-    missing = missing_signals(rule, name, declarations.signals)
+    missing = missing_signals(requirement, name, declarations.signals)
     if missing:
         tables = " and ".join(f"`[signal.{as_key(each)}]`" for each in missing)
         return f"add {tables} with its `path` to {file}; `fretc bind --from LOG` drafts signals"
@@ -249,9 +251,9 @@ def way_out(rule: FormalizedRequirement, name: str, declarations: Declarations) 
     )
 
 
-def place(rule: FormalizedRequirement, name: str) -> Span:
+def place(requirement: FormalizedRequirement, name: str) -> Span:
     """Where the sentence names it first: the name, or the comparison or the call that it is of."""
-    compared: Span | None = getattr(rule.stated.get(name), "span", None)
-    if compared is not None and compared.source is rule.requirement.wording.source:
+    compared: Span | None = getattr(requirement.stated.get(name), "span", None)
+    if compared is not None and compared.source is requirement.entry.wording.source:
         return compared
-    return rule.mentions.get(name, rule.requirement.wording)
+    return requirement.mentions.get(name, requirement.entry.wording)

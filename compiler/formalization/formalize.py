@@ -1,4 +1,4 @@
-"""The order of everything: from a requirement as written to a rule, by way of its tree."""
+"""The order of everything: from a requirement as written to a requirement, by way of its tree."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from fretish.checking import check_response_kinds, conditions, temporal_predicat
 from fretish.clock import Clock, assumed_ticks, in_ticks
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Span
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.expressions import Comparison, Expression, Truth, with_comparisons
 from fretish.parser import mistakes, parse
 from fretish.reading.limits import with_budget
@@ -37,12 +37,12 @@ from fretish.syntax import Sentence, with_expressions
 
 @with_recursion_limit
 def formalize(
-    requirement: Requirement, declarations: Declarations | None
+    requirement: RequirementEntry, declarations: Declarations | None
 ) -> tuple[FormalizedRequirement | None, tuple[Diagnostic, ...]]:
     """Parse, check and formalize one requirement.
 
     Returns:
-        The rule, or None where there is an error; and all that there is to say.
+        The requirement, or None where there is an error; and all that there is to say.
     """
     wording = requirement.wording
     reading = partial(_formalized, requirement, declarations)
@@ -51,37 +51,37 @@ def formalize(
 
 
 def _formalized(
-    requirement: Requirement, declarations: Declarations | None
+    entry: RequirementEntry, declarations: Declarations | None
 ) -> tuple[FormalizedRequirement | None, tuple[Diagnostic, ...]]:
-    if requirement.is_free_text:
-        return None, (_free_text(requirement),)
-    written = parse(requirement.wording)
+    if entry.is_free_text:
+        return None, (_free_text(entry),)
+    written = parse(entry.wording)
     if isinstance(written, Diagnostic):
-        return None, mistakes(requirement.wording)
+        return None, mistakes(entry.wording)
     declarations = declarations.about(written.component) if declarations else None
     definitions = used(written, declarations.definitions) if declarations else {}
-    wrong = _misuses(written, definitions, declarations, requirement.wording)
+    wrong = _misuses(written, definitions, declarations, entry.wording)
     if wrong:
         return None, wrong
-    sentence = _judged(written, definitions, declarations, requirement.wording)
+    sentence = _judged(written, definitions, declarations, entry.wording)
     if isinstance(sentence, Diagnostic):
         return None, (sentence,)
     ticks = in_ticks(sentence, _clock(declarations))
     if isinstance(ticks, Diagnostic):
         return None, (ticks,)
     try:
-        rule = _rule(requirement, written, sentence, ticks, declarations, definitions)
+        requirement = _rule(entry, written, sentence, ticks, declarations, definitions)
     except (
         RecursionError
     ):  # some versions of Python bound it below what `with_recursion_limit` asks for
         return None, (too_deep(sentence),)
     wrong = (
-        *name_collisions([rule]),
-        *(check_binding_consistency(rule, declarations) if declarations else ()),
+        *name_collisions([requirement]),
+        *(check_binding_consistency(requirement, declarations) if declarations else ()),
     )
     if wrong:
         return None, wrong
-    bound = resolved(rule, declarations) if declarations else rule
+    bound = resolved(requirement, declarations) if declarations else requirement
     if isinstance(bound, Diagnostic):
         return None, (bound,)
     return bound, tuple(_remarks(sentence, declarations))
@@ -111,7 +111,7 @@ def _judged(
 
 
 @with_recursion_limit
-def unreadable_sentence(requirement: Requirement) -> tuple[Diagnostic, ...]:
+def unreadable_sentence(requirement: RequirementEntry) -> tuple[Diagnostic, ...]:
     """The mistakes of the sentence of a requirement whose header has some, too.
 
     None where the header does not end, or the file cannot be read: nothing says what the sentence
@@ -134,23 +134,23 @@ _WITHOUT_SENTENCE = {
 }
 
 
-def name_collisions(rules: Sequence[FormalizedRequirement]) -> Iterator[Diagnostic]:
+def name_collisions(requirements: Sequence[FormalizedRequirement]) -> Iterator[Diagnostic]:
     """F116: formulas spell `a.b` as `a_DOT_b`, and another name is spelt so already."""
     spelt: dict[str, str] = {}
-    for rule in rules:
-        for name in rule.variables:
+    for requirement in requirements:
+        for name in requirement.variables:
             first = spelt.setdefault(identifier(name), name)
             if first != name:
                 yield Diagnostic(
                     Code.NAME_CLASH,
                     f"`{first}` and `{name}` would be one name in formulas: `{identifier(name)}`",
-                    place(rule, name),
+                    place(requirement, name),
                     help="rename one of them",
                 )
 
 
 def _rule(
-    requirement: Requirement,
+    requirement: RequirementEntry,
     written: Sentence,
     sentence: Sentence,
     ticks: int | None,
@@ -163,7 +163,7 @@ def _rule(
     finite = future(ahead)
     odds = sentence.probability
     return FormalizedRequirement(
-        requirement=requirement,
+        entry=requirement,
         written=written,
         sentence=sentence,
         ticks=ticks,
@@ -216,7 +216,7 @@ def _with_bound(variable: Variable, bound: Variable) -> Variable:
     return replace(variable, modality=modality, action=action, role=role)
 
 
-def _free_text(requirement: Requirement) -> Diagnostic:
+def _free_text(requirement: RequirementEntry) -> Diagnostic:
     return Diagnostic(
         Code.FREE_TEXT,
         f"{requirement.id} is free text: it is kept, and not formalized",
@@ -249,13 +249,13 @@ def _without_signals(sentence: Sentence, declarations: Declarations | None) -> S
     return with_expressions(sentence, partial(with_comparisons, rewrite=answered))
 
 
-def duplicate_ids(requirements: Sequence[Requirement]) -> Mapping[int, Diagnostic]:
+def duplicate_ids(requirements: Sequence[RequirementEntry]) -> Mapping[int, Diagnostic]:
     """F201 for every id that comes again; capitals, `-`, `_` and `.` do not tell files apart.
 
     Returns:
         By the `id()` of each requirement whose id is not its own, the first one's too.
     """
-    first: dict[str, Requirement] = {}
+    first: dict[str, RequirementEntry] = {}
     found: dict[int, Diagnostic] = {}
     for requirement in requirements:
         earlier = first.setdefault(re.sub(r"[-.]", "_", requirement.id.lower()), requirement)

@@ -18,7 +18,7 @@ from fretish.bindings.definitions import Definitions, expanded
 from fretish.checking import LOOK_BACK, conditions
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source, Span
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.expressions import Name, names
 from fretish.parser import parse
 from fretish.printer import canonical, expression
@@ -31,7 +31,7 @@ from fretish.syntax import Sentence
 class FormalizedRequirement:
     """A requirement, formalized: one meaning in three formulas, and as signals to watch."""
 
-    requirement: Requirement
+    entry: RequirementEntry
     written: Sentence
     """As it was written, with units, and with names that stand for something else."""
     sentence: Sentence
@@ -60,7 +60,7 @@ class FormalizedRequirement:
     @property
     def id(self) -> str:
         """The requirement's id."""
-        return self.requirement.id
+        return self.entry.id
 
     @cached_property
     def propositions(self) -> tuple[str, ...]:
@@ -130,7 +130,7 @@ class FormalizedRequirement:
         By the names that formulas give them; those that are written so already are left out.
         """
         whole = expanded(self.written, self.definitions)
-        assert isinstance(whole, Sentence), "the rule has been made of it"
+        assert isinstance(whole, Sentence), "the requirement has been made of it"
         found: dict[str, str] = {}
         waiting = [*zip(conditions(self.sentence), conditions(whole), strict=True)]
         while waiting:
@@ -174,12 +174,12 @@ def _place(name: Name) -> int:
     return name.span.start if name.span else 0
 
 
-def plain(rule: FormalizedRequirement) -> FormalizedRequirement:
-    """The rule of the same sentence without its probability, under the same id."""
-    if rule.sentence.probability is None:
-        return rule
-    sentence = replace(rule.sentence, probability=None)
-    written = replace(rule.written, probability=None)
-    source = Source(rule.requirement.wording.source.name, printed(written))
-    requirement = replace(rule.requirement, wording=source.span())
-    return replace(rule, requirement=requirement, written=written, sentence=sentence, pctl=None)
+def plain(requirement: FormalizedRequirement) -> FormalizedRequirement:
+    """The requirement of the same sentence without its probability, under the same id."""
+    if requirement.sentence.probability is None:
+        return requirement
+    sentence = replace(requirement.sentence, probability=None)
+    written = replace(requirement.written, probability=None)
+    source = Source(requirement.entry.wording.source.name, printed(written))
+    entry = replace(requirement.entry, wording=source.span())
+    return replace(requirement, entry=entry, written=written, sentence=sentence, pctl=None)

@@ -128,12 +128,12 @@ def _formula(expression: e.Expression) -> f.Formula:
 # Valuations that cannot occur ------------------------------------------------------------------
 
 
-def excluded(rule: FormalizedRequirement) -> tuple[Exclusion, ...]:
-    """The comparisons of a rule that cannot have these values together, whatever is measured."""
-    signals = rule.declarations.signals if rule.declarations else {}
+def excluded(requirement: FormalizedRequirement) -> tuple[Exclusion, ...]:
+    """The comparisons of a requirement that exclude each other, whatever is measured."""
+    signals = requirement.declarations.signals if requirement.declarations else {}
     scales = {name: signal.scale for name, signal in signals.items()}
     words = {name: signal.values for name, signal in signals.items() if signal.values}
-    return exclusions(comparisons(rule), scales, words)
+    return exclusions(comparisons(requirement), scales, words)
 
 
 def exclusion_in_words(exclusion: Exclusion) -> str:
@@ -141,18 +141,21 @@ def exclusion_in_words(exclusion: Exclusion) -> str:
     return " and ".join(f"{'' if value else 'not '}`{name}`" for name, value in exclusion)
 
 
-def comparisons(rule: FormalizedRequirement) -> Mapping[str, e.Comparison]:
+def comparisons(requirement: FormalizedRequirement) -> Mapping[str, e.Comparison]:
     """The atoms that compare numbers of one moment, by their names.
 
     A proposition that is declared for a comparison may be more than that: true where a sample of
     the tick makes it true, or where nothing is known.
     """
-    written = dict(candidates(rule.sentence))
+    written = dict(candidates(requirement.sentence))
     return {
         name: part
-        for name in atoms_of(rule.sentence)
+        for name in atoms_of(requirement.sentence)
         if isinstance(part := written.get(name), e.Comparison)
-        and (rule.declarations is None or _is_of_one_moment(name, part, rule.declarations))
+        and (
+            requirement.declarations is None
+            or _is_of_one_moment(name, part, requirement.declarations)
+        )
     }
 
 

@@ -10,36 +10,36 @@ from compiler.logic import printing
 from fretish import syntax
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import as_json
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.meaning import meaning
 from fretish.printer import canonical, expression
 
 SCHEMA = "fretc-requirement-1"
 
 
-def formulas(rule: FormalizedRequirement) -> dict[str, Any]:
+def formulas(requirement: FormalizedRequirement) -> dict[str, Any]:
     """The object of `--emit ltl --format json`.
 
     `ft_infinite` is LTL that Spot reads; `ft_finite` may use `LAST`; `pt` is for the last point.
     """
-    tree = rule.sentence
+    tree = requirement.sentence
     return {
-        "id": rule.id,
-        "sentence": wording(rule.requirement),
+        "id": requirement.id,
+        "sentence": wording(requirement.entry),
         "component": tree.component,
         "scope": syntax.scope_key(tree),
         "condition": syntax.condition_key(tree),
         "timing": syntax.timing_key(tree),
-        "variables": list(rule.variables),
-        "durations": [] if rule.ticks is None else [rule.ticks],
-        "ft_infinite": printing.future(rule.ft_infinite),
-        "ft_finite": printing.future(rule.ft_finite),
-        "pt": printing.past(rule.pt),
-        "pctl": printing.pctl(rule.pctl) if rule.pctl else None,
+        "variables": list(requirement.variables),
+        "durations": [] if requirement.ticks is None else [requirement.ticks],
+        "ft_infinite": printing.future(requirement.ft_infinite),
+        "ft_finite": printing.future(requirement.ft_finite),
+        "pt": printing.past(requirement.pt),
+        "pctl": printing.pctl(requirement.pctl) if requirement.pctl else None,
     }
 
 
-def failed(requirement: Requirement, diagnostic: Diagnostic) -> dict[str, Any]:
+def failed(requirement: RequirementEntry, diagnostic: Diagnostic) -> dict[str, Any]:
     """The object of a requirement that could not be formalized."""
     return {
         "id": requirement.id,
@@ -48,36 +48,36 @@ def failed(requirement: Requirement, diagnostic: Diagnostic) -> dict[str, Any]:
     }
 
 
-def wording(requirement: Requirement) -> str:
+def wording(requirement: RequirementEntry) -> str:
     """The sentence as written, on one line."""
     return " ".join(requirement.wording.text.split())
 
 
-def record(rule: FormalizedRequirement) -> dict[str, Any]:
+def record(requirement: FormalizedRequirement) -> dict[str, Any]:
     """The object of `--emit json`; its schema is `templates/json/requirement.schema.json`."""
-    requirement, tree = rule.requirement, rule.written
+    entry, tree = requirement.entry, requirement.written
     return {
         "schema": SCHEMA,
         "fretc": __version__,
-        **formulas(rule),
+        **formulas(requirement),
         "canonical": canonical(tree),
-        "fingerprint": rule.fingerprint,
-        "meaning": meaning(tree, rule.ticks, rule.clock),
+        "fingerprint": requirement.fingerprint,
+        "meaning": meaning(tree, requirement.ticks, requirement.clock),
         "readable": {
-            "ft_infinite": printing.readable(rule.ft_infinite),
-            "ft_finite": printing.readable(rule.ft_finite),
-            "pt": printing.readable(rule.pt),
+            "ft_infinite": printing.readable(requirement.ft_infinite),
+            "ft_finite": printing.readable(requirement.ft_finite),
+            "pt": printing.readable(requirement.pt),
         },
         "response": expression(tree.response),
-        "tick_ns": rule.clock.period if rule.clock else None,
-        "title": requirement.title,
-        "text": requirement.text,
-        "parents": list(requirement.parents),
-        "rationale": requirement.rationale,
-        "status": requirement.status,
-        "verify": list(requirement.verify),
-        "params": dict(requirement.params),
-        **({"accept": dict(requirement.accept)} if requirement.accept else {}),
-        "source": requirement.wording.source.name,
-        "line": requirement.wording.line,
+        "tick_ns": requirement.clock.period if requirement.clock else None,
+        "title": entry.title,
+        "text": entry.text,
+        "parents": list(entry.parents),
+        "rationale": entry.rationale,
+        "status": entry.status,
+        "verify": list(entry.verify),
+        "params": dict(entry.params),
+        **({"accept": dict(entry.accept)} if entry.accept else {}),
+        "source": entry.wording.source.name,
+        "line": entry.wording.line,
     }

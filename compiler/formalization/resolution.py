@@ -77,14 +77,14 @@ def _without(
 
 
 def resolved(
-    rule: FormalizedRequirement, declarations: Declarations
+    requirement: FormalizedRequirement, declarations: Declarations
 ) -> FormalizedRequirement | Diagnostic:
-    """The rule with declarations that hold each of its atoms which signals decide."""
+    """The requirement with declarations that hold each of its atoms which signals decide."""
     propositions: dict[str, Proposition] = {}
     mistakes: dict[Part, tuple[Diagnostic, ...]] = {}
-    atoms = {*rule.propositions, *rule.watched}
-    written = _as_written(rule, declarations)
-    parts = zip(candidates(rule.sentence), candidates(written), strict=True)
+    atoms = {*requirement.propositions, *requirement.watched}
+    written = _as_written(requirement, declarations)
+    parts = zip(candidates(requirement.sentence), candidates(written), strict=True)
     for (name, own), (_, part) in parts:
         if name not in atoms or name in propositions:
             continue
@@ -94,17 +94,17 @@ def resolved(
         if broken:
             mistakes[("proposition", name)] = broken
         elif comparisons.is_measured(part, declarations.signals):
-            bound = _bound(part, declarations, rule.requirement.wording)
+            bound = _bound(part, declarations, requirement.entry.wording)
             if isinstance(bound, Diagnostic):
                 return bound
-            span = getattr(part, "span", None) or rule.requirement.wording
+            span = getattr(part, "span", None) or requirement.entry.wording
             aggregate = _aggregate(bound, declarations.signals, span)
             if isinstance(aggregate, Diagnostic):
                 return aggregate
             propositions[name] = Proposition(
                 name, bound, printed(own), aggregate=aggregate, span=span
             )
-    return replace(rule, declarations=extended(declarations, propositions, mistakes))
+    return replace(requirement, declarations=extended(declarations, propositions, mistakes))
 
 
 def _aggregate(
@@ -139,15 +139,15 @@ def extended(
     )
 
 
-def _as_written(rule: FormalizedRequirement, declarations: Declarations) -> Sentence:
+def _as_written(requirement: FormalizedRequirement, declarations: Declarations) -> Sentence:
     """The sentence in the units in which it is written, with words, and with what names stand for.
 
     It has the same comparisons in the same places as the one in the signals' units.
     """
-    whole = expanded(rule.written, rule.definitions)
-    assert isinstance(whole, Sentence), "the rule has been made of it"
-    worded = _worded(whole, declarations, rule.requirement.wording)
-    assert isinstance(worded, Sentence), "the rule has been made of it"
+    whole = expanded(requirement.written, requirement.definitions)
+    assert isinstance(whole, Sentence), "the requirement has been made of it"
+    worded = _worded(whole, declarations, requirement.entry.wording)
+    assert isinstance(worded, Sentence), "the requirement has been made of it"
     return worded
 
 

@@ -15,7 +15,7 @@ from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
 from fretish.diagnostics.explanations import ACCEPTANCES, explanation
 from fretish.diagnostics.source import Span
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 REQUIREMENT, TOPIC, HAZARD = "requirement", "topic", "hazard"
 _CODES = {code.number: code for code in Code}
@@ -28,7 +28,7 @@ class Acceptance:
     code: Code
     reason: str
     span: Span = field(compare=False, repr=False)
-    requirement: Requirement | None = field(default=None, repr=False)
+    requirement: RequirementEntry | None = field(default=None, repr=False)
     """The one whose header has it; None: it is in the settings."""
     subject: str = ""
     """The topic or the hazard; empty: whatever it is."""
@@ -46,7 +46,7 @@ class Acceptance:
 
 
 def acceptances(
-    requirements: Iterable[Requirement], settings: Settings | None
+    requirements: Iterable[RequirementEntry], settings: Settings | None
 ) -> tuple[tuple[Acceptance, ...], tuple[Diagnostic, ...]]:
     """Those of headers, then those of the settings; and F549 for each that can answer nothing."""
     written = [(each, code) for each in requirements for code in each.accept]
@@ -75,7 +75,7 @@ def _acceptance(
     number: str,
     reason: str,
     place: Span,
-    requirement: Requirement | None = None,
+    requirement: RequirementEntry | None = None,
     subject: str = "",
 ) -> Acceptance | Diagnostic:
     code = _CODES.get(number)

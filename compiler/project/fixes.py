@@ -13,7 +13,7 @@ from compiler.files.text_files import read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.fixes import Fix, applied
 from fretish.diagnostics.source import Source, Span
-from fretish.documents import Requirement, requirements
+from fretish.documents import RequirementEntry, requirements
 from fretish.parser import mistakes
 from fretish.reading.limits import with_budget
 from fretish.reading.recursion import with_recursion_limit
@@ -38,7 +38,7 @@ class FixedFile:
 def fixed(paths: Sequence[str]) -> tuple[FixedFile, ...]:
     """The files that have a safe fix, with all of their safe fixes applied.
 
-    Files without a safe fix are left out, and so are those that cannot be read: whoever reads
+    Files without a safe fix are left out, and so are those that cannot be read: anyone who reads
     them next reports that.
     """
     sources = (read(path) for path in paths)
@@ -71,7 +71,7 @@ def _safe_fixes(source: Source) -> list[Fix]:
     return sorted(fixes, key=lambda fix: (fix.span.start, fix.span.end))
 
 
-def _has_a_sentence(requirement: Requirement) -> bool:
+def _has_a_sentence(requirement: RequirementEntry) -> bool:
     """Whether its wording is meant as FRETish, so that a fix cannot spoil another text.
 
     Free text is not. Nor is the wording below a header that does not end: it is the whole file.

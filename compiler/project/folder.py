@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
@@ -30,7 +31,7 @@ from compiler.project.stated_numbers import check_stated_numbers
 from fretish.bindings.declarations import SHARED, Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
-from fretish.documents import Requirement, requirements, unread
+from fretish.documents import RequirementEntry, requirements, unread
 
 if TYPE_CHECKING:
     from compiler.project.parents import Parent
@@ -38,9 +39,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class UnformalizedRequirement:
-    """A requirement without a rule, and why: it has an error, or it is free text."""
+    """A requirement without a requirement, and why: it has an error, or it is free text."""
 
-    requirement: Requirement
+    requirement: RequirementEntry
     diagnostic: Diagnostic
     """The first error; the note where it is free text."""
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -51,9 +52,9 @@ class UnformalizedRequirement:
 class Project:
     """What was read, and all that there is to say of it."""
 
-    requirements: tuple[Requirement, ...]
+    requirements: tuple[RequirementEntry, ...]
     """As written, in the order of the files."""
-    rules: tuple[FormalizedRequirement, ...]
+    formalized: tuple[FormalizedRequirement, ...]
     failed: tuple[UnformalizedRequirement, ...]
     declarations: Declarations | None
     hazards: Mapping[str, Hazard]
@@ -63,7 +64,7 @@ class Project:
     bindings: a mistake there is one of the requirements that read it. Hazards and parents are
     among them, which no formula reads."""
     mistaken: Mapping[int, Diagnostic] = field(default_factory=dict)
-    """The mistake of each requirement that has a rule all the same, by its `id()`: it shares its
+    """The mistake of each formalized requirement, by its `id()`: it shares its
     id with another one, or its `params` name what is not there."""
     parents: Mapping[str, Parent] = field(default_factory=dict)
     """What other tools have, by its id; read where hazards are."""
@@ -75,17 +76,25 @@ class Project:
     """The requirements that a mistake reaches: nothing is made of them."""
 
     @property
+    def rules(self) -> tuple[FormalizedRequirement, ...]:
+        """The former name of `formalized`."""
+        warnings.warn("`rules` of a project is `formalized` now", DeprecationWarning, stacklevel=2)
+        return self.formalized
+
+    @property
     def sound(self) -> Project:
-        """The same with the rules alone that no mistake reaches: what can be made is made of these.
+        """The same without the requirements that a mistake reaches.
 
         A `retired` requirement is among them, too.
         """
         refused = {id(each.requirement) for each in self.refused}
-        rules = tuple(rule for rule in self.rules if id(rule.requirement) not in refused)
-        return replace(self, rules=rules)
+        requirements = tuple(
+            requirement for requirement in self.formalized if id(requirement.entry) not in refused
+        )
+        return replace(self, formalized=requirements)
 
     @property
-    def without_rule(self) -> tuple[Requirement, ...]:
+    def without_rule(self) -> tuple[RequirementEntry, ...]:
         """The requirements that have an error, or are free text."""
         return tuple(each.requirement for each in self.failed)
 
@@ -120,12 +129,12 @@ def load(
     chosen = _settings(paths)
     above, elsewhere = _above(chosen) if parents else ({}, ())
     broken = declarations is None and has_errors(of_bindings)
-    rules, failed, mistaken, remarks = _formalized(written, declarations, broken=broken)
+    requirements, failed, mistaken, remarks = _formalized(written, declarations, broken=broken)
     upward = [*of_hazards, *elsewhere]
     if (hazards or parents) and not has_errors(upward):
         upward.extend(unknown_parents(written, known, above, hazards))
         upward.extend(cycles(written))
-    declarations = _with_atoms(declarations, rules)
+    declarations = _with_atoms(declarations, requirements)
     mistakes = declarations.mistakes.values() if declarations else ()
     single = frozenset(chain.from_iterable(mistakes))
     of_all = [each for each in of_bindings if each not in single]
@@ -136,7 +145,7 @@ def load(
     everything = (*of_bindings, *remarks, *upward, *unanswered)
     return Project(
         tuple(written),
-        rules,
+        requirements,
         failed,
         declarations,
         known,
@@ -146,24 +155,24 @@ def load(
         above,
         accepted,
         chosen.project if isinstance(chosen, Settings) else NOBODY,
-        refused(written, rules, own, declarations, of_all),
+        refused(written, requirements, own, declarations, of_all),
     )
 
 
 def _with_atoms(
-    declarations: Declarations | None, rules: Sequence[FormalizedRequirement]
+    declarations: Declarations | None, requirements: Sequence[FormalizedRequirement]
 ) -> Declarations | None:
-    """The declarations with the atoms of all rules that signals decide."""
-    for rule in rules:
-        if declarations is not None and rule.declarations is not None:
-            own = rule.declarations
+    """The declarations with the atoms of all requirements that signals decide."""
+    for requirement in requirements:
+        if declarations is not None and requirement.declarations is not None:
+            own = requirement.declarations
             declarations = extended(declarations, own.propositions, own.mistakes)
     return declarations
 
 
-def _written(paths: Sequence[str]) -> list[Requirement]:
+def _written(paths: Sequence[str]) -> list[RequirementEntry]:
     """Every requirement; one that stands for the whole of each file that cannot be read."""
-    found: list[Requirement] = []
+    found: list[RequirementEntry] = []
     for path in paths:
         source = read(path)
         if isinstance(source, Diagnostic):
@@ -178,14 +187,14 @@ _MOST_BROKEN_HEADERS = 100
 
 
 def _formalized(
-    written: Sequence[Requirement], declarations: Declarations | None, *, broken: bool
+    written: Sequence[RequirementEntry], declarations: Declarations | None, *, broken: bool
 ) -> tuple[
     tuple[FormalizedRequirement, ...],
     tuple[UnformalizedRequirement, ...],
     dict[int, Diagnostic],
     list[Diagnostic],
 ]:
-    """The rules, requirements without one, mistakes of those with one, and all there is to say.
+    """What is formalized, what is not, mistakes of those that are, and all there is to say.
 
     Args:
         written: as read.
@@ -194,25 +203,25 @@ def _formalized(
     """
     unsaid = frozenset({Code.NO_CLOCK}) if broken else frozenset()
     mistaken = dict(duplicate_ids(written))
-    rules: list[FormalizedRequirement] = []
+    requirements: list[FormalizedRequirement] = []
     failed: list[UnformalizedRequirement] = []
     diagnostics = list(dict.fromkeys(mistaken.values()))
-    for requirement in written:
-        rule, remarks = None, requirement.mistakes
+    for entry in written:
+        requirement, remarks = None, entry.mistakes
         if remarks and len(failed) < _MOST_BROKEN_HEADERS:
-            remarks = (*remarks, *unreadable_sentence(requirement))
-        if not requirement.mistakes:
-            rule, remarks = formalize(requirement, declarations)
-        if rule is not None and rule.declarations is not None:
-            remarks = (*remarks, *check_stated_numbers(rule, rule.declarations))
+            remarks = (*remarks, *unreadable_sentence(entry))
+        if not entry.mistakes:
+            requirement, remarks = formalize(entry, declarations)
+        if requirement is not None and requirement.declarations is not None:
+            remarks = (*remarks, *check_stated_numbers(requirement, requirement.declarations))
         diagnostics.extend(remark for remark in remarks if remark.code not in unsaid)
-        if rule is None:
-            failed.append(UnformalizedRequirement(requirement, _reason(remarks), remarks))
+        if requirement is None:
+            failed.append(UnformalizedRequirement(entry, _reason(remarks), remarks))
             continue
-        rules.append(rule)
+        requirements.append(requirement)
         if has_errors(remarks):
-            mistaken.setdefault(id(requirement), _reason(remarks))
-    return tuple(rules), tuple(failed), mistaken, diagnostics
+            mistaken.setdefault(id(entry), _reason(remarks))
+    return tuple(requirements), tuple(failed), mistaken, diagnostics
 
 
 def load_folder(

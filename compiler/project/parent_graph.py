@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity, suggestion
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.reading.natural_order import natural
 
 
 def unknown_parents(
-    requirements: Sequence[Requirement],
+    requirements: Sequence[RequirementEntry],
     hazards: Collection[str],
     external: Collection[str],
     file: str | None,
@@ -50,12 +50,12 @@ def unknown_parents(
         )
 
 
-def _unknown(requirement: Requirement, message: str, fix: str) -> Diagnostic:
+def _unknown(requirement: RequirementEntry, message: str, fix: str) -> Diagnostic:
     place = requirement.place("parents")
     return Diagnostic(Code.UNKNOWN_PARENT, message, place, fix, Severity.WARNING)
 
 
-def cycles(requirements: Sequence[Requirement]) -> Iterator[Diagnostic]:
+def cycles(requirements: Sequence[RequirementEntry]) -> Iterator[Diagnostic]:
     """F526 for each circle of parents, once, at its first requirement."""
     by_id = {requirement.id: requirement for requirement in requirements}
     earlier: set[frozenset[str]] = set()
@@ -71,7 +71,7 @@ def cycles(requirements: Sequence[Requirement]) -> Iterator[Diagnostic]:
             )
 
 
-def _circle(start: str, by_id: dict[str, Requirement]) -> list[str]:
+def _circle(start: str, by_id: dict[str, RequirementEntry]) -> list[str]:
     """A shortest path from a requirement up to itself; empty where there is none."""
     came: dict[str, str] = {}
     waiting = [start]
@@ -89,8 +89,8 @@ def _circle(start: str, by_id: dict[str, Requirement]) -> list[str]:
 
 
 def without_hazard(
-    active: Sequence[Requirement], declared: Collection[str]
-) -> Iterator[Requirement]:
+    active: Sequence[RequirementEntry], declared: Collection[str]
+) -> Iterator[RequirementEntry]:
     """The requirements that name parents, none of which leads to anything declared.
 
     Args:

@@ -2,7 +2,7 @@
 
 Each tool's own reading counts, never one that looks like it: of StrictDoc, Doorstop and
 sphinx-needs the file is read that the tool itself exports, and ReqIF by the library `reqif`. An
-export is plain data, so nothing of a stranger's document is executed; StrictDoc's library would run
+export is plain data, so nothing of an untrusted document is executed; StrictDoc's library would run
 `strictdoc_config.py`, and needs some seventy packages; Doorstop's follows `!include`.
 
 Sources: StrictDoc, `strictdoc export --formats=json`; Doorstop, `doorstop export --yaml`;

@@ -42,7 +42,7 @@ def _absent(what: str, folder: str) -> Diagnostic:
 
 
 def _is_folder(path: str) -> bool:
-    """An empty name is none, though Python takes it for the present folder."""
+    """An empty name is none, though Python takes it for the current folder."""
     return bool(path) and path != "-" and os.path.isdir(path)
 
 

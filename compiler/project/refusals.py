@@ -10,7 +10,7 @@ from compiler.formalization.binding_agreement import broken_tables
 from compiler.formalization.formalized import FormalizedRequirement
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 if TYPE_CHECKING:
     from compiler.project.folder import Project
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 class Refused:
     """A requirement that nothing can be made of, and the mistakes in what it reads."""
 
-    requirement: Requirement
+    requirement: RequirementEntry
     why: tuple[Diagnostic, ...]
     """Errors: in its header, its sentence, its id, and the bindings of its names."""
 
@@ -31,8 +31,8 @@ class Refused:
 
 
 def refused(
-    requirements: Sequence[Requirement],
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[RequirementEntry],
+    formalized: Sequence[FormalizedRequirement],
     own: Mapping[int, Diagnostic],
     declarations: Declarations | None,
     unusable: Iterable[Diagnostic],
@@ -41,30 +41,30 @@ def refused(
 
     Args:
         requirements: all of them.
-        rules: those that could be formalized.
+        formalized: those that could be formalized.
         own: the mistake of a requirement in its file, by its `id()`; a note is none.
         declarations: the bindings; None where there are none.
         unusable: mistakes in the bindings that every requirement reads.
     """
-    rule_of = {id(rule.requirement): rule for rule in rules}
+    rule_of = {id(requirement.entry): requirement for requirement in formalized}
     of_all = [each for each in unusable if each.is_error]
     found = []
-    for requirement in requirements:
-        rule, mistake = rule_of.get(id(requirement)), own.get(id(requirement))
+    for entry in requirements:
+        requirement, mistake = rule_of.get(id(entry)), own.get(id(entry))
         why = [mistake] if mistake is not None and mistake.is_error else []
-        if rule is not None:
+        if requirement is not None:
             why.extend(of_all)
-        if rule is not None and declarations is not None:
-            why.extend(broken_tables(rule, declarations))
+        if requirement is not None and declarations is not None:
+            why.extend(broken_tables(requirement, declarations))
         if why:
-            found.append(Refused(requirement, tuple(dict.fromkeys(why))))
+            found.append(Refused(entry, tuple(dict.fromkeys(why))))
     return tuple(found)
 
 
 def unreviewable(project: Project) -> Mapping[int, tuple[Diagnostic, ...]]:
     """The requirements whose chain up to the hazards a mistake reaches, by their `id()`.
 
-    Beside those that nothing can be made of: whoever is to trace, review or compare a requirement
+    Beside those that nothing can be made of: a trace, a review or a comparison of a requirement
     reads the headers and hazards above it, and the warnings that are accepted.
     """
     found = {id(each.requirement): [*each.why] for each in project.refused}
@@ -91,7 +91,7 @@ _OF_SETTINGS = (Code.BAD_SETTINGS, Code.BAD_ACCEPTANCE)
 class _Way:
     """The way from a requirement up to what it is there for."""
 
-    above: Sequence[Requirement]
+    above: Sequence[RequirementEntry]
     """It, and the requirements above it."""
     leaves: bool
     """Whether it leads to a parent that is no requirement."""
@@ -100,7 +100,7 @@ class _Way:
     read."""
 
     @classmethod
-    def of(cls, requirement: Requirement, project: Project) -> _Way:
+    def of(cls, requirement: RequirementEntry, project: Project) -> _Way:
         by_id = {each.id: each for each in project.requirements}
         above, ends = [requirement], set[str]()
         for each in above:  # it grows while it is walked
@@ -112,7 +112,7 @@ class _Way:
         lost = ends - project.hazards.keys() - project.parents.keys()
         return cls(above, bool(ends), bool(lost))
 
-    def reads(self, mistake: Diagnostic, owners: Sequence[Requirement]) -> bool:
+    def reads(self, mistake: Diagnostic, owners: Sequence[RequirementEntry]) -> bool:
         """Whether a mistake is on the way, or in the settings of all.
 
         Args:
@@ -125,5 +125,5 @@ class _Way:
         return (self.is_lost and of_header) or any(each in self.above for each in owners)
 
 
-def _is_in(mistake: Diagnostic, requirement: Requirement) -> bool:
+def _is_in(mistake: Diagnostic, requirement: RequirementEntry) -> bool:
     return mistake in requirement.mistakes or requirement.contains(mistake.span)

@@ -35,25 +35,27 @@ _QUANTITY = re.compile(
 
 
 def check_stated_numbers(
-    rule: FormalizedRequirement, declarations: Declarations
+    requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[Diagnostic]:
     """F310 and F351: `params`, title or text state a number, and the bindings have another one."""
-    yield from _parameters(rule, declarations)
-    yield from _prose(rule, declarations)
+    yield from _parameters(requirement, declarations)
+    yield from _prose(requirement, declarations)
 
 
-def drifted(rule: FormalizedRequirement, declarations: Declarations) -> Iterator[tuple[str, str]]:
+def drifted(
+    requirement: FormalizedRequirement, declarations: Declarations
+) -> Iterator[tuple[str, str]]:
     """The same as field and number: `("title", "0.40 m/s")`, `("params", "0.40 m/s")`."""
-    for name, text in rule.requirement.params.items():
-        if _has_drifted(text, _propositions(rule, declarations, name)):
+    for name, text in requirement.entry.params.items():
+        if _has_drifted(text, _propositions(requirement, declarations, name)):
             yield "params", text
-    yield from ((field, words) for field, words, _ in _drifted_words(rule, declarations))
+    yield from ((field, words) for field, words, _ in _drifted_words(requirement, declarations))
 
 
-def first_unit(rules: Iterable[FormalizedRequirement]) -> Diagnostic | None:
+def first_unit(requirements: Iterable[FormalizedRequirement]) -> Diagnostic | None:
     """F352 for the first number with a unit in the sentences of a project."""
-    for rule in rules:
-        for expression in conditions(rule.written):
+    for requirement in requirements:
+        for expression in conditions(requirement.written):
             for part in parts(expression):
                 if isinstance(part, Quantity):
                     return Diagnostic(
@@ -70,11 +72,13 @@ def first_unit(rules: Iterable[FormalizedRequirement]) -> Diagnostic | None:
 # Parameters
 
 
-def _parameters(rule: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
+def _parameters(
+    requirement: FormalizedRequirement, declarations: Declarations
+) -> Iterator[Diagnostic]:
     """F310; a number of `params` belongs to a proposition, or to a signal that is compared."""
-    for name, text in rule.requirement.params.items():
-        place = rule.requirement.place("params", name)
-        known = _propositions(rule, declarations, name)
+    for name, text in requirement.entry.params.items():
+        place = requirement.entry.place("params", name)
+        known = _propositions(requirement, declarations, name)
         mistaken = {("proposition", name), ("signal", name)} & declarations.mistakes.keys()
         if not known and not mistaken:
             yield Diagnostic(
@@ -112,31 +116,31 @@ def _is_stated(number: Exact, known: Iterable[Proposition]) -> bool:
 
 
 def _propositions(
-    rule: FormalizedRequirement, declarations: Declarations, name: str
+    requirement: FormalizedRequirement, declarations: Declarations, name: str
 ) -> list[Proposition]:
     """The proposition of that name; for a signal those of the sentence that read it."""
     if name in declarations.propositions:
         return [declarations.propositions[name]]
-    own = (declarations.propositions.get(each) for each in rule.watched)
+    own = (declarations.propositions.get(each) for each in requirement.watched)
     return [each for each in own if each is not None and name in each.signals]
 
 
 # Title and text
 
 
-def _prose(rule: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
+def _prose(requirement: FormalizedRequirement, declarations: Declarations) -> Iterator[Diagnostic]:
     """F351 for each quantity in title and text that is none of those that are judged."""
-    for field, words, elsewhere in _drifted_words(rule, declarations):
-        yield _differs(rule, field, words, rule.requirement.place(field), elsewhere)
+    for field, words, elsewhere in _drifted_words(requirement, declarations):
+        yield _differs(requirement, field, words, requirement.entry.place(field), elsewhere)
 
 
 def _drifted_words(
-    rule: FormalizedRequirement, declarations: Declarations
+    requirement: FormalizedRequirement, declarations: Declarations
 ) -> Iterator[tuple[str, str, Span | None]]:
     """Field, quantity, and where the requirement rests on another one of its dimension."""
-    known = _numbers(rule, declarations)
+    known = _numbers(requirement, declarations)
     for field in ("title", "text"):
-        for words, stated in _quantities(getattr(rule.requirement, field)):
+        for words, stated in _quantities(getattr(requirement.entry, field)):
             rivals = [(number, span) for number, span in known if number[0] == stated[0]]
             if not rivals or any(number == stated for number, _ in rivals):
                 continue
@@ -144,17 +148,17 @@ def _drifted_words(
 
 
 def _numbers(
-    rule: FormalizedRequirement, declarations: Declarations
+    requirement: FormalizedRequirement, declarations: Declarations
 ) -> list[tuple[Exact, Span | None]]:
     """Every number of the sentence and of what it is bound to, and where it stands."""
-    bound = [declarations.propositions.get(name) for name in rule.watched]
+    bound = [declarations.propositions.get(name) for name in requirement.watched]
     found = [
         (number, each.span)
         for each in bound
         if each is not None
         for number in constants(each.expression)
     ]
-    duration = syntax.duration(rule.sentence.timing)
+    duration = syntax.duration(requirement.sentence.timing)
     if duration is not None and duration.unit in _SECONDS:
         seconds = duration.amount * _SECONDS[duration.unit]
         found.append(((units.SECOND.dimension, seconds), duration.span))
@@ -176,7 +180,7 @@ def _quantities(text: str) -> Iterator[tuple[str, Exact]]:
 
 
 def _differs(
-    rule: FormalizedRequirement, field: str, words: str, place: Span, elsewhere: Span | None
+    requirement: FormalizedRequirement, field: str, words: str, place: Span, elsewhere: Span | None
 ) -> Diagnostic:
     at = place.text.find(words)
     where = place.part(at, at + len(words)) if at >= 0 else place
@@ -185,7 +189,8 @@ def _differs(
         other = f": {elsewhere.text} ({elsewhere.source.name}:{elsewhere.line}:{elsewhere.column})"
     return Diagnostic(
         Code.PROSE_DRIFT,
-        f"the {field} of {rule.id} says {words}, and what is judged has another number{other}",
+        f"the {field} of {requirement.id} says {words}, and what is judged has another "
+        f"number{other}",
         where,
         help="make the words or the numbers say what is meant",
         severity=Severity.WARNING,

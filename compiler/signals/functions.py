@@ -79,7 +79,7 @@ def file_name(monitor: str) -> str:
 
 
 def functions(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     names: Mapping[str, str],
     language: Language,
     reserved: Container[str] = (),
@@ -87,12 +87,12 @@ def functions(
     """The functions for a monitor; None where no bindings say what its propositions are.
 
     Args:
-        rules: those of the monitor.
+        requirements: those of the monitor.
         names: the monitor's input of each proposition.
         language: in which they are written.
         reserved: what no name may be.
     """
-    found = instant(rules)
+    found = instant(requirements)
     if found is None:
         return None
     signals = legal_names((each.signal.name for each in found.policies), reserved)
@@ -103,7 +103,7 @@ def functions(
         for name, mine in durations.items()
     }
     return Functions(
-        _notes(rules, found),
+        _notes(requirements, found),
         tuple(_signal(each, signals[each.signal.name], language) for each in found.policies),
         tuple(
             Duration(
@@ -120,8 +120,8 @@ def functions(
     )
 
 
-def _notes(rules: Sequence[FormalizedRequirement], found: Instant) -> tuple[str, ...]:
-    title = ", ".join(rule.id for rule in rules)
+def _notes(requirements: Sequence[FormalizedRequirement], found: Instant) -> tuple[str, ...]:
+    title = ", ".join(requirement.id for requirement in requirements)
     return (
         f"What samples say of the propositions of {title}, as `fretc audit` reads them.",
         "Samples in, truth values out: functions without memory.",

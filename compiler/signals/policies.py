@@ -1,7 +1,8 @@
 """Bindings → what each signal's sample says, and each proposition's truth at an instant.
 
-The door is `instant`: it has, for some rules, the policies of all signals that their propositions
-read, and the truths of these propositions. Printers of languages turn both into functions:
+The door is `instant`: it has, for some requirements, the policies of all signals that their
+propositions read, and the truths of these propositions. Printers of languages turn both into
+functions:
 
 - a message's field → `Policy` (elements that are no measurement, `valid`, least or greatest) → a
   number of the sample, or unknown;
@@ -72,19 +73,19 @@ class Instant:
     policies: tuple[Policy, ...]
     meanings: tuple[Meaning, ...]
     left_out: tuple[str, ...]
-    """Propositions of the rules that are bound and look back by ticks: their truth is given."""
+    """Propositions that are bound and look back by ticks: their truth is given."""
 
 
-def instant(rules: Sequence[FormalizedRequirement]) -> Instant | None:
-    """Of all propositions that the rules watch; None where no bindings say what they are."""
-    bound = _bound(rules)
+def instant(requirements: Sequence[FormalizedRequirement]) -> Instant | None:
+    """Of all propositions that the requirements watch; None where no bindings say what they are."""
+    bound = _bound(requirements)
     pure = [each for each in bound if not ticks_back(each.expression)]
     read = dict.fromkeys(name for each in pure for name in each.signals)
     signals = {
         name: signal
-        for rule in rules
-        if rule.declarations is not None
-        for name, signal in rule.declarations.signals.items()
+        for requirement in requirements
+        if requirement.declarations is not None
+        for name, signal in requirement.declarations.signals.items()
         if name in read
     }
     if not pure:
@@ -95,11 +96,13 @@ def instant(rules: Sequence[FormalizedRequirement]) -> Instant | None:
     return Instant(policies, meanings, left_out)
 
 
-def _bound(rules: Sequence[FormalizedRequirement]) -> list[Proposition]:
+def _bound(requirements: Sequence[FormalizedRequirement]) -> list[Proposition]:
     found: dict[str, Proposition] = {}
-    for rule in rules:
-        known = rule.declarations.propositions if rule.declarations is not None else {}
-        found |= {name: known[name] for name in rule.watched if name in known}
+    for requirement in requirements:
+        known = (
+            requirement.declarations.propositions if requirement.declarations is not None else {}
+        )
+        found |= {name: known[name] for name in requirement.watched if name in known}
     return [*found.values()]
 
 

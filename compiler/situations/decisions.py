@@ -42,9 +42,9 @@ class Operand:
     """Whether it is the whole, or that negated."""
 
 
-def operands(rule: FormalizedRequirement, known: TickPredicates) -> Iterator[Operand]:
+def operands(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Operand]:
     """Those of each part of a sentence; of a large part none."""
-    sentence = rule.sentence
+    sentence = requirement.sentence
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     past, kind = Past(), scope.kind if scope else None
     inside = partial(boolean, expand=past.inside(kind, known.whole.mode))

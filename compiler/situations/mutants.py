@@ -45,10 +45,10 @@ class Mutant:
     """A sentence that somebody might have written, or meant, in place of the right one."""
 
     key: str
-    """An operator of `OPERATORS`, behind a colon the place; unique within a rule."""
+    """An operator of `OPERATORS`, behind a colon the place; unique within a requirement."""
     words: str
     """For people: what stands in place of what."""
-    rule: FormalizedRequirement
+    requirement: FormalizedRequirement
     """Of the same id and bindings."""
 
 
@@ -62,16 +62,16 @@ class _Draft:
 
 
 @with_recursion_limit
-def mutants(rule: FormalizedRequirement) -> tuple[Mutant, ...]:
-    """Those of a rule; no two have the same sentence, and none has that of the rule.
+def mutants(requirement: FormalizedRequirement) -> tuple[Mutant, ...]:
+    """Those of a requirement; no two have the same sentence, and none has that of the requirement.
 
     A sentence that cannot be formalized is none.
     """
-    seen = {canonical(rule.written)}
+    seen = {canonical(requirement.written)}
     found: dict[str, Mutant] = {}
-    for draft in _drafts(rule):
+    for draft in _drafts(requirement):
         text = canonical(draft.sentence)
-        formalized = None if text in seen else _formalized(rule, draft.sentence)
+        formalized = None if text in seen else _formalized(requirement, draft.sentence)
         seen.add(text)
         if formalized is not None:
             key = _unique(draft.key, found)
@@ -86,18 +86,22 @@ def _unique(key: str, taken: Mapping[str, Mutant]) -> str:
     return f"{key}-{number}" if key in taken else key
 
 
-def _formalized(rule: FormalizedRequirement, sentence: s.Sentence) -> FormalizedRequirement | None:
-    source = Source(rule.requirement.wording.source.name, printed(sentence))
-    formalized, _ = formalize(replace(rule.requirement, wording=source.span()), rule.declarations)
+def _formalized(
+    requirement: FormalizedRequirement, sentence: s.Sentence
+) -> FormalizedRequirement | None:
+    source = Source(requirement.entry.wording.source.name, printed(sentence))
+    formalized, _ = formalize(
+        replace(requirement.entry, wording=source.span()), requirement.declarations
+    )
     return formalized
 
 
-def _drafts(rule: FormalizedRequirement) -> Iterator[_Draft]:
-    sentence = rule.written
+def _drafts(requirement: FormalizedRequirement) -> Iterator[_Draft]:
+    sentence = requirement.written
     yield from _scopes(sentence)
     yield from _conditions(sentence)
     yield from _timings(sentence)
-    yield from _bounds(rule)
+    yield from _bounds(requirement)
     found = [draft for part in _parts(sentence) for draft in _of_part(sentence, *part)]
     order = [*OPERATORS]
     yield from sorted(found, key=lambda draft: order.index(draft.key.partition(":")[0]))
@@ -147,8 +151,8 @@ def _named(own: s.Timing) -> str:
     return f"`{timing(own)}`" if timing(own) else "no timing"
 
 
-def _bounds(rule: FormalizedRequirement) -> Iterator[_Draft]:
-    own, ticks = s.duration(rule.written.timing), rule.ticks
+def _bounds(requirement: FormalizedRequirement) -> Iterator[_Draft]:
+    own, ticks = s.duration(requirement.written.timing), requirement.ticks
     if own is None or ticks is None:
         return
     others = {
@@ -160,9 +164,11 @@ def _bounds(rule: FormalizedRequirement) -> Iterator[_Draft]:
     }
     for key, number in others.items():
         if number >= 0:
-            other = s.with_duration(rule.written.timing, in_unit(number, own.unit, rule.clock))
-            words = f"`{timing(other)}` in place of `{timing(rule.written.timing)}`"
-            yield _Draft(key, words, replace(rule.written, timing=other))
+            other = s.with_duration(
+                requirement.written.timing, in_unit(number, own.unit, requirement.clock)
+            )
+            words = f"`{timing(other)}` in place of `{timing(requirement.written.timing)}`"
+            yield _Draft(key, words, replace(requirement.written, timing=other))
 
 
 # The expressions --------------------------------------------------------------------------------

@@ -73,7 +73,7 @@ class Situation:
     """
 
     key: str
-    """From `MEANINGS`, behind a colon what it is about; unique within a rule."""
+    """From `MEANINGS`, behind a colon what it is about; unique within a requirement."""
     words: str
     """For people."""
     formula: f.Formula
@@ -89,32 +89,32 @@ class Situation:
 
 
 @with_recursion_limit
-def situations(rule: FormalizedRequirement, *, exact: bool = False) -> tuple[Situation, ...]:
-    """Those of a rule, in the order of `MEANINGS`.
+def situations(requirement: FormalizedRequirement, *, exact: bool = False) -> tuple[Situation, ...]:
+    """Those of a requirement, in the order of `MEANINGS`.
 
     None of a sentence with predicates that look ahead: no formula of the past says what they are.
 
     Args:
-        rule: of which they are.
+        requirement: of which they are.
         exact: exact after a missed deadline, too, for recorded runs
             (`compiler.situations.tick_predicates`); formulas for a search are not.
     """
-    if any(name in LOOK_AHEAD for each in conditions(rule.sentence) for name in calls(each)):
+    if any(name in LOOK_AHEAD for each in conditions(requirement.sentence) for name in calls(each)):
         return ()
-    known, read = facts(rule, exact=exact), {*rule.propositions}
+    known, read = facts(requirement, exact=exact), {*requirement.propositions}
     return tuple(
         each
-        for each in (*_of_time(rule, known), *_of_operands(rule, known))
+        for each in (*_of_time(requirement, known), *_of_operands(requirement, known))
         if each.formula != f.FALSE and read.issuperset(f.atoms(each.formula))
     )
 
 
-def _of_time(rule: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
+def _of_time(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
     """Those that ask when something happens."""
     passing = dict([*_of_scope(known), *_of_triggers(known), *of_demand(known)])
     passing["scope-ends-open"] = _ends_open(known)
     ending = dict(_of_the_end(known))
-    found, words = {**passing, **ending}, _words(rule, known)
+    found, words = {**passing, **ending}, _words(requirement, known)
     for key, meaning in MEANINGS.items():
         if key in found:
             shown = meaning.format_map(words)
@@ -218,15 +218,19 @@ def _of_the_end(known: TickPredicates) -> _Rows:
 # What decides -----------------------------------------------------------------------------------
 
 
-def _of_operands(rule: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
+def _of_operands(requirement: FormalizedRequirement, known: TickPredicates) -> Iterator[Situation]:
     """Those of single operands, by their keys in the order of `MEANINGS`."""
-    found = [each for operand in operands(rule, known) for each in _of_operand(rule, operand)]
+    found = [
+        each
+        for operand in operands(requirement, known)
+        for each in _of_operand(requirement, operand)
+    ]
     order = [*MEANINGS]
     yield from sorted(found, key=lambda each: order.index(each.key.partition(":")[0]))
 
 
-def _of_operand(rule: FormalizedRequirement, operand: Operand) -> Iterator[Situation]:
-    declared = rule.declarations.propositions if rule.declarations else {}
+def _of_operand(requirement: FormalizedRequirement, operand: Operand) -> Iterator[Situation]:
+    declared = requirement.declarations.propositions if requirement.declarations else {}
     bound = declared.get(operand.atom or "")
     stated = operand.expression if bound is None else bound.expression
     shown = stated if isinstance(operand.expression, e.Comparison) else operand.expression
@@ -271,9 +275,9 @@ def _short(part: e.Expression) -> str:
 # Words ------------------------------------------------------------------------------------------
 
 
-def _words(rule: FormalizedRequirement, known: TickPredicates) -> Mapping[str, str]:
+def _words(requirement: FormalizedRequirement, known: TickPredicates) -> Mapping[str, str]:
     """What stands in `MEANINGS` for the parts of a sentence."""
-    sentence = rule.written
+    sentence = requirement.written
     stop, response = s.stop(sentence.timing), expression(sentence.response)
     texts = {
         "mode": expression(sentence.scope.mode) if sentence.scope else "",

@@ -262,6 +262,6 @@ class TickPredicates:
         return self.waiting if Trait.STOPS in TRAITS[self.demand.kind] else f.FALSE
 
 
-def facts(rule: FormalizedRequirement, *, exact: bool = False) -> TickPredicates:
-    """Of a rule, its temporal predicates read as formulas of the past."""
-    return TickPredicates(obligation(rule.sentence, rule.ticks or 0, Past()), exact)
+def facts(requirement: FormalizedRequirement, *, exact: bool = False) -> TickPredicates:
+    """Of a requirement, its temporal predicates read as formulas of the past."""
+    return TickPredicates(obligation(requirement.sentence, requirement.ticks or 0, Past()), exact)

@@ -21,46 +21,46 @@ from fretish.reading.recursion import with_recursion_limit
 
 
 @with_recursion_limit
-def comparison_names(rule: FormalizedRequirement) -> Mapping[str, str]:
-    """The name of each atom of a rule that is a comparison or a call."""
-    atoms = dict.fromkeys((*rule.propositions, *atoms_of(rule.sentence)))
-    others = {identifier(name) for name in (*rule.variables, *rule.glossary, *atoms)}
+def comparison_names(requirement: FormalizedRequirement) -> Mapping[str, str]:
+    """The name of each atom of a requirement that is a comparison or a call."""
+    atoms = dict.fromkeys((*requirement.propositions, *atoms_of(requirement.sentence)))
+    others = {identifier(name) for name in (*requirement.variables, *requirement.glossary, *atoms)}
     return legal_names(filter(is_compound, atoms), others)
 
 
 @with_recursion_limit
-def in_words(rule: FormalizedRequirement) -> Mapping[str, str]:
+def in_words(requirement: FormalizedRequirement) -> Mapping[str, str]:
     """What each of these atoms means, in the units of its signals: `battery < 20 %`."""
-    parts = dict(candidates(rule.sentence))
+    parts = dict(candidates(requirement.sentence))
     meanings = {}
-    for atom in comparison_names(rule):
-        tree = _meaning(rule, atom, parts.get(atom))
+    for atom in comparison_names(requirement):
+        tree = _meaning(requirement, atom, parts.get(atom))
         meanings[atom] = atom if tree is None else " ".join(expression(tree).split())
     return meanings
 
 
 def _meaning(
-    rule: FormalizedRequirement, atom: str, part: e.Expression | None
+    requirement: FormalizedRequirement, atom: str, part: e.Expression | None
 ) -> e.Expression | None:
-    if rule.declarations is None:
+    if requirement.declarations is None:
         return part
-    signals = rule.declarations.signals
+    signals = requirement.declarations.signals
     if isinstance(part, e.Comparison) and is_measured(part, signals):
-        comparison = bound(part, signals, rule.requirement.wording)
+        comparison = bound(part, signals, requirement.entry.wording)
         if isinstance(comparison, e.Comparison):
             return comparison
-    declared = rule.declarations.propositions.get(atom)
+    declared = requirement.declarations.propositions.get(atom)
     return part if declared is None else declared.expression
 
 
-def definitions(rule: FormalizedRequirement, names: Mapping[str, str]) -> Mapping[str, str]:
+def definitions(requirement: FormalizedRequirement, names: Mapping[str, str]) -> Mapping[str, str]:
     """By the names in a text, what stands for something else: `battery_lt_20` for `battery < 20 %`.
 
     Args:
-        rule: the requirement.
+        requirement: the requirement.
         names: what its propositions are called there.
     """
-    meanings = in_words(rule)
+    meanings = in_words(requirement)
     return {
         name: meanings.get(atom, f"the proposition `{atom}`")
         for atom, name in names.items()
@@ -68,20 +68,20 @@ def definitions(rule: FormalizedRequirement, names: Mapping[str, str]) -> Mappin
     }
 
 
-def impossible(rule: FormalizedRequirement, names: Mapping[str, str]) -> list[str]:
+def impossible(requirement: FormalizedRequirement, names: Mapping[str, str]) -> list[str]:
     """Which comparisons never have these values together, by the names of a language."""
     return [
         ", ".join(f"{names[atom]} {str(value).lower()}" for atom, value in exclusion)
-        for exclusion in excluded(rule)
+        for exclusion in excluded(requirement)
     ]
 
 
-def notes(rule: FormalizedRequirement) -> list[str]:
+def notes(requirement: FormalizedRequirement) -> list[str]:
     """Definitions, and what no numbers make true, a sentence each."""
-    names = comparison_names(rule)
+    names = comparison_names(requirement)
     return [
-        *(f"{name}: {meaning}" for name, meaning in definitions(rule, names).items()),
-        *(f"never at one tick: {together}" for together in impossible(rule, names)),
+        *(f"{name}: {meaning}" for name, meaning in definitions(requirement, names).items()),
+        *(f"never at one tick: {together}" for together in impossible(requirement, names)),
     ]
 
 

@@ -50,20 +50,20 @@ _ELSEWHERE = "check its monitor with `fretc verify`"
 
 
 @with_recursion_limit
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
-    """F601 for the first part of the rule of which nothing could be proved."""
-    sentence = rule.sentence
-    if rule.pctl is not None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
+    """F601 for the first part of the requirement of which nothing could be proved."""
+    sentence = requirement.sentence
+    if requirement.pctl is not None:
         return not_expressible(
-            "Dafny", rule, "the probability", "leave it out, or use a probabilistic tool"
+            "Dafny", requirement, "the probability", "leave it out, or use a probabilistic tool"
         )
     if sentence.scope is not None:
         scope = _SCOPES[sentence.scope.kind]
-        return not_expressible("Dafny", rule, f"the scope `{scope}`", _ELSEWHERE)
+        return not_expressible("Dafny", requirement, f"the scope `{scope}`", _ELSEWHERE)
     predicate = temporal_predicate(sentence)
     if predicate is not None:
         part = f"the predicate `{predicate}`, which speaks of other ticks,"
-        return not_expressible("Dafny", rule, part, _ELSEWHERE)
+        return not_expressible("Dafny", requirement, part, _ELSEWHERE)
     return None
 
 
@@ -80,33 +80,36 @@ _SCOPES: Mapping[ScopeKind, str] = {
 
 @with_recursion_limit
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>.dfy` for each rule."""
+    """`<id>.dfy` for each requirement."""
     declared = options.declarations
-    return tuple(Artifact(PurePosixPath(_name(rule)), text(rule, declared)) for rule in rules)
+    return tuple(
+        Artifact(PurePosixPath(_name(requirement)), text(requirement, declared))
+        for requirement in requirements
+    )
 
 
-def _name(rule: FormalizedRequirement) -> str:
-    return f"{stem(rule)}.dfy"
+def _name(requirement: FormalizedRequirement) -> str:
+    return f"{stem(requirement)}.dfy"
 
 
-def text(rule: FormalizedRequirement, declarations: Declarations | None) -> str:
-    """The whole file; the same for the same rule and declarations.
+def text(requirement: FormalizedRequirement, declarations: Declarations | None) -> str:
+    """The whole file; the same for the same requirement and declarations.
 
     Args:
-        rule: one that is not refused.
+        requirement: one that is not refused.
         declarations: None where no bindings are at hand: then the interceptor is the plain one.
     """
     return render(
         "dafny/requirement.dfy.j2",
-        id=rule.id,
-        title=rule.requirement.title,
-        sentence=" ".join(rule.requirement.wording.text.split()),
-        file=_name(rule),
-        monitor=_monitor(rule).rstrip() + "\n",
+        id=requirement.id,
+        title=requirement.entry.title,
+        sentence=" ".join(requirement.entry.wording.text.split()),
+        file=_name(requirement),
+        monitor=_monitor(requirement).rstrip() + "\n",
         interceptor=_interceptor(declarations).rstrip() + "\n",
-        loop=_loop(rule, declarations).rstrip(),
+        loop=_loop(requirement, declarations).rstrip(),
     )
 
 
@@ -166,26 +169,26 @@ _TRIGGERS: Mapping[ConditionKind | None, Trigger] = {
 }
 
 
-def _monitor(rule: FormalizedRequirement) -> str:
-    sentence, timing = rule.sentence, rule.sentence.timing
-    fields = _names(rule)
+def _monitor(requirement: FormalizedRequirement) -> str:
+    sentence, timing = requirement.sentence, requirement.sentence.timing
+    fields = _names(requirement)
     stop, shape = s.stop(timing), s.SHAPES[type(timing)]
     return render(
         f"dafny/{_COUNTERS[type(timing)]}.dfy.j2",
         fields=fields,
-        meanings=in_words(rule),
+        meanings=in_words(requirement),
         condition=_dafny(sentence.condition.expression, fields) if sentence.condition else None,
         response=_dafny(sentence.response, fields),
         stop=_dafny(stop, fields) if stop else None,
-        trigger=_trigger(rule),
+        trigger=_trigger(requirement),
         clash=_COUNTERS[type(timing)] == "after",
         sign="!" if shape.quantifier is s.Quantifier.NONE else "",
-        **_bound(rule),
+        **_bound(requirement),
     )
 
 
-def _trigger(rule: FormalizedRequirement) -> Trigger:
-    condition = rule.sentence.condition
+def _trigger(requirement: FormalizedRequirement) -> Trigger:
+    condition = requirement.sentence.condition
     return _TRIGGERS[condition.kind if condition else None]
 
 
@@ -205,12 +208,12 @@ _COUNTERS: Mapping[type[s.Timing], str] = {
 """The template of each timing."""
 
 
-def _bound(rule: FormalizedRequirement) -> Mapping[str, object]:
+def _bound(requirement: FormalizedRequirement) -> Mapping[str, object]:
     """How the templates name the bound: a parameter and an argument, where there is one."""
-    bounded = s.duration(rule.sentence.timing) is not None
+    bounded = s.duration(requirement.sentence.timing) is not None
     return {
         "bounded": bounded,
-        "bound": rule.ticks,
+        "bound": requirement.ticks,
         "n": "n: nat, " if bounded else "",
         "with_n": "n, " if bounded else "",
     }
@@ -232,8 +235,8 @@ def _field(name: str) -> str:
     return text if text[0].isalpha() else f"p_{text}"
 
 
-def _names(rule: FormalizedRequirement) -> Mapping[str, str]:
-    return _fields(atoms_of(rule.sentence), comparison_names(rule))
+def _names(requirement: FormalizedRequirement) -> Mapping[str, str]:
+    return _fields(atoms_of(requirement.sentence), comparison_names(requirement))
 
 
 def _dafny(expression: e.Expression, fields: Mapping[str, str]) -> str:
@@ -281,17 +284,21 @@ def _interceptor(declarations: Declarations | None) -> str:
 # Closed loop ----------------------------------------------------------------------------------
 
 
-def _loop(rule: FormalizedRequirement, declarations: Declarations | None) -> str:
-    reason = loopless(rule, declarations)
+def _loop(requirement: FormalizedRequirement, declarations: Declarations | None) -> str:
+    reason = loopless(requirement, declarations)
     if reason is not None:
         return render("dafny/loopless.dfy.j2", reason=reason)
-    declared = delay(rule, declarations)
-    fits = isinstance(declared, Delay) and rule.ticks is not None and declared.total <= rule.ticks
+    declared = delay(requirement, declarations)
+    fits = (
+        isinstance(declared, Delay)
+        and requirement.ticks is not None
+        and declared.total <= requirement.ticks
+    )
     return render(
         "dafny/loop.dfy.j2",
-        trigger=_trigger(rule),
+        trigger=_trigger(requirement),
         declared=declared if fits else None,
-        **_bound(rule),
+        **_bound(requirement),
     )
 
 

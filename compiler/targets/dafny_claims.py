@@ -42,28 +42,30 @@ class Delay:
         return self.reach + self.braking
 
 
-def loopless(rule: FormalizedRequirement, declarations: Declarations | None) -> str | None:
+def loopless(requirement: FormalizedRequirement, declarations: Declarations | None) -> str | None:
     """Why the file has no claim about the closed loop; None where it has one."""
     if declarations is None or declarations.interceptor is None:
         return "the bindings have no [interceptor], and the plain form waits for a command to stop"
     if declarations.interceptor.form is Form.EVENT:
         return "the event form waits for a command to stop, so no delay bounds its answer"
-    timing = rule.sentence.timing
+    timing = requirement.sentence.timing
     if not (s.deadline(timing) or s.is_eventual(timing)):
         return f"it is about answers, and `{printed(timing)}` asks for something else"
     assumed = declarations.assumed
-    response = boolean(rule.sentence.response, Uninterpreted().alone())
+    response = boolean(requirement.sentence.response, Uninterpreted().alone())
     if assumed is not None and response != f.Atom(identifier(assumed.stands)):
         return f"what a stop brings about is `{assumed.stands}`, and the response is something else"
     return None
 
 
-def delay(rule: FormalizedRequirement, declarations: Declarations | None) -> Delay | str | None:
+def delay(
+    requirement: FormalizedRequirement, declarations: Declarations | None
+) -> Delay | str | None:
     """The delay under [assume], or why it is no number of ticks; None without [assume]."""
     assumed = declarations.assumed if declarations else None
     if assumed is None:
         return None
-    period = rule.clock.period if rule.clock else None
+    period = requirement.clock.period if requirement.clock else None
     if period is None:
         return "the clock ticks by message, so a latency is no number of ticks"
     every = repetition(assumed, period)
@@ -84,17 +86,19 @@ class Claim:
     """Why the file does not show it."""
 
 
-def claims(rule: FormalizedRequirement, declarations: Declarations | None) -> tuple[Claim, ...]:
-    """The claims of a rule's file, in its order; none for a part that it leaves out."""
+def claims(
+    requirement: FormalizedRequirement, declarations: Declarations | None
+) -> tuple[Claim, ...]:
+    """The claims of a requirement's file, in its order; none for a part that it leaves out."""
     return (
-        _monitor_claim(rule),
+        _monitor_claim(requirement),
         _interceptor_claim(declarations),
-        *_loop_claims(rule, declarations),
+        *_loop_claims(requirement, declarations),
     )
 
 
-def _monitor_claim(rule: FormalizedRequirement) -> Claim:
-    timing = rule.sentence.timing
+def _monitor_claim(requirement: FormalizedRequirement) -> Claim:
+    timing = requirement.sentence.timing
     every = ", for every bound" if s.duration(timing) else ""
     if s.is_eventual(timing) or s.SHAPES[type(timing)].extent.needs_end:
         statement = "has an open demand exactly where the definition leaves one unanswered"
@@ -140,11 +144,13 @@ def _assumed(declarations: Declarations | None) -> tuple[str, ...]:
     return (requests, f"{delivery}; or one from before the trigger is still in force", stands)
 
 
-def _loop_claims(rule: FormalizedRequirement, declarations: Declarations | None) -> Iterator[Claim]:
-    if loopless(rule, declarations) is not None:
+def _loop_claims(
+    requirement: FormalizedRequirement, declarations: Declarations | None
+) -> Iterator[Claim]:
+    if loopless(requirement, declarations) is not None:
         return
     assumptions = _assumed(declarations)
-    declared, bound = delay(rule, declarations), rule.ticks
+    declared, bound = delay(requirement, declarations), requirement.ticks
     every = "for every bound n and every delay reach + braking of at most n"
     sentence = f"never violated, {every}"
     if bound is None:

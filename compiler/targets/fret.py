@@ -26,7 +26,7 @@ from fretish.bindings.definitions import expanded
 from fretish.checking import conditions, has_units
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.keywords import RESERVED
 from fretish.meaning import meaning
 from fretish.parser import parse
@@ -38,14 +38,15 @@ _SPACE = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`fret.json` with all rules: `{"requirements": [...], "variables": [...]}`."""
-    read = {id(rule.requirement): _in_fretish(rule) for rule in rules}
-    ordered = [(entry, read.get(id(entry))) for entry in _ordered(rules, options)]
+    """`fret.json` with all requirements: `{"requirements": [...], "variables": [...]}`."""
+    read = {id(formalized.entry): _in_fretish(formalized) for formalized in requirements}
+    ordered = [(entry, read.get(id(entry))) for entry in _ordered(requirements, options)]
     content = {
         "requirements": [
-            requirement(rule.requirement if rule else entry, rule) for entry, rule in ordered
+            requirement(formalized.entry if formalized else entry, formalized)
+            for entry, formalized in ordered
         ],
         "variables": variables([*read.values()], options.declarations),
     }
@@ -53,52 +54,52 @@ def emit(
     return (Artifact(PurePosixPath("fret.json"), text),)
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601: FRET has no units, and converts nothing."""
-    if _mixes_units(rule):
+    if _mixes_units(requirement):
         return not_expressible(
             "FRET",
-            rule,
+            requirement,
             "a comparison of signals in several units",
             "bind it under a name of its own, `[proposition.NAME]`, and write that name",
         )
-    if not has_units(rule.sentence):
+    if not has_units(requirement.sentence):
         return None
     return not_expressible(
         "FRET",
-        rule,
+        requirement,
         "a number with a unit",
         "declare the signals beside it in bindings.toml, in one unit, or leave the unit out",
     )
 
 
-def _in_fretish(rule: FormalizedRequirement) -> FormalizedRequirement:
-    """The rule of the sentence that FRET reads.
+def _in_fretish(requirement: FormalizedRequirement) -> FormalizedRequirement:
+    """The requirement of the sentence that FRET reads.
 
     Its names stand there as they are written, and FRET has what they stand for. Where a unit is
     among that, or in the sentence, it is the sentence of bare numbers.
     """
-    whole = expanded(rule.written, rule.definitions)
+    whole = expanded(requirement.written, requirement.definitions)
     assert isinstance(whole, s.Sentence), "it has been formalized"
     if has_units(whole):
-        return _in_quotes(_without_units(rule))
-    return _in_quotes(_with_names(rule) if rule.definitions else rule)
+        return _in_quotes(_without_units(requirement))
+    return _in_quotes(_with_names(requirement) if requirement.definitions else requirement)
 
 
-def _in_quotes(rule: FormalizedRequirement) -> FormalizedRequirement:
-    """The rule of the same sentence, with quotes around names that FRET does not read without."""
-    wording = rule.requirement.wording
-    component = rule.written.component_span
+def _in_quotes(requirement: FormalizedRequirement) -> FormalizedRequirement:
+    """The same requirement, with quotes around names that FRET does not read without."""
+    wording = requirement.entry.wording
+    component = requirement.written.component_span
     places = () if component is None else (component.start - wording.start,)
     text = quoted(wording.text, places)
     if text == wording.text:
-        return rule
+        return requirement
     span = Source(wording.source.name, text).span()
     written = parse(span)
-    assert written == rule.written, "quotes change nothing"
-    requirement = replace(rule.requirement, wording=span)
-    sentence = written if rule.sentence == written else rule.sentence
-    return replace(rule, requirement=requirement, written=written, sentence=sentence)
+    assert written == requirement.written, "quotes change nothing"
+    entry = replace(requirement.entry, wording=span)
+    sentence = written if requirement.sentence == written else requirement.sentence
+    return replace(requirement, entry=entry, written=written, sentence=sentence)
 
 
 _NAMES = re.compile(r'"[^"\n]*"|[A-Za-z][A-Za-z0-9_.%]*')
@@ -124,47 +125,51 @@ def _variable_name(id: str) -> str:
     return f'"{id}"' if id in FRET else identifier(id)
 
 
-def _with_names(rule: FormalizedRequirement) -> FormalizedRequirement:
-    """The rule as if the names of its sentence stood for nothing."""
-    assert rule.declarations is not None, "they define the names"
+def _with_names(requirement: FormalizedRequirement) -> FormalizedRequirement:
+    """The requirement as if the names of its sentence stood for nothing."""
+    assert requirement.declarations is not None, "they define the names"
     variables = {
         name: replace(variable, value=None, of={})
-        for name, variable in rule.declarations.variables.items()
+        for name, variable in requirement.declarations.variables.items()
     }
-    plain, _ = formalize(rule.requirement, replace(rule.declarations, variables=variables))
-    return replace(plain, glossary=rule.glossary) if plain else _without_units(rule)
+    plain, _ = formalize(requirement.entry, replace(requirement.declarations, variables=variables))
+    return replace(plain, glossary=requirement.glossary) if plain else _without_units(requirement)
 
 
-def _mixes_units(rule: FormalizedRequirement) -> bool:
+def _mixes_units(requirement: FormalizedRequirement) -> bool:
     """Whether FRET would compare metres with centimetres: its variables are bare numbers."""
-    signals = rule.declarations.signals if rule.declarations else {}
+    signals = requirement.declarations.signals if requirement.declarations else {}
     return any(
-        isinstance(part, e.Comparison) and is_mixed(part, signals, rule.requirement.wording)
-        for tree in conditions(rule.written)
+        isinstance(part, e.Comparison) and is_mixed(part, signals, requirement.entry.wording)
+        for tree in conditions(requirement.written)
         for part in e.parts(tree)
     )
 
 
-def _without_units(rule: FormalizedRequirement) -> FormalizedRequirement:
-    """The rule as if its sentence had been written with bare numbers, in the signals' own units."""
-    text = Source(rule.requirement.wording.source.name, sentence(rule.sentence)).span()
+def _without_units(requirement: FormalizedRequirement) -> FormalizedRequirement:
+    """The requirement as if it had been written with bare numbers, in the signals' own units."""
+    text = Source(requirement.entry.wording.source.name, sentence(requirement.sentence)).span()
     written = parse(text)
     assert isinstance(written, s.Sentence), "what is printed is a sentence"
-    requirement = replace(rule.requirement, wording=text)
-    return replace(rule, requirement=requirement, written=written, sentence=written, definitions={})
+    entry = replace(requirement.entry, wording=text)
+    return replace(requirement, entry=entry, written=written, sentence=written, definitions={})
 
 
-def _ordered(rules: Sequence[FormalizedRequirement], options: Options) -> list[Requirement]:
-    """Those of rules and free texts, in the order of their files, and of each file."""
-    entries = [*(rule.requirement for rule in rules), *options.free_texts]
+def _ordered(
+    requirements: Sequence[FormalizedRequirement], options: Options
+) -> list[RequirementEntry]:
+    """Those of requirements and free texts, in the order of their files, and of each file."""
+    entries = [*(requirement.entry for requirement in requirements), *options.free_texts]
     files = list(dict.fromkeys(entry.wording.source.name for entry in entries))
     return sorted(
         entries, key=lambda each: (files.index(each.wording.source.name), each.wording.start)
     )
 
 
-def requirement(entry: Requirement, rule: FormalizedRequirement | None) -> dict[str, Any]:
-    """FRET's record of one requirement; one without a rule is free text."""
+def requirement(
+    entry: RequirementEntry, requirement: FormalizedRequirement | None
+) -> dict[str, Any]:
+    """FRET's record of one requirement; one without a requirement is free text."""
     fret = entry.fret
     return {
         "reqid": fret.get("reqid", entry.id),
@@ -175,20 +180,20 @@ def requirement(entry: Requirement, rule: FormalizedRequirement | None) -> dict[
         "status": _status(entry),
         "fulltext": entry.wording.text,
         **_own(entry),
-        "semantics": semantics(rule) if rule else {"type": "freeForm"},
+        "semantics": semantics(requirement) if requirement else {"type": "freeForm"},
         "input": {},
         "_id": _id(entry),
     }
 
 
-def _own(entry: Requirement) -> dict[str, dict[str, str]]:
+def _own(entry: RequirementEntry) -> dict[str, dict[str, str]]:
     """Fields that FRET lacks, for `fretc import` of the same file."""
     texts = {"title": entry.title, "text": entry.text}
     own = {name: text for name, text in texts.items() if text}
     return {OWN: own} if own else {}
 
 
-def _status(entry: Requirement) -> str:
+def _status(entry: RequirementEntry) -> str:
     """FRET's own status where it still means the same, else the nearest."""
     status = entry.fret.get("status", "")
     if STATUSES.get(status, "draft") == entry.status:
@@ -196,15 +201,15 @@ def _status(entry: Requirement) -> str:
     return _STATUSES.get(entry.status, "")
 
 
-def _id(entry: Requirement) -> str:
+def _id(entry: RequirementEntry) -> str:
     name = f"fretc:{entry.fret.get('project', '')}/{entry.id}"
     return entry.fret.get("_id") or str(uuid.uuid5(_SPACE, name))
 
 
-def semantics(rule: FormalizedRequirement) -> dict[str, Any]:
+def semantics(requirement: FormalizedRequirement) -> dict[str, Any]:
     """FRET's description of a sentence, with our formulas in FRET's spelling."""
-    tree = rule.sentence
-    base = rule.requirement.wording.start
+    tree = requirement.sentence
+    base = requirement.entry.wording.start
     fields: dict[str, Any] = {
         "type": "nasa",
         "scope": {"type": s.scope_key(tree)},
@@ -212,20 +217,20 @@ def semantics(rule: FormalizedRequirement) -> dict[str, Any]:
         "probability": "bound" if tree.probability else "null",
         "timing": s.timing_key(tree),
         "response": "satisfaction",
-        "variables": list(map(_variable_name, rule.variables)),
+        "variables": list(map(_variable_name, requirement.variables)),
         "component_name": tree.component,
         "component": tree.component,
         "post_condition": f"({quoted(expression(tree.response))})",
-        "description": meaning(tree, rule.ticks, rule.clock),
-        "ft": printing.text(rule.ft_finite, printing.FRET),
-        "pt": printing.text(rule.pt, printing.FRET),
-        "ftExpanded": printing.text(rule.ft_finite, printing.FRET),
-        "ftInfAUExpanded": printing.text(rule.ft_infinite, printing.FRET),
-        "ptExpanded": printing.text(rule.pt, printing.FRET),
+        "description": meaning(tree, requirement.ticks, requirement.clock),
+        "ft": printing.text(requirement.ft_finite, printing.FRET),
+        "pt": printing.text(requirement.pt, printing.FRET),
+        "ftExpanded": printing.text(requirement.ft_finite, printing.FRET),
+        "ftInfAUExpanded": printing.text(requirement.ft_infinite, printing.FRET),
+        "ptExpanded": printing.text(requirement.pt, printing.FRET),
     }
     fields |= _parts(tree)
-    if rule.pctl is not None:
-        fields["pctlExpanded"] = printing.pctl(rule.pctl)
+    if requirement.pctl is not None:
+        fields["pctlExpanded"] = printing.pctl(requirement.pctl)
     for name, span in _spans(tree).items():
         if span is not None:
             fields[f"{name}TextRange"] = [span.start - base, span.end - base - 1]
@@ -267,7 +272,7 @@ def _spans(tree: s.Sentence) -> dict[str, Span | None]:
 
 
 def variables(
-    rules: Sequence[FormalizedRequirement], declarations: Declarations | None = None
+    requirements: Sequence[FormalizedRequirement], declarations: Declarations | None = None
 ) -> list[dict[str, Any]]:
     """FRET's records of all variables; types and roles as far as the bindings know them.
 
@@ -276,18 +281,18 @@ def variables(
     of another project.
     """
     records: dict[tuple[str, str, str], dict[str, Any]] = {}
-    for rule in rules:
-        project = rule.requirement.fret.get("project", "")
-        component = rule.sentence.component
-        for name in rule.variables:
+    for requirement in requirements:
+        project = requirement.entry.fret.get("project", "")
+        component = requirement.sentence.component
+        for name in requirement.variables:
             key = (project, component, name)
             record = records.setdefault(
-                key, _variable(rule.glossary.get(name), project, component, name)
+                key, _variable(requirement.glossary.get(name), project, component, name)
             )
-            record["reqs"].append(_id(rule.requirement))
+            record["reqs"].append(_id(requirement.entry))
     named = [*records]
     own: set[tuple[str, str, str]] = set()
-    for name, variable in _glossary(rules, declarations):
+    for name, variable in _glossary(requirements, declarations):
         project, component = variable.fret.get("project", ""), variable.component
         key = (project, component, name)
         own.add(key)
@@ -305,11 +310,11 @@ def _is_of(variable: tuple[str, str, str], named: tuple[str, str, str]) -> bool:
 
 
 def _glossary(
-    rules: Sequence[FormalizedRequirement], declarations: Declarations | None
+    requirements: Sequence[FormalizedRequirement], declarations: Declarations | None
 ) -> Iterator[tuple[str, Variable]]:
     """Each name with what it is, of each component."""
     if declarations is None:
-        yield from rules[0].glossary.items() if rules else ()
+        yield from requirements[0].glossary.items() if requirements else ()
         return
     for name, variable in declarations.variables.items():
         yield from ((name, each) for each in (variable, *variable.of.values()))
@@ -382,5 +387,5 @@ TARGET = Target(
     emit,
     refuse,
     per_rule=False,
-    names=lambda rule: {name: _variable_name(name) for name in rule.variables},
+    names=lambda requirement: {name: _variable_name(name) for name in requirement.variables},
 )

@@ -13,15 +13,15 @@ from compiler.targets.target import DEFAULT, Options, Target, stem
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>.json` for each rule."""
+    """`<id>.json` for each requirement."""
     return tuple(
         Artifact(
-            PurePosixPath(f"{stem(rule)}.json"),
-            render("json/requirement.json.j2", requirement=record(rule)),
+            PurePosixPath(f"{stem(requirement)}.json"),
+            render("json/requirement.json.j2", requirement=record(requirement)),
         )
-        for rule in rules
+        for requirement in requirements
     )
 
 

@@ -20,61 +20,64 @@ from fretish.meaning import meaning
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>.ltl` for each rule."""
+    """`<id>.ltl` for each requirement."""
     return tuple(
-        Artifact(PurePosixPath(f"{stem(rule)}.ltl"), text(rule, options)) for rule in rules
+        Artifact(PurePosixPath(f"{stem(requirement)}.ltl"), text(requirement, options))
+        for requirement in requirements
     )
 
 
-def text(rule: FormalizedRequirement, options: Options = DEFAULT) -> str:
+def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
     """What a person reads: the sentence, its meaning, and its formulas."""
     dialect = printing.DIALECTS[options.notation]
-    names = _names(rule, dialect)
+    names = _names(requirement, dialect)
     if names:
         spelt = dialect.atom
         dialect = replace(dialect, atom=lambda atom: names[atom] if atom in names else spelt(atom))
     lines = {
-        "meaning": meaning(rule.written, rule.ticks, rule.clock),
-        "FT": printing.text(rule.ft_infinite, dialect),
+        "meaning": meaning(requirement.written, requirement.ticks, requirement.clock),
+        "FT": printing.text(requirement.ft_infinite, dialect),
     }
     if options.simplify:
-        lines["FT, simplified"] = _simplified(rule)
-    lines["FT, finite"] = printing.text(rule.ft_finite, dialect)
+        lines["FT, simplified"] = _simplified(requirement)
+    lines["FT, finite"] = printing.text(requirement.ft_finite, dialect)
     lines["PT"] = (
-        printing.text(rule.pt, dialect)
+        printing.text(requirement.pt, dialect)
         if dialect.has_past
         else f"({dialect.name} has no past operators)"
     )
-    if rule.pctl is not None:
-        lines["PCTL*"] = printing.pctl(rule.pctl)
-    lines |= definitions(rule, names)
+    if requirement.pctl is not None:
+        lines["PCTL*"] = printing.pctl(requirement.pctl)
+    lines |= definitions(requirement, names)
     return render(
         "ltl/requirement.ltl.j2",
-        id=rule.id,
-        title=visible(" ".join(rule.requirement.title.split())),
-        sentence=wording(rule.requirement),
+        id=requirement.id,
+        title=visible(" ".join(requirement.entry.title.split())),
+        sentence=wording(requirement.entry),
         lines=lines,
         width=max(map(len, lines)),
     )
 
 
-def _names(rule: FormalizedRequirement, dialect: printing.Dialect) -> Mapping[str, str]:
+def _names(requirement: FormalizedRequirement, dialect: printing.Dialect) -> Mapping[str, str]:
     """What propositions are called in a notation, where it is not what they are."""
     if dialect == printing.SPOT:
-        return comparison_names(rule)  # any other is in quotes where it has to be
+        return comparison_names(requirement)  # any other is in quotes where it has to be
     if dialect != printing.NUSMV:
         return {}
-    names = legal_names(rule.propositions, SMV | {"LAST"}, names=comparison_names(rule))
+    names = legal_names(
+        requirement.propositions, SMV | {"LAST"}, names=comparison_names(requirement)
+    )
     return {atom: name for atom, name in names.items() if name != printing.identifier(atom)}
 
 
-def _simplified(rule: FormalizedRequirement) -> str:
+def _simplified(requirement: FormalizedRequirement) -> str:
     """Spot's shorter form, proved equivalent; or why there is none."""
     from compiler.logic.spot import simplified
 
-    shorter = simplified(rule.ft_infinite)
+    shorter = simplified(requirement.ft_infinite)
     return shorter if shorter is not None else "(Spot finds nothing shorter)"
 
 

@@ -46,36 +46,36 @@ _MOST_STEPS = 64
 
 
 @with_recursion_limit
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601 without a probability, and for what PRISM's formulas cannot say."""
-    if rule.pctl is None:
+    if requirement.pctl is None:
         return not_expressible(
             "PRISM",
-            rule,
+            requirement,
             "a certainty such as that",
             "add `with probability >= 0.99` before the timing, or use `--emit smv` or `hoa`",
         )
-    predicate = _looks_back(rule)
+    predicate = _looks_back(requirement)
     if predicate is not None:
         return not_expressible(
             "PRISM",
-            rule,
+            requirement,
             f"the predicate `{predicate}`, which looks back,",
             "say it by a condition or a timing",
         )
-    if _steps(rule.pctl) > _MOST_STEPS:
+    if _steps(requirement.pctl) > _MOST_STEPS:
         return not_expressible(
             "PRISM",
-            rule,
-            f"more than {_MOST_STEPS} ticks of `{printing_of(rule.sentence.timing)}` "
+            requirement,
+            f"more than {_MOST_STEPS} ticks of `{printing_of(requirement.sentence.timing)}` "
             "in one path formula",
             "state the requirement without a scope, or use a clock with longer ticks",
         )
-    return too_long("PRISM", rule, rule.pctl)
+    return too_long("PRISM", requirement, requirement.pctl)
 
 
-def _looks_back(rule: FormalizedRequirement) -> str | None:
-    for expression in conditions(rule.sentence):
+def _looks_back(requirement: FormalizedRequirement) -> str | None:
+    for expression in conditions(requirement.sentence):
         predicate = next((name for name in calls(expression) if name in LOOK_BACK), None)
         if predicate is None and any(name.id == "FTP" for name in e.names(expression)):
             predicate = "FTP"
@@ -86,26 +86,28 @@ def _looks_back(rule: FormalizedRequirement) -> str | None:
 
 @with_recursion_limit
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>.props` and `<id>.prism` for each rule."""
-    return tuple(file for rule in rules for file in _files(rule))
+    """`<id>.props` and `<id>.prism` for each requirement."""
+    return tuple(file for requirement in requirements for file in _files(requirement))
 
 
-def _names(rule: FormalizedRequirement) -> Mapping[str, str]:
+def _names(requirement: FormalizedRequirement) -> Mapping[str, str]:
     # Storm's parser of models ends a module at this word, also within a name.
     parted = {
         name: identifier_of(name).replace("endmodule", "end_module")
-        for name in rule.propositions
+        for name in requirement.propositions
         if "endmodule" in name
     }
-    return legal_names(rule.propositions, PRISM, names={**comparison_names(rule), **parted})
+    return legal_names(
+        requirement.propositions, PRISM, names={**comparison_names(requirement), **parted}
+    )
 
 
-def _files(rule: FormalizedRequirement) -> Iterator[Artifact]:
-    assert rule.pctl is not None, "refused"
-    names = _names(rule)
-    meanings = in_words(rule)
+def _files(requirement: FormalizedRequirement) -> Iterator[Artifact]:
+    assert requirement.pctl is not None, "refused"
+    names = _names(requirement)
+    meanings = in_words(requirement)
     chances = legal_names(names.values(), PRISM | {*names.values()}, "p_")
     modules = legal_names(names.values(), PRISM | {*names.values(), *chances.values()}, "draw_")
     inputs = [
@@ -113,17 +115,20 @@ def _files(rule: FormalizedRequirement) -> Iterator[Artifact]:
         for proposition, name in names.items()
     ]
     values = {
-        "id": rule.id,
+        "id": requirement.id,
         "identifier": next(
-            each for each in numbered(identifier(rule)) if each not in names.values()
+            each for each in numbered(identifier(requirement)) if each not in names.values()
         ),  # PRISM reads a name in quotes as a property before it takes it for a label
-        "sentence": wording(rule.requirement),
+        "sentence": wording(requirement.entry),
         "inputs": inputs,
     }
-    values["impossible"] = impossible(rule, names)
-    for ending, more in (("props", {"property": property_(rule.pctl, names)}), ("prism", {})):
-        text = render(f"prism/requirement.{ending}.j2", stem=stem(rule), **values, **more)
-        yield Artifact(PurePosixPath(f"{stem(rule)}.{ending}"), text)
+    values["impossible"] = impossible(requirement, names)
+    for ending, more in (
+        ("props", {"property": property_(requirement.pctl, names)}),
+        ("prism", {}),
+    ):
+        text = render(f"prism/requirement.{ending}.j2", stem=stem(requirement), **values, **more)
+        yield Artifact(PurePosixPath(f"{stem(requirement)}.{ending}"), text)
 
 
 # The property ---------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""What a target is: a kind of file that rules become."""
+"""What a target is: a kind of file that requirements become."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import formula as f
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """What some targets want to know beside the rules; the others pass it over."""
+    """What some targets want to know beside the requirements; the others pass it over."""
 
     notation: str = "plain"
     """A name of `printing.DIALECTS`."""
     simplify: bool = False
     """Whether a simplified form stands beside the exact one."""
     one_file: bool = False
-    """Whether the monitors of all rules go into one file."""
-    free_texts: tuple[Requirement, ...] = ()
-    """Requirements without a rule, which only formats for exchange carry."""
+    """Whether the monitors of all requirements go into one file."""
+    free_texts: tuple[RequirementEntry, ...] = ()
+    """Requirements without a requirement, which only formats for exchange carry."""
     weaken: bool = False
     """Whether a target may say less than the requirement, where it then says so."""
     declarations: Declarations | None = None
-    """What the bindings declare, for files about the robot and not about one rule."""
+    """What the bindings declare, for files about the robot and not about one requirement."""
     attribution: Attribution = NOBODY
     """Who answers for what is made, for manifests of packages."""
 
@@ -40,12 +40,12 @@ DEFAULT = Options()
 
 
 class Emit(Protocol):
-    """Rules → files."""
+    """Requirements → files."""
 
     def __call__(
-        self, rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+        self, requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
     ) -> tuple[Artifact, ...]:
-        """Make all files of the rules; pure."""
+        """Make all files of the requirements; pure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,48 +58,50 @@ class Target:
     name: str
     summary: str
     emit: Emit
-    refuse: Callable[[FormalizedRequirement], Diagnostic | None] = lambda rule: None
-    remark: Callable[[FormalizedRequirement], Diagnostic | None] = lambda rule: None
+    refuse: Callable[[FormalizedRequirement], Diagnostic | None] = lambda requirement: None
+    remark: Callable[[FormalizedRequirement], Diagnostic | None] = lambda requirement: None
     """A warning for the user of the output; it does not refuse the output."""
     refuse_project: Callable[[Options], Diagnostic | None] = lambda options: None
-    """Asked once: a reason to refuse the target for any rules."""
+    """Asked once: a reason to refuse the target for any requirements."""
     remarks: Callable[[Options], tuple[Diagnostic, ...]] = lambda options: ()
-    """Warnings about the whole output, beside the `remark` on each rule."""
+    """Warnings about the whole output, beside the `remark` on each requirement."""
     per_rule: bool = True
-    """False where all rules go into one file, for exchange with another tool."""
+    """False where all requirements go into one file, for exchange with another tool."""
     joins: bool = False
-    """Whether `Options.one_file` puts all rules into one file."""
+    """Whether `Options.one_file` puts all requirements into one file."""
     of_bindings: bool = False
     """Whether it is made of the bindings alone, and reads no requirement."""
     of_loop: bool = False
     """Whether it reads `[interceptor]` and `[assume]` of the bindings."""
     together: bool = False
-    """Whether all rules always become one monitor; `per_rule` is False then."""
+    """Whether all requirements always become one monitor; `per_rule` is False then."""
     next_step: str = ""
-    """A command for the first file, `{}`, and what it does; for whoever makes one anew."""
-    names: Callable[[FormalizedRequirement], Mapping[str, str]] = lambda rule: {}
-    """What its texts call the propositions of a rule that it does not refuse."""
+    """A command for the first file, `{}`, and what it does; for a person who makes one again."""
+    names: Callable[[FormalizedRequirement], Mapping[str, str]] = lambda requirement: {}
+    """What its texts call the propositions of a requirement that it does not refuse."""
     weak: Target | None = None
     """The same target where weakening is allowed: it refuses less, and remarks what is lost."""
 
 
-def stem(rule: FormalizedRequirement) -> str:
-    """The name of the rule's files, without their ending: the id in lower case."""
-    return rule.id.lower()
+def stem(requirement: FormalizedRequirement) -> str:
+    """The name of the requirement's files, without their ending: the id in lower case."""
+    return requirement.id.lower()
 
 
-def identifier(rule: FormalizedRequirement) -> str:
+def identifier(requirement: FormalizedRequirement) -> str:
     """Its id in languages whose names begin with a letter: an id may begin with a digit."""
-    plain = re.sub(r"\W", "_", stem(rule))
+    plain = re.sub(r"\W", "_", stem(requirement))
     return f"r{plain}" if plain[:1].isdigit() else plain
 
 
-def not_expressible(target: str, rule: FormalizedRequirement, what: str, fix: str) -> Diagnostic:
-    """F601: the target's language has no words for a part of the rule."""
+def not_expressible(
+    target: str, requirement: FormalizedRequirement, what: str, fix: str
+) -> Diagnostic:
+    """F601: the target's language has no words for a part of the requirement."""
     return Diagnostic(
         Code.NOT_EXPRESSIBLE,
-        f"{target} cannot express {what} of {rule.id}",
-        rule.requirement.wording,
+        f"{target} cannot express {what} of {requirement.id}",
+        requirement.entry.wording,
         help=fix,
     )
 
@@ -108,14 +110,16 @@ _MOST_OPERATORS = 100_000
 """Of a property."""
 
 
-def too_long(target: str, rule: FormalizedRequirement, formula: f.Formula) -> Diagnostic | None:
+def too_long(
+    target: str, requirement: FormalizedRequirement, formula: f.Formula
+) -> Diagnostic | None:
     """F670 where the formula is endless once `<->` and `xor` are written with other operators."""
     if _size(formula) <= _MOST_OPERATORS:
         return None
     return Diagnostic(
         Code.TOO_LARGE,
-        f"the property of {rule.id} has more than {_MOST_OPERATORS} operators",
-        rule.requirement.wording,
+        f"the property of {requirement.id} has more than {_MOST_OPERATORS} operators",
+        requirement.entry.wording,
         help=f"{target}'s formulas have no `<->` and no `xor`: give parts names of their own",
     )
 

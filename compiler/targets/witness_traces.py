@@ -38,18 +38,20 @@ class WitnessTrace:
     ticks: tuple[RepeatedTick, ...]
 
 
-def words(rule: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
+def words(requirement: FormalizedRequirement) -> tuple[WitnessTrace, ...]:
     """The shortest run to each verdict that there is, and to the state that is the last to reach.
 
     There is none where the reference does not know the sentence, or is too large.
     """
-    atoms = atoms_of(rule.sentence)
-    if temporal_predicate(rule.sentence) is not None or len(atoms) > MOST_ATOMS:
+    atoms = atoms_of(requirement.sentence)
+    if temporal_predicate(requirement.sentence) is not None or len(atoms) > MOST_ATOMS:
         return ()
-    known = meanings(rule.sentence, atoms)
+    known = meanings(requirement.sentence, atoms)
     letters = {letter: values for values, letter in reversed([*known.items()])}
     try:
-        counted = explore(template(rule.sentence, rule.ticks or 0), letters, _MOST_STATES)
+        counted = explore(
+            template(requirement.sentence, requirement.ticks or 0), letters, _MOST_STATES
+        )
     except TooManyStatesError:
         return ()
     valuations = [letters[each] for each in counted.letters]

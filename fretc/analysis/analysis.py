@@ -12,9 +12,9 @@ from compiler.files.records import replace
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.letters import comparisons, temporal_predicate
 from fretc.analysis import implications as of_runs
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.components import by_outputs, by_variables
 from fretc.analysis.controllers.circuit import Circuit
 from fretc.analysis.controllers.files import Form
@@ -80,7 +80,7 @@ Job = of_games.Job[Finding]
 
 @with_recursion_limit
 def analyze(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     roles: Roles,
     assumptions: Sequence[FormalizedRequirement] = (),
     options: Options = DEFAULT,
@@ -88,15 +88,15 @@ def analyze(
     """All that can be known of the requirements together, computed in this process.
 
     Args:
-        rules: the requirements, in the order of the files.
-        roles: of every variable of rules and assumptions (`roles`).
+        requirements: the requirements, in the order of the files.
+        roles: of every variable of requirements and assumptions (`roles`).
         assumptions: what the environment keeps.
         options: limits, and FRET's reading.
     """
     found: list[Finding] = []
-    for job in jobs(rules, roles, assumptions, options):
+    for job in jobs(requirements, roles, assumptions, options):
         found.extend(job.ask(found))
-    return assembled(rules, roles, assumptions, options, found)
+    return assembled(requirements, roles, assumptions, options, found)
 
 
 Question = Callable[[RealizabilityProblem, Budget], Iterator[Finding]]
@@ -109,7 +109,7 @@ _OF_GROUPS: Mapping[str, Question] = {
 
 
 def jobs(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     roles: Roles,
     assumptions: Sequence[FormalizedRequirement],
     options: Options,
@@ -117,11 +117,11 @@ def jobs(
     """All questions, the most important ones first."""
     components = [
         _Setting(each, roles, assumptions, options)
-        for each in by_outputs(rules, assumptions, roles)
+        for each in by_outputs(requirements, assumptions, roles)
     ]
     groups = [
         _Setting(each, roles, assumptions, options)
-        for each in by_variables(rules, assumptions, roles)
+        for each in by_variables(requirements, assumptions, roles)
     ]
     return (
         *([_promises(assumptions, roles, options)] if assumptions else []),
@@ -154,7 +154,7 @@ def _promises(assumptions: Sequence[FormalizedRequirement], roles: Roles, option
 
 
 def controllers(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     roles: Roles,
     assumptions: Sequence[FormalizedRequirement],
     options: Options,
@@ -163,7 +163,7 @@ def controllers(
     """For each component: how it is kept, in such a form; to be asked where each can be."""
     return tuple(
         _Setting(each, roles, assumptions, options).controller(number, form)
-        for number, each in enumerate(by_outputs(rules, assumptions, roles), 1)
+        for number, each in enumerate(by_outputs(requirements, assumptions, roles), 1)
     )
 
 
@@ -172,14 +172,14 @@ class _Setting:
 
     def __init__(
         self,
-        rules: Sequence[FormalizedRequirement],
+        requirements: Sequence[FormalizedRequirement],
         roles: Roles,
         assumptions: Sequence[FormalizedRequirement],
         options: Options,
     ) -> None:
-        self._rules, self._roles, self._assumptions = rules, roles, assumptions
+        self._rules, self._roles, self._assumptions = requirements, roles, assumptions
         self._options = options
-        ids = [rule.id for rule in rules]
+        ids = [requirement.id for requirement in requirements]
         self._name = (
             f"{ids[0]} and {len(ids) - 1} others" if len(ids) > _MOST_NAMES else ", ".join(ids)
         )
@@ -228,7 +228,9 @@ class _Setting:
                 }
                 for verdict in (Verdict.REALIZABLE, Verdict.UNREALIZABLE)
             )
-            chosen = (self._roles[name] for rule in self._rules for name in rule.variables)
+            chosen = (
+                self._roles[name] for requirement in self._rules for name in requirement.variables
+            )
             if not self._assumptions and kept.issuperset(self._ids):
                 yield Consistency(self._ids, True)
             elif not self._assumptions and lost & {*self._ids} and Role.INPUT not in chosen:
@@ -301,7 +303,7 @@ _MOST_NAMES = 4
 
 
 def assembled(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     roles: Roles,
     assumptions: Sequence[FormalizedRequirement],
     options: Options,
@@ -315,7 +317,11 @@ def assembled(
         _of(Conflict, found), key=lambda each: (len(each.requirements), each.requirements)
     )
     open_ = _of(OpenQuestion, found)
-    missing = [rule.id for rule in rules if not any(rule.id in c.requirements for c in components)]
+    missing = [
+        requirement.id
+        for requirement in requirements
+        if not any(requirement.id in c.requirements for c in components)
+    ]
     overall, why = _verdict(components, missing)
     constants = _of(Constant, found)
     known = {id for each in _of(Completeness, found) for id in each.requirements}
@@ -326,21 +332,20 @@ def assembled(
         why=why,
         components=components,
         conflicts=tuple(fights),
-        complete=known.issuperset(rule.id for rule in rules),
+        complete=known.issuperset(requirement.id for requirement in requirements),
         repairs=_of(Repair, found),
         redundant=_of(Redundancy, found),
         removable=tuple(sorted(id for each in _of(Removable, found) for id in each.requirements)),
         vacuous=_of(Vacuity, found),
-        consistent=_consistent(rules, _of(Consistency, found)),
+        consistent=_consistent(requirements, _of(Consistency, found)),
         inconsistent=_of(Inconsistency, found),
         always=tuple(each.requirement for each in constants if each.always),
         never=tuple(each.requirement for each in constants if not each.always),
         assumptions=tuple(
-            Assumption(each.id, each.requirement.text, printed(each.written))
-            for each in assumptions
+            Assumption(each.id, each.entry.text, printed(each.written)) for each in assumptions
         ),
         roles={name: roles[name] for name in sorted(roles)},
-        terms=tuple(_terms([*rules, *assumptions], bool(assumptions), options)),
+        terms=tuple(_terms([*requirements, *assumptions], bool(assumptions), options)),
         open=open_,
     )
 
@@ -349,10 +354,10 @@ def _of(kind: type[F], found: Sequence[Finding]) -> tuple[F, ...]:
     return tuple(each for each in found if isinstance(each, kind))
 
 
-def _looks_back(rule: FormalizedRequirement) -> bool:
-    if temporal_predicate(rule.sentence):
+def _looks_back(requirement: FormalizedRequirement) -> bool:
+    if temporal_predicate(requirement.sentence):
         return True
-    return any(NUMBERS_BACK & {*calls(each)} for each in conditions(rule.sentence))
+    return any(NUMBERS_BACK & {*calls(each)} for each in conditions(requirement.sentence))
 
 
 def _verdict(components: Sequence[Component], missing: Sequence[str]) -> tuple[Verdict, str]:
@@ -379,21 +384,21 @@ def _fought(component: Component, conflicts: Sequence[frozenset[str]]) -> Compon
 
 
 def _consistent(
-    rules: Sequence[FormalizedRequirement], found: Sequence[Consistency]
+    requirements: Sequence[FormalizedRequirement], found: Sequence[Consistency]
 ) -> bool | None:
     if any(each.holds is False for each in found):
         return False
     known = {id for each in found if each.holds for id in each.requirements}
-    return True if known.issuperset(rule.id for rule in rules) else None
+    return True if known.issuperset(requirement.id for requirement in requirements) else None
 
 
 def _terms(
-    rules: Sequence[FormalizedRequirement], assumes: bool, options: Options
+    requirements: Sequence[FormalizedRequirement], assumes: bool, options: Options
 ) -> Iterator[str]:
     """What the findings rest on.
 
     Args:
-        rules: the requirements and the assumptions.
+        requirements: the requirements and the assumptions.
         assumes: whether there are assumptions.
         options: of the analysis.
     """
@@ -410,10 +415,10 @@ def _terms(
         yield "`eventually` may take as long as it likes, but not for ever"
     if assumes:
         yield "what is said of runs is said of those that keep all assumptions"
-    if any(_looks_back(rule) for rule in rules):
+    if any(_looks_back(requirement) for requirement in requirements):
         yield (
             "before the first tick nothing was true; `preBool`, `preInt` and `preReal` state their "
             "own first value"
         )
-    if any(comparisons(rule) for rule in rules):
+    if any(comparisons(requirement) for requirement in requirements):
         yield "numbers are exact: whole or real, without bounds; floats round, which is not seen"

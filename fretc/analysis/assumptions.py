@@ -11,25 +11,25 @@ from fretish.diagnostics.diagnostic import Diagnostic, has_errors
 
 
 def assumptions(
-    rules: Sequence[FormalizedRequirement], declarations: Declarations | None
+    requirements: Sequence[FormalizedRequirement], declarations: Declarations | None
 ) -> tuple[tuple[FormalizedRequirement, ...], tuple[Diagnostic, ...]]:
-    """The assumptions as rules, and all that there is to say of them.
+    """The assumptions as requirements, and all that there is to say of them.
 
     Args:
-        rules: the requirements; an assumption has an id of its own.
+        requirements: the requirements; an assumption has an id of its own.
         declarations: the bindings; None: there are none.
     """
     if declarations is None or not declarations.environment:
         return (), ()
     found: list[FormalizedRequirement] = []
     said: list[Diagnostic] = []
-    for requirement in declarations.environment:
-        rule, remarks = formalize(requirement, declarations)
+    for entry in declarations.environment:
+        requirement, remarks = formalize(entry, declarations)
         said.extend(remarks)
-        if rule is not None:
-            found.append(rule)
-    said.extend(name_collisions([*rules, *found]))
+        if requirement is not None:
+            found.append(requirement)
+    said.extend(name_collisions([*requirements, *found]))
     if not has_errors(said):
-        every = [*(rule.requirement for rule in rules), *declarations.environment]
+        every = [*(requirement.entry for requirement in requirements), *declarations.environment]
         said.extend(dict.fromkeys(duplicate_ids(every).values()))
     return tuple(found), tuple(dict.fromkeys(said))

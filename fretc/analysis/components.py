@@ -15,46 +15,56 @@ from fretish.bindings.declarations import Role
 Tokens = frozenset[str]
 
 
-def tokens(rule: FormalizedRequirement, roles: Roles, *kinds: Role) -> Tokens:
-    """The variables of such roles that a rule reads; of a bound proposition its signals."""
+def tokens(requirement: FormalizedRequirement, roles: Roles, *kinds: Role) -> Tokens:
+    """The variables of such roles that a requirement reads; of a bound proposition its signals."""
     found: set[str] = set()
-    for name in rule.variables:
+    for name in requirement.variables:
         if roles[name] in kinds:
-            bound = rule.declarations.propositions.get(name) if rule.declarations else None
+            bound = (
+                requirement.declarations.propositions.get(name)
+                if requirement.declarations
+                else None
+            )
             found.update(bound.signals if bound else (name,))
     return frozenset(found)
 
 
 def by_outputs(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
     roles: Roles,
 ) -> list[tuple[FormalizedRequirement, ...]]:
     """Components: those of which no output is shared; assumptions about outputs join them."""
 
-    def of(rule: FormalizedRequirement) -> Tokens:
-        return tokens(rule, roles, Role.OUTPUT)
+    def of(requirement: FormalizedRequirement) -> Tokens:
+        return tokens(requirement, roles, Role.OUTPUT)
 
-    return _groups(rules, [each for each in assumptions if of(each)], of)
+    return _groups(requirements, [each for each in assumptions if of(each)], of)
 
 
 def by_variables(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
     roles: Roles,
 ) -> list[tuple[FormalizedRequirement, ...]]:
     """Groups that share no variable at all."""
-    return _groups(rules, assumptions, lambda rule: tokens(rule, roles, Role.INPUT, Role.OUTPUT))
+    return _groups(
+        requirements,
+        assumptions,
+        lambda requirement: tokens(requirement, roles, Role.INPUT, Role.OUTPUT),
+    )
 
 
 def about(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
     roles: Roles,
 ) -> tuple[FormalizedRequirement, ...]:
-    """The assumptions that bear upon the rules, directly or by way of other assumptions."""
+    """The assumptions that bear upon the requirements, directly or by way of other assumptions."""
     kinds = (Role.INPUT, Role.OUTPUT)
-    reached = {token for rule in rules for token in tokens(rule, roles, *kinds)}
+    reached = {
+        token for requirement in requirements for token in tokens(requirement, roles, *kinds)
+    }
     rest = list(assumptions)
     found: list[FormalizedRequirement] = []
     while True:
@@ -68,18 +78,18 @@ def about(
 
 
 def _groups(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     links: Sequence[FormalizedRequirement],
     of: Callable[[FormalizedRequirement], Tokens],
 ) -> list[tuple[FormalizedRequirement, ...]]:
-    """The rules that are linked, in their order; links themselves are in no group."""
+    """The requirements that are linked, in their order; links themselves are in no group."""
     groups: list[tuple[set[int], set[str]]] = []
-    members = [*rules, *links]
-    for number, rule in enumerate(members):
-        mine = set(of(rule))
+    members = [*requirements, *links]
+    for number, requirement in enumerate(members):
+        mine = set(of(requirement))
         touched = [group for group in groups if group[1] & mine]
         groups = [group for group in groups if group not in touched]
         numbers = {number}.union(*(group[0] for group in touched))
         groups.append((numbers, mine.union(*(group[1] for group in touched))))
-    kept = [sorted(n for n in numbers if n < len(rules)) for numbers, _ in groups]
+    kept = [sorted(n for n in numbers if n < len(requirements)) for numbers, _ in groups]
     return [tuple(members[n] for n in numbers) for numbers in sorted(filter(None, kept))]

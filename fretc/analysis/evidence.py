@@ -1,4 +1,4 @@
-"""An analysis as evidence: what it is of, to the letter, and whether that is what there is now.
+"""An analysis as evidence: what it is of, exactly, and whether that is what there is now.
 
 Nothing in a file is trusted: a verdict that does not follow from what stands beside it is F503.
 """
@@ -67,33 +67,43 @@ def schema() -> dict[str, Any]:
 
 
 def document(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
     analysis: Analysis,
     *,
     as_fret: bool,
 ) -> Document:
     """The evidence of an analysis of these."""
-    return Document(SCHEMA, __version__, as_fret, members(rules), members(assumptions), analysis)
+    return Document(
+        SCHEMA, __version__, as_fret, members(requirements), members(assumptions), analysis
+    )
 
 
-def members(rules: Sequence[FormalizedRequirement]) -> dict[str, Member]:
+def members(requirements: Sequence[FormalizedRequirement]) -> dict[str, Member]:
     """Requirements, or assumptions, as they are now, by their ids."""
-    return {rule.id: Member(printed(rule.written), _digest(rule)) for rule in rules}
+    return {
+        requirement.id: Member(printed(requirement.written), _digest(requirement))
+        for requirement in requirements
+    }
 
 
-def _digest(rule: FormalizedRequirement) -> str:
+def _digest(requirement: FormalizedRequirement) -> str:
     """Of all that the analysis reads of a requirement."""
-    declared = rule.declarations
+    declared = requirement.declarations
     return canonical.digest(
         {
-            "meaning": rule.fingerprint,
-            "formulas": [str(each) for each in (rule.ft_infinite, rule.ft_finite, rule.pt)],
-            "ticks": rule.ticks,
-            "bound": canonical.bound(declared, rule.propositions) if declared else None,
-            "roles": {name: str(role(rule, name)) for name in rule.variables},
+            "meaning": requirement.fingerprint,
+            "formulas": [
+                str(each)
+                for each in (requirement.ft_infinite, requirement.ft_finite, requirement.pt)
+            ],
+            "ticks": requirement.ticks,
+            "bound": canonical.bound(declared, requirement.propositions) if declared else None,
+            "roles": {name: str(role(requirement, name)) for name in requirement.variables},
             "types": {
-                name: rule.glossary[name].type for name in rule.variables if name in rule.glossary
+                name: requirement.glossary[name].type
+                for name in requirement.variables
+                if name in requirement.glossary
             },
         }
     )
@@ -101,28 +111,28 @@ def _digest(rule: FormalizedRequirement) -> str:
 
 def suspicions(
     known: Document,
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
 ) -> Iterator[str]:
     """Why an analysis says nothing of these: what was added, was taken out, or has changed.
 
     Args:
         known: the evidence.
-        rules: the requirements in force now.
+        requirements: the requirements in force now.
         assumptions: what the environment is taken to keep now.
     """
     if known.as_fret:
         yield "it answers FRET's question, in which `eventually` means at once"
-    yield from changes(known, rules, assumptions)
+    yield from changes(known, requirements, assumptions)
 
 
 def changes(
     known: Document,
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
 ) -> Iterator[str]:
     """What was added, was taken out, or has changed since an analysis."""
-    yield from _changes(known.requirements, members(rules), "")
+    yield from _changes(known.requirements, members(requirements), "")
     yield from _changes(known.assumptions, members(assumptions), "assumption ")
 
 
@@ -136,9 +146,11 @@ def _changes(then: Mapping[str, Member], now: Mapping[str, Member], what: str) -
             yield f"{what}{id} has changed since"
 
 
-def remarks(analysis: Analysis, rules: Sequence[FormalizedRequirement]) -> Iterator[Diagnostic]:
+def remarks(
+    analysis: Analysis, requirements: Sequence[FormalizedRequirement]
+) -> Iterator[Diagnostic]:
     """F561 for each conflict; F562 where nobody knows."""
-    places = {rule.id: rule.requirement.wording for rule in rules}
+    places = {requirement.id: requirement.entry.wording for requirement in requirements}
     for each in analysis.conflicts:
         ids = each.requirements
         what = "can be kept by no system" if len(ids) == 1 else "cannot be kept together"

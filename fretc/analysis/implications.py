@@ -1,4 +1,4 @@
-"""What requirements say of one another, whoever chooses the outputs: of runs, not of games."""
+"""Implications among requirements, for any choice of outputs: of runs, not of games."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Counter
 from fretc.analysis.findings import Inconsistency, OpenQuestion, Redundancy, Vacuity
 from fretc.analysis.games.cores import minimal
 from fretc.analysis.realizability_problem import RealizabilityProblem
@@ -50,7 +50,7 @@ def consistency(
     setting: RealizabilityProblem, budget: Budget
 ) -> Iterator[Consistency | OpenQuestion]:
     """Whether any run keeps all requirements."""
-    ids = tuple(rule.id for rule in setting.rules)
+    ids = tuple(requirement.id for requirement in setting.requirements)
     question = f"whether any run keeps {listed(ids)}"
     doubt = setting.left_out or setting.of_inputs or setting.of_outputs
     try:
@@ -148,11 +148,11 @@ def _is_implied(
 
 def vacuities(setting: RealizabilityProblem, budget: Budget) -> Iterator[Vacuity | OpenQuestion]:
     """Requirements of which a scope or a trigger never comes, in runs that keep the others."""
-    rules = {rule.id: rule for rule in setting.rules}
+    requirements = {requirement.id: requirement for requirement in setting.requirements}
     for counter in setting.arena.counters:
         others = [each.id for each in setting.arena.counters if each is not counter]
         try:
-            found = _vacuity(setting, rules[counter.id], counter, others, budget.again())
+            found = _vacuity(setting, requirements[counter.id], counter, others, budget.again())
         except OutOfTimeError as error:
             yield OpenQuestion(f"whether {counter.id} is ever triggered", str(error))
             continue
@@ -162,7 +162,7 @@ def vacuities(setting: RealizabilityProblem, budget: Budget) -> Iterator[Vacuity
 
 def _vacuity(
     setting: RealizabilityProblem,
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     counter: Counter,
     others: Sequence[str],
     budget: Budget,
@@ -180,9 +180,9 @@ def _vacuity(
         return tuple(sorted(minimal(others, lambda ids: excluded(ids, ticks))))
 
     in_scope, begun = attrgetter("enforced"), attrgetter("triggered")
-    if rule.sentence.scope is not None and excluded(others, in_scope):
+    if requirement.sentence.scope is not None and excluded(others, in_scope):
         return Vacuity(counter.id, by(in_scope), "scope")
-    if rule.sentence.condition is not None and excluded(others, begun):
+    if requirement.sentence.condition is not None and excluded(others, begun):
         return Vacuity(counter.id, by(begun), "trigger")
     return None
 
@@ -195,13 +195,12 @@ def inconsistencies(
     Source: Post, Hoenicke, Podelski, rt-Inconsistency: a new property for real-time requirements,
     FASE 2011. It is not monotone, so nothing is made smaller by leaving requirements out.
     """
-    if len(setting.rules) == 1:
+    if len(setting.requirements) == 1:
         return
     doubt = setting.of_inputs or setting.of_outputs
     counters = setting.arena.counters
-    question = (
-        f"whether a run can lead to where {listed([rule.id for rule in setting.rules])} clash"
-    )
+    names = listed([requirement.id for requirement in setting.requirements])
+    question = f"whether a run can lead to where {names} clash"
     if doubt is not None:
         yield OpenQuestion(question, doubt)
         return
@@ -226,7 +225,9 @@ def _candidates(
     setting: RealizabilityProblem, counters: Sequence[Counter]
 ) -> Iterator[tuple[Counter, ...]]:
     """Pairs and triples that share variables, and all of them."""
-    read = {rule.id: frozenset(rule.variables) for rule in setting.rules}
+    read = {
+        requirement.id: frozenset(requirement.variables) for requirement in setting.requirements
+    }
 
     def near(left: Counter, right: Counter) -> bool:
         return bool(read[left.id] & read[right.id])

@@ -11,13 +11,14 @@ from compiler.formalization.letters import comparisons
 from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Alphabet, Numbers, Tick, UnsupportedError, numbers
+from fretc.analysis.arena.alphabet import Alphabet, Tick
 from fretc.analysis.arena.budget import ENDLESS, Budget
-from fretc.analysis.arena.counters import Counter, counter
-from fretc.analysis.arena.memory import side_by_side
+from fretc.analysis.arena.counters import counter
+from fretc.analysis.arena.memory import Counter, side_by_side
 from fretc.analysis.arena.product import Arena, arena
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
 from fretc.analysis.components import about
 from fretc.analysis.games.game import Game, upheld
 from fretc.analysis.games.game_traces import Run
@@ -35,14 +36,14 @@ _LONG = 10
 class RealizabilityProblem:
     """Some requirements, the assumptions that bear upon them, and the arena of both."""
 
-    rules: tuple[FormalizedRequirement, ...]
+    requirements: tuple[FormalizedRequirement, ...]
     assumptions: tuple[FormalizedRequirement, ...]
     arena: Arena
     roles: Roles
     as_fret: bool
     favoured: Role = Role.INPUT
     """Who chooses what nothing is known of: a number of the tick before, a signal that may be
-    unknown, what was before the first tick. Whoever loses even so loses."""
+    unknown, what was before the first tick. A player who loses even so loses."""
     steps: int = 0
     """How many ticks before a bound of a number it is remembered whether that is within reach."""
     fresh: Numbers = field(default_factory=numbers, compare=False, repr=False)
@@ -107,7 +108,7 @@ class RealizabilityProblem:
         if self.arena.alphabet.open is None:
             return self
         return _built(
-            self.rules,
+            self.requirements,
             self.assumptions,
             self.roles,
             numbers(),
@@ -124,12 +125,12 @@ class RealizabilityProblem:
             UnsupportedError: they say something that the stage has no letters for.
         """
         alphabet, found = self.arena.alphabet, list(self.arena.assumptions)
-        for rule in more:
-            made = counter(rule, alphabet, self.fresh, {})
+        for requirement in more:
+            made = counter(requirement, alphabet, self.fresh, {})
             known = {*alphabet.inputs, *alphabet.outputs, *(bit.now for bit in made.bits)}
             read = (bdd.support(each) for each in (made.safe, made.triggered, *made.steps))
             if not known.issuperset(chain.from_iterable(read)):
-                raise UnsupportedError(f"{rule.id} is about other atoms")
+                raise UnsupportedError(f"{requirement.id} is about other atoms")
             found.append(made)
         arena = replace(self.arena, assumptions=tuple(found))
         return replace(
@@ -142,7 +143,13 @@ class RealizabilityProblem:
             return None
         steps, near = 2 * self.steps or 1, self.assumptions
         found = _built(
-            self.rules, near, self.roles, numbers(), budget, as_fret=self.as_fret, steps=steps
+            self.requirements,
+            near,
+            self.roles,
+            numbers(),
+            budget,
+            as_fret=self.as_fret,
+            steps=steps,
         )
         if (found.left_out, found.of_outputs) != (self.left_out, self.of_outputs):
             return None  # it is more than can be sorted out
@@ -171,8 +178,15 @@ class RealizabilityProblem:
             numbers: of each tick, where they depend on those of the tick before.
         """
         wanted = set(ids)
-        rules = [*(rule for rule in self.rules if rule.id in wanted), *self.assumptions]
-        names = {name for rule in rules for name in (*rule.variables, *rule.propositions)}
+        requirements = [
+            *(requirement for requirement in self.requirements if requirement.id in wanted),
+            *self.assumptions,
+        ]
+        names = {
+            name
+            for requirement in requirements
+            for name in (*requirement.variables, *requirement.propositions)
+        }
 
         def shown(tick: Tick) -> Tick:
             return {name: tick[name] for name in sorted(tick) if name in names}
@@ -190,9 +204,13 @@ class RealizabilityProblem:
     def certain(self) -> tuple[Counter, ...]:
         """The counters of requirements of which the environment has no letter too many."""
         doubtful = self.arena.alphabet.doubtful(Role.INPUT)
-        if any(not doubtful.isdisjoint(_atoms(rule)) for rule in self.assumptions):
+        if any(not doubtful.isdisjoint(_atoms(requirement)) for requirement in self.assumptions):
             return ()
-        return self.counters(rule.id for rule in self.rules if doubtful.isdisjoint(_atoms(rule)))
+        return self.counters(
+            requirement.id
+            for requirement in self.requirements
+            if doubtful.isdisjoint(_atoms(requirement))
+        )
 
     @property
     def of_inputs(self) -> str | None:
@@ -210,12 +228,12 @@ class RealizabilityProblem:
         return "; ".join(f"{id}: {why}" for id, why in self.arena.beyond.items()) or None
 
 
-def _atoms(rule: FormalizedRequirement) -> frozenset[str]:
-    return frozenset(name for name, _ in candidates(rule.sentence))
+def _atoms(requirement: FormalizedRequirement) -> frozenset[str]:
+    return frozenset(name for name, _ in candidates(requirement.sentence))
 
 
 def stage(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
     roles: Roles,
     *,
@@ -228,8 +246,8 @@ def stage(
         UnsupportedError: an assumption has no counter.
         OutOfTimeError: it takes longer than the budget to sort out their comparisons.
     """
-    near = about(rules, assumptions, roles)
-    return _built(rules, near, roles, numbers(), budget, as_fret=as_fret)
+    near = about(requirements, assumptions, roles)
+    return _built(requirements, near, roles, numbers(), budget, as_fret=as_fret)
 
 
 def interleaved(
@@ -241,12 +259,12 @@ def interleaved(
     nodes for it as the counts have values. For many requirements that is worse.
     """
     wanted = set(ids)
-    rules = [rule for rule in setting.rules if rule.id in wanted]
-    near = about(rules, setting.assumptions, setting.roles)
+    requirements = [requirement for requirement in setting.requirements if requirement.id in wanted]
+    near = about(requirements, setting.assumptions, setting.roles)
 
     def built(fresh: Numbers) -> RealizabilityProblem:
         return _built(
-            rules,
+            requirements,
             near,
             setting.roles,
             fresh,
@@ -264,7 +282,7 @@ def interleaved(
 
 
 def _built(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     near: Sequence[FormalizedRequirement],
     roles: Roles,
     fresh: Numbers,
@@ -274,19 +292,21 @@ def _built(
     favoured: Role = Role.INPUT,
     steps: int = 0,
 ) -> RealizabilityProblem:
-    alphabet = alphabet_of([*rules, *near], roles, fresh, favoured, budget, steps)
-    built = arena(rules, near, alphabet, fresh, as_fret=as_fret)
+    alphabet = alphabet_of([*requirements, *near], roles, fresh, favoured, budget, steps)
+    built = arena(requirements, near, alphabet, fresh, as_fret=as_fret)
     return RealizabilityProblem(
-        tuple(rules), tuple(near), built, roles, as_fret, favoured, steps, fresh
+        tuple(requirements), tuple(near), built, roles, as_fret, favoured, steps, fresh
     )
 
 
-def _has_numbers(rule: FormalizedRequirement) -> bool:
+def _has_numbers(requirement: FormalizedRequirement) -> bool:
     """Whether it compares any, as far as its letters tell."""
-    declared = rule.declarations
+    declared = requirement.declarations
     if declared is None:
-        return bool(comparisons(rule))
-    return bool(rule.stated) or not declared.propositions.keys().isdisjoint(rule.variables)
+        return bool(comparisons(requirement))
+    return bool(requirement.stated) or not declared.propositions.keys().isdisjoint(
+        requirement.variables
+    )
 
 
 _MOST_STEPS = 8
@@ -294,7 +314,7 @@ _MOST_STEPS = 8
 
 
 def alphabet_of(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     roles: Roles,
     fresh: Numbers,
     favoured: Role,
@@ -303,12 +323,12 @@ def alphabet_of(
     *,
     of_moments: bool = False,
 ) -> Alphabet:
-    """The letters of some rules.
+    """The letters of some requirements.
 
     With the numbers that comparisons are about; z3 is imported where there are some.
 
     Args:
-        rules: whose atoms they have.
+        requirements: whose atoms they have.
         roles: of their variables.
         fresh: variables for bits.
         favoured: who chooses what is not known.
@@ -316,8 +336,8 @@ def alphabet_of(
         steps: how many ticks before a bound it is remembered whether that is within reach.
         of_moments: whether propositions over several samples are true or false at will.
     """
-    if not any(map(_has_numbers, rules)):
-        return Propositions(rules, roles, fresh)
+    if not any(map(_has_numbers, requirements)):
+        return Propositions(requirements, roles, fresh)
     from fretc.analysis.arithmetic.alphabet import Cells
 
-    return Cells(rules, roles, fresh, favoured, budget, steps, of_moments=of_moments)
+    return Cells(requirements, roles, fresh, favoured, budget, steps, of_moments=of_moments)

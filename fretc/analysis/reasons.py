@@ -12,7 +12,7 @@ from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.evaluation import evaluate
 from fretc.analysis.arena.alphabet import Alphabet
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Counter
 from fretc.analysis.games.game import Game
 from fretc.analysis.games.game_traces import GameTrace
 from fretc.analysis.games.replay import broken, columns
@@ -26,23 +26,28 @@ _LONGEST = 1_000
 
 
 def because(
-    rules: Sequence[FormalizedRequirement], counters: Sequence[Counter], game: Game, play: GameTrace
+    requirements: Sequence[FormalizedRequirement],
+    counters: Sequence[Counter],
+    game: Game,
+    play: GameTrace,
 ) -> str:
     """What the requirements ask for where the play is lost.
 
     Args:
-        rules: of a minimal conflict.
+        requirements: of a minimal conflict.
         counters: of the same.
         game: of the same.
         play: in which the environment wins.
     """
-    details = {rule.id: _details(rule, game.alphabet, play) for rule in rules}
+    details = {
+        requirement.id: _details(requirement, game.alphabet, play) for requirement in requirements
+    }
     if play.loop is not None:
-        return _for_ever(rules, game, play, _asked(counters, game, play), details)
+        return _for_ever(requirements, game, play, _asked(counters, game, play), details)
     last = play.ticks - 1
     now = _asked_last(counters, game, play)
-    if not now or len(rules) == 1:
-        id = rules[0].id
+    if not now or len(requirements) == 1:
+        id = requirements[0].id
         return f"at tick {last} no output keeps {id}{details[id]}, whatever was done before"
     parts: list[str] = []
     wanted = ""
@@ -99,21 +104,21 @@ def _joined(parts: Sequence[str]) -> str:
     return ", and ".join(part for part in (", ".join(parts[:-1]), *parts[-1:]) if part)
 
 
-def _details(rule: FormalizedRequirement, alphabet: Alphabet, play: GameTrace) -> str:
+def _details(requirement: FormalizedRequirement, alphabet: Alphabet, play: GameTrace) -> str:
     """` (since tick 3, by tick 5)`: of the demand that is open at the last tick; or nothing."""
-    begun, last = _begun(rule, alphabet, play), play.ticks - 1
+    begun, last = _begun(requirement, alphabet, play), play.ticks - 1
     words = [] if begun in (None, last) else [f"since tick {begun}"]
     if play.loop is None:
-        words.extend(_limit(rule, alphabet, begun, last))
+        words.extend(_limit(requirement, alphabet, begun, last))
     return f" ({', '.join(words)})" if words else ""
 
 
 def _limit(
-    rule: FormalizedRequirement, alphabet: Alphabet, begun: int | None, last: int
+    requirement: FormalizedRequirement, alphabet: Alphabet, begun: int | None, last: int
 ) -> Iterator[str]:
     """How long the demand is open that began then, if that is known."""
-    scope = rule.sentence.scope
-    demand = rule.demanded.demand
+    scope = requirement.sentence.scope
+    demand = requirement.demanded.demand
     match demand.kind:
         case Kind.WITHIN:
             if begun is not None and begun < last == begun + demand.ticks:
@@ -123,13 +128,13 @@ def _limit(
             if begun is not None and demand.ticks and ends_with_run(kind):
                 yield f"up to tick {begun + demand.ticks}"
         case Kind.UNTIL:
-            yield f"until `{_stop(rule.written.timing)}`"
+            yield f"until `{_stop(requirement.written.timing)}`"
             names = f.atoms(demand.stop)
             inputs = {alphabet.labels.get(number) for number in alphabet.inputs}
             if names and inputs.issuperset(names):
                 yield "which the environment withholds"
         case Kind.BEFORE:
-            yield f"before `{_stop(rule.written.timing)}`"
+            yield f"before `{_stop(requirement.written.timing)}`"
         case Kind.IMMEDIATELY | Kind.NEXT | Kind.FINALLY | Kind.EVENTUALLY | Kind.ALWAYS:
             return
         case Kind.AFTER | Kind.NOT_AFTER:
@@ -144,35 +149,41 @@ def _stop(timing: Timing) -> str:
     return expression(condition)
 
 
-def _begun(rule: FormalizedRequirement, alphabet: Alphabet, play: GameTrace) -> int | None:
+def _begun(requirement: FormalizedRequirement, alphabet: Alphabet, play: GameTrace) -> int | None:
     """When the demand began that is open at the last tick; None: there is none, or no condition."""
-    if rule.sentence.condition is None:
+    if requirement.sentence.condition is None:
         return None
-    signals = (rule.watch.trigger, rule.watch.owed)
+    signals = (requirement.watch.trigger, requirement.watch.owed)
     atoms = dict.fromkeys(name for signal in signals for name in f.atoms(signal))
     known = columns(alphabet, play.runs, atoms)
     ticks = play.ticks
     trigger, owed = (evaluate(signal, known, ticks) for signal in signals)
-    if Trait.FORBIDS in TRAITS[rule.demanded.demand.kind]:  # what is open is of the newest trigger
+    if (
+        Trait.FORBIDS in TRAITS[requirement.demanded.demand.kind]
+    ):  # what is open is of the newest trigger
         return trigger.bit_length() - 1 if trigger else None
     settled = ~owed & ((1 << ticks - 1) - 1)
     tick = settled.bit_length()
     stretch = trigger >> tick << tick
     if not stretch:
         return None
-    return stretch.bit_length() - 1 if rule.watch.renewed else (stretch & -stretch).bit_length() - 1
+    return (
+        stretch.bit_length() - 1
+        if requirement.watch.renewed
+        else (stretch & -stretch).bit_length() - 1
+    )
 
 
 def _for_ever(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     game: Game,
     play: GameTrace,
     asked: Mapping[str, Sequence[str]],
     details: Mapping[str, str],
 ) -> str:
     assert play.loop is not None
-    lost = broken(rules, game.alphabet, play)
-    others = [rule.id for rule in rules if rule.id not in lost]
+    lost = broken(requirements, game.alphabet, play)
+    others = [requirement.id for requirement in requirements if requirement.id not in lost]
     open_ = listed([f"{id}{details[id]}" for id in lost])
     again = _span(play.loop, play.ticks - 1)
     always = {id: set(asked[id][play.loop :]) for id in others if id in asked}

@@ -17,16 +17,16 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Counter
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.findings import Conflict, OpenQuestion, Repair
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
 from fretish.clock import in_unit
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.printer import expression
 from fretish.printer import sentence as printed
 from fretish.syntax import (
@@ -57,9 +57,9 @@ class _Known:
     """What the conflicts of a component share."""
 
     triggered: dict[tuple[str, ...], frozenset[str]] = field(default_factory=dict)
-    """The ids of the rules whose triggers can come as things are, by the ids of those rules."""
+    """Ids of the requirements whose triggers can come as things are, by all of these ids."""
     fits: dict[object, bool] = field(default_factory=dict)
-    """Of rules with such bounds, under such assumptions: whether the system wins."""
+    """Of requirements with such bounds, under such assumptions: whether the system wins."""
     assumptions: dict[tuple[str, ...], Rules | None] = field(default_factory=dict)
     """By their wordings."""
 
@@ -69,7 +69,7 @@ class _Setting:
     """A component, one of its conflicts, and the time that is left."""
 
     whole: RealizabilityProblem
-    rules: Rules
+    requirements: Rules
     """Those of the conflict."""
     fought: Sequence[frozenset[str]]
     """The ids of each conflict of the component."""
@@ -79,7 +79,7 @@ class _Setting:
     @property
     def longest(self) -> int:
         """A bound that is as good as any longer one, or nearly."""
-        return 2 * sum(rule.ticks or 0 for rule in self.rules) + _ROOM
+        return 2 * sum(requirement.ticks or 0 for requirement in self.requirements) + _ROOM
 
 
 def repairs(
@@ -95,12 +95,16 @@ def repairs(
     known = _Known()
     fought = [frozenset(conflict.requirements) for conflict in conflicts]
     for conflict in conflicts:
-        rules = tuple(rule for rule in setting.rules if rule.id in conflict.requirements)
+        requirements = tuple(
+            requirement
+            for requirement in setting.requirements
+            if requirement.id in conflict.requirements
+        )
         for family in (_changes, _promises):
             share = Budget(budget.seconds / len(conflicts) / 2)
             try:
                 yield from family(
-                    _Setting(setting, rules, fought, share, known), conflict.requirements
+                    _Setting(setting, requirements, fought, share, known), conflict.requirements
                 )
             except (OutOfTimeError, UnsupportedError) as error:
                 ids = ", ".join(conflict.requirements)
@@ -109,90 +113,92 @@ def repairs(
 
 def _changes(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
     """The least change of each bound."""
-    for rule in setting.rules:
-        changed = _least_change(setting, rule)
+    for requirement in setting.requirements:
+        changed = _least_change(setting, requirement)
         if changed is not None:
-            settles = all(rule.id in ids for ids in setting.fought) and _fits(
-                setting, _with(setting.whole.rules, changed), ()
+            settles = all(requirement.id in ids for ids in setting.fought) and _fits(
+                setting, _with(setting.whole.requirements, changed), ()
             )
-            yield Repair(tuple(conflict), rule.id, (printed(changed.written),), settles)
+            yield Repair(tuple(conflict), requirement.id, (printed(changed.written),), settles)
 
 
 def _promises(setting: _Setting, conflict: Sequence[str]) -> Iterator[Repair]:
     """Some assumptions."""
     for assumed in islice(_assumptions(setting), MOST_ASSUMPTIONS):
         sentences = tuple(printed(each.written) for each in assumed)
-        settles = _fits(setting, setting.whole.rules, assumed)
+        settles = _fits(setting, setting.whole.requirements, assumed)
         yield Repair(tuple(conflict), None, sentences, settles)
 
 
-def _with(rules: Rules, changed: FormalizedRequirement) -> Rules:
-    return tuple(changed if rule.id == changed.id else rule for rule in rules)
+def _with(requirements: Rules, changed: FormalizedRequirement) -> Rules:
+    return tuple(
+        changed if requirement.id == changed.id else requirement for requirement in requirements
+    )
 
 
 # The proof -------------------------------------------------------------------------------------
 
 
-def _fits(setting: _Setting, rules: Rules, assumed: Rules) -> bool:
-    """Whether the system wins, for certain, and each rule can still be triggered."""
+def _fits(setting: _Setting, requirements: Rules, assumed: Rules) -> bool:
+    """Whether the system wins, for certain, and each requirement can still be triggered."""
     key = (
-        tuple((rule.id, rule.ticks) for rule in rules),
-        tuple(rule.requirement.wording.text for rule in assumed),
+        tuple((requirement.id, requirement.ticks) for requirement in requirements),
+        tuple(requirement.entry.wording.text for requirement in assumed),
     )
     known = setting.known.fits
     if key not in known:
-        known[key] = _is_shown_to_fit(setting, rules, assumed)
+        known[key] = _is_shown_to_fit(setting, requirements, assumed)
     return known[key]
 
 
-def _is_shown_to_fit(setting: _Setting, rules: Rules, assumed: Rules) -> bool:
-    there, counters = _staged(setting, rules, assumed)
+def _is_shown_to_fit(setting: _Setting, requirements: Rules, assumed: Rules) -> bool:
+    there, counters = _staged(setting, requirements, assumed)
     if there.left_out is not None or there.of_outputs is not None:
         return False
-    if assumed and _triggered(setting, there, counters) != _triggered_now(setting, rules):
+    if assumed and _triggered(setting, there, counters) != _triggered_now(setting, requirements):
         return False
     return there.game(counters, setting.budget).solution().is_realizable
 
 
 def _staged(
-    setting: _Setting, rules: Rules, assumed: Rules
+    setting: _Setting, requirements: Rules, assumed: Rules
 ) -> tuple[RealizabilityProblem, tuple[Counter, ...]]:
-    """Where the rules are under the assumptions, and their counters.
+    """Where the requirements are under the assumptions, and their counters.
 
     It is that of the component, where all are counted there and the assumptions count nothing: to
     build another one takes longer than the game.
     """
     whole, budget = setting.whole, setting.budget
-    ids = [rule.id for rule in rules]
-    is_there = set(map(id, rules)) <= set(map(id, whole.rules))
+    ids = [requirement.id for requirement in requirements]
+    is_there = set(map(id, requirements)) <= set(map(id, whole.requirements))
     if (
         is_there
         and not whole.left_out
         and not whole.of_outputs
-        and not any(rule.ticks for rule in assumed)
+        and not any(requirement.ticks for requirement in assumed)
     ):
         with suppress(UnsupportedError):
             there = whole.assuming(assumed).close(ids, budget)
             return there, there.counters(ids)
     near = (*whole.assumptions, *assumed)
-    there = stage(rules, near, whole.roles, as_fret=whole.as_fret, budget=budget)
+    there = stage(requirements, near, whole.roles, as_fret=whole.as_fret, budget=budget)
     there = there.close(ids, budget)
     return there, there.arena.counters
 
 
-def _triggered_now(setting: _Setting, rules: Rules) -> frozenset[str]:
-    """The ids of the rules whose triggers can come, as things are."""
-    key = tuple(rule.id for rule in rules)
+def _triggered_now(setting: _Setting, requirements: Rules) -> frozenset[str]:
+    """The ids of the requirements whose triggers can come, as things are."""
+    key = tuple(requirement.id for requirement in requirements)
     known = setting.known.triggered
     if key not in known:
-        known[key] = _triggered(setting, *_staged(setting, rules, ()))
+        known[key] = _triggered(setting, *_staged(setting, requirements, ()))
     return known[key]
 
 
 def _triggered(
     setting: _Setting, there: RealizabilityProblem, counters: Sequence[Counter]
 ) -> frozenset[str]:
-    """The ids of the rules whose triggers can come, in a run that keeps the assumptions."""
+    """The ids of the requirements whose triggers can come, in a run that keeps the assumptions."""
     found: set[str] = set()
     for counter in counters:
         runs = there.runs((), setting.budget, watched=(counter,))
@@ -207,21 +213,25 @@ def _triggered(
 # Bounds ----------------------------------------------------------------------------------------
 
 
-def _least_change(setting: _Setting, rule: FormalizedRequirement) -> FormalizedRequirement | None:
-    """The rule with another bound: as little later, or as little shorter, as will do."""
-    scope, timing = rule.sentence.scope, rule.sentence.timing
-    if rule.ticks is None or (scope is not None and scope.kind.negates):
+def _least_change(
+    setting: _Setting, requirement: FormalizedRequirement
+) -> FormalizedRequirement | None:
+    """The requirement with another bound: as little later, or as little shorter, as will do."""
+    scope, timing = requirement.sentence.scope, requirement.sentence.timing
+    if requirement.ticks is None or (scope is not None and scope.kind.negates):
         return None
 
     def is_enough(ticks: int) -> bool:
-        changed = _bounded(rule, ticks)
-        return changed is not None and _fits(setting, _with(setting.rules, changed), ())
+        changed = _bounded(requirement, ticks)
+        return changed is not None and _fits(setting, _with(setting.requirements, changed), ())
 
     match timing:
         case Within():
-            least = _first(setting, is_enough, rule.ticks + 1, rule.ticks + setting.longest)
+            least = _first(
+                setting, is_enough, requirement.ticks + 1, requirement.ticks + setting.longest
+            )
         case For():
-            least = _first(setting, lambda less: is_enough(-less), 1 - rule.ticks, 0)
+            least = _first(setting, lambda less: is_enough(-less), 1 - requirement.ticks, 0)
             least = None if least is None else -least
         case Immediately() | Next() | Finally() | Eventually() | Always() | Never():
             return None
@@ -229,7 +239,7 @@ def _least_change(setting: _Setting, rule: FormalizedRequirement) -> FormalizedR
             return None
         case _:
             assert_never(timing)
-    return None if least is None else _bounded(rule, least)
+    return None if least is None else _bounded(requirement, least)
 
 
 def _first(setting: _Setting, is_enough: Callable[[int], bool], low: int, high: int) -> int | None:
@@ -239,7 +249,12 @@ def _first(setting: _Setting, is_enough: Callable[[int], bool], low: int, high: 
     """
     if low > high or not is_enough(high):
         return None
-    near = {rule.ticks + more for rule in setting.rules if rule.ticks for more in (-1, 0, 1, 2)}
+    near = {
+        requirement.ticks + more
+        for requirement in setting.requirements
+        if requirement.ticks
+        for more in (-1, 0, 1, 2)
+    }
     marks = sorted({*near, *(-each for each in near)}.intersection(range(low, high)))
     while low < high:
         middle = marks[len(marks) // 2] if marks else (low + high) // 2
@@ -251,11 +266,11 @@ def _first(setting: _Setting, is_enough: Callable[[int], bool], low: int, high: 
     return low
 
 
-def _bounded(rule: FormalizedRequirement, ticks: int) -> FormalizedRequirement | None:
-    timing = cast("Within | For", rule.written.timing)
-    duration = in_unit(ticks, timing.duration.unit, rule.clock)
-    changed = replace(rule.written, timing=replace(timing, duration=duration))
-    found = _formalized(rule.id, printed(changed), rule)
+def _bounded(requirement: FormalizedRequirement, ticks: int) -> FormalizedRequirement | None:
+    timing = cast("Within | For", requirement.written.timing)
+    duration = in_unit(ticks, timing.duration.unit, requirement.clock)
+    changed = replace(requirement.written, timing=replace(timing, duration=duration))
+    found = _formalized(requirement.id, printed(changed), requirement)
     return found if found is not None and found.ticks == ticks else None
 
 
@@ -298,7 +313,7 @@ def _lost(setting: _Setting) -> Function | None:
     Then each tick is like the first one, and the environment wins by such inputs there. Only what
     excludes all of them at every tick settles the conflict: of our families, two inputs at once.
     """
-    there, counters = _staged(setting, setting.rules, ())
+    there, counters = _staged(setting, setting.requirements, ())
     game = there.game(counters, setting.budget)
     if there.arena.alphabet is not setting.whole.arena.alphabet or not game.is_memoryless:
         return None
@@ -309,8 +324,8 @@ def _inputs(setting: _Setting) -> dict[str, Function]:
     """The propositions of the conflict that the environment decides, as sentences spell them."""
     roles, alphabet = setting.whole.roles, setting.whole.arena.alphabet
     found: dict[str, Function] = {}
-    for rule in setting.rules:
-        for atom, part in candidates(rule.sentence):
+    for requirement in setting.requirements:
+        for atom, part in candidates(requirement.sentence):
             names = [name.id for name in e.names(part)]
             calls = any(isinstance(each, e.Call) for each in e.parts(part))
             if names and not calls and all(roles.get(name) is Role.INPUT for name in names):
@@ -322,7 +337,7 @@ def _inputs(setting: _Setting) -> dict[str, Function]:
 def _kept(setting: _Setting, *wordings: str) -> Iterator[Rules]:
     """The assumptions, where they settle the conflict."""
     assumed = _assumed(setting, wordings)
-    if assumed is not None and _fits(setting, setting.rules, assumed):
+    if assumed is not None and _fits(setting, setting.requirements, assumed):
         yield assumed
 
 
@@ -344,15 +359,17 @@ def _assumed(setting: _Setting, wordings: Sequence[str]) -> Rules | None:
     known, key = setting.known.assumptions, tuple(wordings)
     if key not in known:
         texts = (w if " shall " in w else f"the environment shall {w}" for w in wordings)
-        rules = [
-            _formalized(f"assumption {number}", text, setting.rules[0])
+        requirements = [
+            _formalized(f"assumption {number}", text, setting.requirements[0])
             for number, text in enumerate(texts)
         ]
-        known[key] = None if None in rules else tuple(filter(None, rules))
+        known[key] = None if None in requirements else tuple(filter(None, requirements))
     return known[key]
 
 
 def _formalized(id: str, text: str, like: FormalizedRequirement) -> FormalizedRequirement | None:
-    """A sentence among the declarations of another rule; None where it is none there."""
-    rule, _ = formalize(Requirement(id, Source("repair", text).span()), like.declarations)
-    return rule
+    """A sentence among the declarations of another requirement; None where it is none there."""
+    requirement, _ = formalize(
+        RequirementEntry(id, Source("repair", text).span()), like.declarations
+    )
+    return requirement

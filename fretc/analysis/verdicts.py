@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 
 from compiler.files.records import replace as altered
 from compiler.formalization.formalized import FormalizedRequirement
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.controllers.circuit import Circuit, circuit
 from fretc.analysis.controllers.files import Form
 from fretc.analysis.controllers.machine import NoMachineError, machine
@@ -52,7 +52,7 @@ def verdict(
         if found is not Verdict.NOT_CHECKED:
             answer, why, setting = found, because_, there
     spent = round(budget.spent, 3)
-    return component(setting.rules, setting.roles, answer, why, spent), setting
+    return component(setting.requirements, setting.roles, answer, why, spent), setting
 
 
 def _has_room(budget: Budget) -> bool:
@@ -68,15 +68,20 @@ def _answer(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str
 
 
 def component(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     roles: Roles,
     answer: Verdict,
     why: str,
     seconds: float = 0.0,
 ) -> Component:
     """A component with its verdict."""
-    names = (name for rule in rules for name in rule.variables if roles[name] is Role.OUTPUT)
-    ids = tuple(rule.id for rule in rules)
+    names = (
+        name
+        for requirement in requirements
+        for name in requirement.variables
+        if roles[name] is Role.OUTPUT
+    )
+    ids = tuple(requirement.id for requirement in requirements)
     return Component(ids, tuple(dict.fromkeys(names)), answer, why, seconds)
 
 
@@ -91,7 +96,10 @@ def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, st
         doubt = setting.of_inputs
         if doubt is None:
             return Verdict.UNREALIZABLE, "the environment wins"
-        generous, ids = setting.generous(budget), [rule.id for rule in setting.rules]
+        generous, ids = (
+            setting.generous(budget),
+            [requirement.id for requirement in setting.requirements],
+        )
         if generous.of_inputs is None and _is_lost(generous, ids, budget):
             return Verdict.UNREALIZABLE, f"the environment wins, {_WHATEVER}"
         answer = _unrolled(setting, budget) if generous is not setting else None
@@ -107,11 +115,15 @@ def _unrolled(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, s
     """What a run shows where there are no inputs: it keeps all, or there is none."""
     from fretc.analysis.games.lassos import Impossible, lasso
 
-    chosen = [setting.roles[name] for rule in setting.rules for name in rule.variables]
+    chosen = [
+        setting.roles[name]
+        for requirement in setting.requirements
+        for name in requirement.variables
+    ]
     is_certain = setting.left_out is None and setting.of_outputs is None
     if not is_certain or setting.assumptions or Role.INPUT in chosen:
         return None
-    found = lasso(setting.rules, setting.roles, budget, as_fret=setting.as_fret)
+    found = lasso(setting.requirements, setting.roles, budget, as_fret=setting.as_fret)
     if found is None:
         return None
     if isinstance(found, Impossible):
@@ -137,7 +149,7 @@ def strategy(
         number: of the component.
         form: in which the strategy is to be written.
     """
-    ids = tuple(rule.id for rule in setting.rules)
+    ids = tuple(requirement.id for requirement in setting.requirements)
     try:
         game = setting.game(setting.arena.counters, budget)
         found = machine(game, game.solution(), budget)
@@ -168,7 +180,9 @@ def conflicts(
     for; it is minimal for certain if the environment does not win any less, though it is favoured.
     Where neither is certain, more of numbers is remembered.
     """
-    question = f"which others of {', '.join(rule.id for rule in setting.rules)} fight"
+    question = (
+        f"which others of {', '.join(requirement.id for requirement in setting.requirements)} fight"
+    )
     shown: set[tuple[str, ...]] = set()
     found = _Fights(setting, setting)
     try:
@@ -193,7 +207,7 @@ def conflicts(
         yield OpenQuestion(question, str(error))
         return
     if (doubt := found.doubt) is None:
-        yield Completeness(tuple(rule.id for rule in setting.rules))
+        yield Completeness(tuple(requirement.id for requirement in setting.requirements))
     else:
         yield OpenQuestion(question, doubt)
 
@@ -254,7 +268,7 @@ def _minimal(
     there: RealizabilityProblem, ids: Sequence[str], budget: Budget
 ) -> Iterator[tuple[str, ...]]:
     """The minimal conflicts of some requirements."""
-    read = {rule.id: frozenset(rule.variables) for rule in there.rules}
+    read = {requirement.id: frozenset(requirement.variables) for requirement in there.requirements}
 
     def chosen(members: Members) -> tuple[str, ...]:
         return tuple(ids[i] for i in sorted(members))
@@ -276,18 +290,21 @@ _SHORT = 200
 
 def _hint(setting: RealizabilityProblem, budget: Budget) -> str:
     """What fights where all durations are a fraction of what they are: a clue, and no finding."""
-    longest = max((rule.ticks or 0 for rule in setting.rules), default=0)
+    longest = max((requirement.ticks or 0 for requirement in setting.requirements), default=0)
     factor = -(-longest // _SHORT)
     if factor < 2:
         return ""
-    rules, assumptions = (
+    requirements, assumptions = (
         [
-            replace(rule, ticks=-(-rule.ticks // factor) if rule.ticks else rule.ticks)
-            for rule in some
+            replace(
+                requirement,
+                ticks=-(-requirement.ticks // factor) if requirement.ticks else requirement.ticks,
+            )
+            for requirement in some
         ]
-        for some in (setting.rules, setting.assumptions)
+        for some in (setting.requirements, setting.assumptions)
     )
-    scaled = stage(rules, assumptions, setting.roles, as_fret=setting.as_fret)
+    scaled = stage(requirements, assumptions, setting.roles, as_fret=setting.as_fret)
     every = [each.id for each in scaled.arena.counters]
 
     def fights(ids: Sequence[str]) -> bool:
@@ -314,12 +331,12 @@ def _conflict(whole: RealizabilityProblem, members: Sequence[str], budget: Budge
         play = Counterstrategy(game, game.solution(traps=True), budget).play()
     except (NoPlayError, OutOfTimeError) as error:
         return Conflict(tuple(ids), (), f"the environment wins by a play that is {error}")
-    rules = [rule for rule in setting.rules if rule.id in ids]
+    requirements = [requirement for requirement in setting.requirements if requirement.id in ids]
     alphabet = setting.arena.alphabet
-    lost = broken(rules, alphabet, play, as_fret=setting.as_fret)
+    lost = broken(requirements, alphabet, play, as_fret=setting.as_fret)
     assert lost, f"the play of {', '.join(ids)} breaks none of them"
     assert not broken(setting.assumptions, alphabet, play), "the environment keeps its word"
-    why = because(rules, counters, game, play)
+    why = because(requirements, counters, game, play)
     if play.ticks > _LONGEST:
         return Conflict(tuple(ids), (), why)
     return Conflict(tuple(ids), setting.ticks(ids, play.runs, play.numbers), why, play.loop)

@@ -55,51 +55,51 @@ class Monitor(Protocol):
 
 
 @bounded
-def monitor_text(*rules: FormalizedRequirement) -> str:
+def monitor_text(*requirements: FormalizedRequirement) -> str:
     """The text of one monitor for all of the requirements: a file that needs Python alone.
 
     Args:
-        rules: at least one, each with an id of its own; one that comes twice counts once.
+        requirements: at least one, each with an id of its own; one that comes twice counts once.
 
     Raises:
         Refusal: a monitor cannot express one of them, or they do not fit into one file.
     """
-    if not rules:
+    if not requirements:
         raise Refusal((_nothing(),))
-    rules = tuple({id(rule): rule for rule in rules}.values())
-    same_id = duplicate_ids([rule.requirement for rule in rules]).values()
+    requirements = tuple({id(requirement): requirement for requirement in requirements}.values())
+    same_id = duplicate_ids([requirement.entry for requirement in requirements]).values()
     errors = [
-        *filter(None, map(python.refuse, rules)),
-        *name_collisions(rules),
+        *filter(None, map(python.refuse, requirements)),
+        *name_collisions(requirements),
         *dict.fromkeys(same_id),
-        *_several_clocks(rules),
+        *_several_clocks(requirements),
     ]
     if errors:
         raise Refusal(errors)
-    return python.text(*rules)
+    return python.text(*requirements)
 
 
-def load_monitor(*rules: FormalizedRequirement) -> Monitor:
+def load_monitor(*requirements: FormalizedRequirement) -> Monitor:
     """The monitor of the requirements, compiled and ready to be stepped.
 
     Args, raises: as for `monitor_text`.
     """
-    return cast(Monitor, load("monitor.py", monitor_text(*rules)))
+    return cast(Monitor, load("monitor.py", monitor_text(*requirements)))
 
 
-def _several_clocks(rules: tuple[FormalizedRequirement, ...]) -> Iterable[Diagnostic]:
-    first, *others = rules
-    for rule in others:
-        if rule.clock != first.clock:
+def _several_clocks(requirements: tuple[FormalizedRequirement, ...]) -> Iterable[Diagnostic]:
+    first, *others = requirements
+    for requirement in others:
+        if requirement.clock != first.clock:
             yield Diagnostic(
                 Code.BAD_USAGE,
-                f"{rule.id} and {first.id} are on two clocks: one monitor has one",
-                rule.requirement.wording,
+                f"{requirement.id} and {first.id} are on two clocks: one monitor has one",
+                requirement.entry.wording,
                 help="formalize both with the same bindings",
             )
 
 
 def _nothing() -> Diagnostic:
     return Diagnostic(
-        Code.NOTHING_TO_DO, "a monitor needs a requirement", help="give one rule or several"
+        Code.NOTHING_TO_DO, "a monitor needs a requirement", help="give one requirement or several"
     )

@@ -50,11 +50,11 @@ def verify(
     demanded = () if layers is None else _named("layer", layers, every)
     chosen_layers = demanded if layers is not None else every
     chosen_provers = _named("prover", provers, PROVERS)
-    if not project.rules or not chosen_layers:
+    if not project.formalized or not chosen_layers:
         raise Refusal((Diagnostic(Code.NOTHING_TO_DO, "there is nothing to verify"),))
     if limit < 1:
         raise Refusal((_bad(f"no proof ends in {limit} seconds", "give 1 or more"),))
-    results, remarks = ajpf_proofs(project.rules, [os.fspath(path) for path in ajpf])
+    results, remarks = ajpf_proofs(project.formalized, [os.fspath(path) for path in ajpf])
     if has_errors(remarks):
         raise Refusal(remarks)
     request = Request(

@@ -15,7 +15,7 @@ from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.meaning import meaning
 
 Path = str | os.PathLike[str]
@@ -57,12 +57,12 @@ def formalize(sentence: str, bindings: Path | None = None, id: str = "R1") -> Fo
     Raises:
         Refusal: the sentence is not FRETish, is free text, or the bindings have a mistake.
     """
-    requirement = Requirement(id, Source("<sentence>", sentence.strip()).span())
+    entry = RequirementEntry(id, Source("<sentence>", sentence.strip()).span())
     declarations = _declarations(bindings) if bindings is not None else None
-    rule, remarks = formalized(requirement, declarations)
-    if rule is None or has_errors(remarks):
+    requirement, remarks = formalized(entry, declarations)
+    if requirement is None or has_errors(remarks):
         raise Refusal([each for each in remarks if each.is_error] or remarks)
-    return rule
+    return requirement
 
 
 def _path(path: Path | None) -> str | None:
@@ -92,11 +92,11 @@ class Formulas:
     """The sentence in plain English."""
 
 
-def formulas(rule: FormalizedRequirement, notation: str = "plain") -> Formulas:
+def formulas(requirement: FormalizedRequirement, notation: str = "plain") -> Formulas:
     """The formulas of a requirement.
 
     Args:
-        rule: from `formalize`, or one of the `rules` of a project.
+        requirement: from `formalize`, or one of the `requirements` of a project.
         notation: `plain`, `fret`, `spot`, `nusmv` or `latex`.
 
     Raises:
@@ -106,11 +106,11 @@ def formulas(rule: FormalizedRequirement, notation: str = "plain") -> Formulas:
     if dialect is None:
         raise Refusal((_no_notation(notation),))
     return Formulas(
-        printing.text(rule.ft_infinite, dialect),
-        printing.text(rule.ft_finite, dialect),
-        printing.text(rule.pt, dialect) if dialect.has_past else None,
-        printing.pctl(rule.pctl) if rule.pctl is not None else None,
-        meaning(rule.written, rule.ticks, rule.clock),
+        printing.text(requirement.ft_infinite, dialect),
+        printing.text(requirement.ft_finite, dialect),
+        printing.text(requirement.pt, dialect) if dialect.has_past else None,
+        printing.pctl(requirement.pctl) if requirement.pctl is not None else None,
+        meaning(requirement.written, requirement.ticks, requirement.clock),
     )
 
 

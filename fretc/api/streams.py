@@ -143,7 +143,11 @@ def _plan(project: Project) -> Plan:
     if plan.refusals:
         raise Refusal(plan.refusals)
     claimed = {claim.id for claim in plan.claims}
-    refused = (python.refuse(rule) for rule in project.rules if rule.id in claimed)
+    refused = (
+        python.refuse(requirement)
+        for requirement in project.formalized
+        if requirement.id in claimed
+    )
     errors = [diagnostic for diagnostic in refused if diagnostic is not None]
     if errors:
         raise Refusal(errors)

@@ -1,4 +1,4 @@
-"""Signatures beside a file (`FILE.intoto.jsonl`), held against the keys that count.
+"""Signatures beside a file (`FILE.intoto.jsonl`), compared with the keys that count.
 
 Each line is an envelope. Nothing in it counts before a signature of it verifies; what an envelope
 says of itself (its payload, the name of its key) only explains why it does not count.
@@ -142,7 +142,7 @@ class Signing:
 
     @property
     def is_good(self) -> bool:
-        """Whether it is signed by whoever must have signed it."""
+        """Whether the required signer has signed it."""
         return self.state is State.SIGNED
 
 
@@ -169,7 +169,7 @@ class SignatureBook:
 
         Args:
             subject: what it is now.
-            name: whoever must have signed it; None: any of the signers.
+            name: the required signer; None: any of the signers.
         """
         about = [one for one in self.envelopes if subject in one.subjects]
         return self._of(about, subject, name)

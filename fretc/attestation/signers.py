@@ -30,7 +30,7 @@ _OPTION = re.compile(r'(?P<name>[\w-]+)(?:="(?P<value>[^"]*)")?(?:,|$)')
 
 @dataclass(frozen=True, slots=True)
 class Signer:
-    """A key, and the names of whoever has it."""
+    """A key, and the names of its holders."""
 
     principals: tuple[str, ...]
     """Names; `*` and `?` stand for any characters, and `!` begins one that is not meant."""

@@ -15,11 +15,13 @@ def audited_topics(project: Project) -> frozenset[str]:
     declarations = project.declarations
     if declarations is None:
         return frozenset()
-    refused = {id(requirement) for requirement, _ in refusals(project)}
+    refused = {id(entry) for entry, _ in refusals(project)}
     auditable = [
-        rule for rule in active_requirements(project) if id(rule.requirement) not in refused
+        requirement
+        for requirement in active_requirements(project)
+        if id(requirement.entry) not in refused
     ]
-    used = declarations.reading(name for rule in auditable for name in rule.watched)
+    used = declarations.reading(name for requirement in auditable for name in requirement.watched)
     return frozenset(signal.path.topic for signal in used.signals.values())
 
 
@@ -37,8 +39,10 @@ def bases(
     """
     declarations = project.declarations
     topics = audited_topics(project) if topics is None else topics
-    rules = {id(rule.requirement): rule for rule in project.rules}
+    requirements = {id(requirement.entry): requirement for requirement in project.formalized}
     return {
-        id(each): basis(each, rules.get(id(each)), declarations, topics, monitors.get(id(each)))
+        id(each): basis(
+            each, requirements.get(id(each)), declarations, topics, monitors.get(id(each))
+        )
         for each in project.requirements
     }

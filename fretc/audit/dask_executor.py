@@ -1,6 +1,6 @@
 """Audit on many machines, by Dask: each log is a task, none is lost and none is counted twice.
 
-The only module that imports dask. The workers need the fretc that asks them, to the letter, and
+The only module that imports dask. The workers need the fretc that asks them, exactly, and
 must find the logs under the same names.
 """
 
@@ -82,9 +82,9 @@ class _FleetError(Exception):
 def _own_cluster(jobs: int) -> Iterator[Client]:
     """A cluster of processes of this machine, as long as the context lasts.
 
-    Whoever can send tasks to a worker executes code as its user, and sockets are open to all users
-    of a machine: each end has to show the key of a certificate that is made for this audit and is
-    never written. Of HTTP pages there are none.
+    Anyone who can send tasks to a worker executes code as its user, and sockets are open to all
+    users of a machine: each end has to show the key of a certificate that is made for this audit
+    and is never written. Of HTTP pages there are none.
     """
     from dask import config
     from distributed import Client, LocalCluster, Security
@@ -229,7 +229,7 @@ def _result(future: Future) -> LogResult | None:
 
 
 _ALONE = threading.Lock()
-"""A worker may have many threads; a monitor has a state, and the present folder is of all."""
+"""A worker may have many threads; a monitor has a state, and the current folder is of all."""
 
 
 def _work(plan: bytes, log: str, folder: str, client_edition: str) -> LogResult | str:

@@ -11,12 +11,12 @@ from fretish import syntax as s
 from fretish.printer import expression, timing
 
 
-def demand(rule: FormalizedRequirement) -> Demand:
+def demand(requirement: FormalizedRequirement) -> Demand:
     """What the sentence demands at each trigger.
 
     The response alone where it is all that can be missing; with its timing where more can be.
     """
-    sentence = rule.sentence
+    sentence = requirement.sentence
     response = expression(sentence.response)
     if sentence.scope is not None and sentence.scope.kind.negates:
         return Demand(f"not ({timing(sentence.timing)} satisfy {response})".replace("( ", "("))
@@ -24,11 +24,13 @@ def demand(rule: FormalizedRequirement) -> Demand:
         case s.Never():
             return Demand(expression(e.Not(sentence.response)))
         case s.After():
-            return Demand(f"{timing(sentence.timing)} satisfy {response}", rule.watch.horizon)
+            return Demand(
+                f"{timing(sentence.timing)} satisfy {response}", requirement.watch.horizon
+            )
         case s.Until() | s.Before():
             return Demand(f"{timing(sentence.timing)} satisfy {response}")
         case s.Immediately() | s.Next() | s.Within():
-            return Demand(response, rule.watch.horizon)
+            return Demand(response, requirement.watch.horizon)
         case s.Finally() | s.Eventually() | s.Always() | s.For():
             return Demand(response)  # what must hold all the time has no latest tick
         case _:

@@ -29,7 +29,7 @@ from fretc.audit.many_logs import (
     labelled,
 )
 from fretc.audit.plan import Plan, keys
-from fretc.audit.store.anywhere import StoreError
+from fretc.audit.store.errors import StoreError
 from fretc.audit.store.manifest import FILE, REUSE, SCHEMA, UNFINISHED, Manifest, Part
 from fretc.audit.store.parts import parts
 from fretc.audit.store.reader import Store, manifest, opened
@@ -123,7 +123,7 @@ class ReusableResults:
         self._logs: dict[str, tuple[Store, Entry, int, int, int]] = {}
         self._parts: dict[tuple[str, ...], tuple[Store, Part]] = {}
         self.claims: set[str] = set()
-        """Those of another plan that are claims of this one, to the letter."""
+        """Those of another plan that are claims of this one, exactly."""
         self._some: dict[str, _Some] = {}
         self._last: tuple[Store, range, list[Result]] | None = None
         """The results of one part: its logs are asked for one after the other."""

@@ -28,7 +28,7 @@ from fretc.audit.refusals import RefusedRequirement, active_requirements, refusa
 from fretc.logs.signals.integrity import Integrity
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.reading.recursion import with_recursion_limit
 from monitors.loading import load
 
@@ -45,7 +45,7 @@ class Plan:
     integrity: Integrity
     """How closely a log is read."""
     digest: str
-    """SHA-256 of all of it to the letter that one log is judged by."""
+    """SHA-256 of all of it exactly that one log is judged by."""
     confidence: float = odds.CONFIDENCE
     """Of the bounds of a probability over all logs."""
     refused: tuple[RefusedRequirement, ...] = field(default=(), compare=False, repr=False)
@@ -90,38 +90,45 @@ def planned(
     """
     declarations = project.declarations
     unauditable = refusals(project)
-    left_out = {id(requirement) for requirement, _ in unauditable}
-    rules = [rule for rule in active_requirements(project) if id(rule.requirement) not in left_out]
+    left_out = {id(entry) for entry, _ in unauditable}
+    requirements = [
+        requirement
+        for requirement in active_requirements(project)
+        if id(requirement.entry) not in left_out
+    ]
     errors = tuple(dict.fromkeys(reason for _, why in unauditable for reason in why))
-    if declarations is None or not rules:
+    if declarations is None or not requirements:
         return errors or (Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to audit"),)
-    texts = {id(rule.requirement): monitors.text(rule) for rule in rules}
+    texts = {id(requirement.entry): monitors.text(requirement) for requirement in requirements}
     basis_of = bases(project, monitors={place: sha256(text) for place, text in texts.items()})
     claims = tuple(
-        _claim(rule, basis_of[id(rule.requirement)], texts[id(rule.requirement)]) for rule in rules
+        _claim(requirement, basis_of[id(requirement.entry)], texts[id(requirement.entry)])
+        for requirement in requirements
     )
-    refused = tuple(_refused(basis_of, requirement, why) for requirement, why in unauditable)
-    used = declarations.reading(name for rule in rules for name in rule.watched)
+    refused = tuple(_refused(basis_of, entry, why) for entry, why in unauditable)
+    used = declarations.reading(
+        name for requirement in requirements for name in requirement.watched
+    )
     digest = _digest(claims, refused, used, evaluation, integrity)
     one_each = tuple({each.id: each for each in reversed(refused)}.values())[::-1]
     return Plan(claims, used, evaluation, integrity, digest, confidence, one_each)
 
 
 def _refused(
-    basis_of: Mapping[int, Basis], requirement: Requirement, why: tuple[Diagnostic, ...]
+    basis_of: Mapping[int, Basis], requirement: RequirementEntry, why: tuple[Diagnostic, ...]
 ) -> RefusedRequirement:
     return RefusedRequirement(requirement.id, wording(requirement), basis_of[id(requirement)], why)
 
 
-def _claim(rule: FormalizedRequirement, basis: Basis, monitor: str) -> AuditedRequirement:
+def _claim(requirement: FormalizedRequirement, basis: Basis, monitor: str) -> AuditedRequirement:
     return AuditedRequirement(
-        rule.id,
-        wording(rule.requirement),
+        requirement.id,
+        wording(requirement.entry),
         basis,
         monitor,
-        demand(rule),
-        situations(rule, exact=True),
-        chance(rule),
+        demand(requirement),
+        situations(requirement, exact=True),
+        chance(requirement),
     )
 
 
@@ -145,7 +152,7 @@ def _digest(
 @lru_cache(maxsize=4)
 @with_recursion_limit
 def keys(plan: Plan) -> Mapping[str, str]:
-    """Of each claim SHA-256 of all that its result in a log rests on beside the log, to the letter.
+    """Of each claim SHA-256 of all that its result in a log rests on beside the log, exactly.
 
     Left out is what a log shows to all claims alike (its health, its labels), and where something
     stands in the bindings: no result says that.

@@ -117,7 +117,7 @@ def each(
 ) -> Generator[tuple[int, R | WorkerDied | TimedOut], None, None]:
     """The function of each thing with the thing's place, in the order in which they are done.
 
-    Whoever stops to iterate ends the processes, whatever they are at.
+    The processes end when the caller stops iterating.
 
     Args:
         function: of anything, to what can be sent between processes.

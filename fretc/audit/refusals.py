@@ -11,7 +11,7 @@ from compiler.targets.python import monitor as monitors
 from fretc.audit.evidence.basis import Basis
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic, has_errors
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,32 +25,38 @@ class RefusedRequirement:
     why: tuple[Diagnostic, ...]
 
 
-def refusals(project: Project) -> tuple[tuple[Requirement, tuple[Diagnostic, ...]], ...]:
+def refusals(project: Project) -> tuple[tuple[RequirementEntry, tuple[Diagnostic, ...]], ...]:
     """Every requirement in force that an audit cannot judge, and why: errors, in their order.
 
     Those of the project, and what a log needs beside: a binding of each proposition, a clock, and
     a monitor.
     """
-    rules = active_requirements(project)
-    own = {id(rule.requirement): rule for rule in rules}
+    requirements = active_requirements(project)
+    own = {id(requirement.entry): requirement for requirement in requirements}
     refused = {id(each.requirement): each.why for each in project.refused}
-    unusable = _unusable(project, rules[0]) if rules and not has_errors(project.general) else None
+    unusable = (
+        _unusable(project, requirements[0])
+        if requirements and not has_errors(project.general)
+        else None
+    )
     found = []
-    for requirement in project.requirements:
-        rule = own.get(id(requirement))
-        why = [*refused.get(id(requirement), ())]
-        if rule is not None and unusable is not None:
+    for entry in project.requirements:
+        requirement = own.get(id(entry))
+        why = [*refused.get(id(entry), ())]
+        if requirement is not None and unusable is not None:
             why.append(unusable)
-        elif rule is not None and project.declarations is not None:
-            why.extend(_not_auditable(rule, project.declarations))
-        if why and requirement.status != "retired":
-            found.append((requirement, tuple(dict.fromkeys(why))))
+        elif requirement is not None and project.declarations is not None:
+            why.extend(_not_auditable(requirement, project.declarations))
+        if why and entry.status != "retired":
+            found.append((entry, tuple(dict.fromkeys(why))))
     return tuple(found)
 
 
 def active_requirements(project: Project) -> list[FormalizedRequirement]:
-    """The rules of all requirements that are not retired."""
-    return [rule for rule in project.rules if rule.requirement.status != "retired"]
+    """The requirements of all requirements that are not retired."""
+    return [
+        requirement for requirement in project.formalized if requirement.entry.status != "retired"
+    ]
 
 
 def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | None:
@@ -60,7 +66,7 @@ def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | No
         return Diagnostic(
             Code.UNBOUND,
             "no bindings say what the propositions mean in the messages",
-            first.requirement.wording,
+            first.entry.wording,
             help="write `bindings.toml` beside the requirements, or name it with `--bindings`",
         )
     if not declarations.clock.declared:
@@ -74,8 +80,8 @@ def _unusable(project: Project, first: FormalizedRequirement) -> Diagnostic | No
 
 
 def _not_auditable(
-    rule: FormalizedRequirement, declarations: Declarations
+    requirement: FormalizedRequirement, declarations: Declarations
 ) -> tuple[Diagnostic, ...]:
-    """Why no log can be judged by a rule; empty where one can."""
-    refused = monitors.refuse(replace(rule, pctl=None))
-    return (*([refused] if refused else []), *unbound(rule, declarations))
+    """Why no log can be judged by a requirement; empty where one can."""
+    refused = monitors.refuse(replace(requirement, pctl=None))
+    return (*([refused] if refused else []), *unbound(requirement, declarations))

@@ -97,8 +97,10 @@ def interceptor_text() -> str:
 @lru_cache(maxsize=1)
 def monitor_text() -> str:
     """The generated monitor of the safety function."""
-    (rule,) = (rule for rule in project().rules if rule.id == SAFETY_REQUIREMENT)
-    return monitors.text(rule)
+    (requirement,) = (
+        requirement for requirement in project().formalized if requirement.id == SAFETY_REQUIREMENT
+    )
+    return monitors.text(requirement)
 
 
 @lru_cache(maxsize=8)

@@ -112,16 +112,16 @@ def analyze(
     from fretish.printer import sentence as printed
 
     project, first = project_of(files, requirements, bindings, ("environment",))
-    rules = active_requirements(project, component)
-    assumed, remarks = assumptions(rules, project.declarations)
+    formalized = active_requirements(project, component)
+    assumed, remarks = assumptions(formalized, project.declarations)
     say_briefly(remarks, first)
     if has_errors(remarks):
         raise SystemExit(BAD)
-    chosen = roles([*rules, *assumed])
+    chosen = roles([*formalized, *assumed])
     if isinstance(chosen, tuple):
         stop(*chosen)
-    analysis, stopped = asked(rules, assumed, chosen, Options(seconds, as_fret))
-    evidence = f"{to_json(plain(document(rules, assumed, analysis, as_fret=as_fret)))}\n"
+    analysis, stopped = asked(formalized, assumed, chosen, Options(seconds, as_fret))
+    evidence = f"{to_json(plain(document(formalized, assumed, analysis, as_fret=as_fret)))}\n"
     if emitted is not None and emit_to == "-":
         pass  # what is printed is the strategy
     elif output == "-":
@@ -129,21 +129,21 @@ def analyze(
     elif form == "json":
         click.echo(to_json(plain(analysis)))
     else:
-        sentences = {rule.id: printed(rule.written) for rule in rules}
+        sentences = {requirement.id: printed(requirement.written) for requirement in formalized}
         left_out = [each.requirement.id for each in project.refused if each.is_in_force]
         click.echo(coloured([*lines(analysis, sentences, left_out)]), nl=False)
     if output != "-":
-        sources = [requirement.wording.source.name for requirement in project.requirements]
+        sources = [entry.wording.source.name for entry in project.requirements]
         deliver(
             {Path(output): evidence}, [*sources, *companions(sources), *filter(None, [bindings])]
         )
     if emitted is not None and not stopped:
-        _emit(analysis, rules, assumed, chosen, Options(seconds, as_fret), emitted, emit_to)
+        _emit(analysis, formalized, assumed, chosen, Options(seconds, as_fret), emitted, emit_to)
     raise SystemExit(INTERRUPTED if stopped else _status(analysis))
 
 
 def asked(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumed: Sequence[FormalizedRequirement],
     chosen: Roles,
     options: Options,
@@ -156,16 +156,16 @@ def asked(
     found: list[Finding] = []
     stopped = False
     try:
-        for finding in findings(jobs(rules, chosen, assumed, options), at_work):
+        for finding in findings(jobs(requirements, chosen, assumed, options), at_work):
             found.append(finding)
     except Stopped:
         stopped = True
-    return assembled(rules, chosen, assumed, options, found), stopped
+    return assembled(requirements, chosen, assumed, options, found), stopped
 
 
 def _emit(
     analysis: Analysis,
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumed: Sequence[FormalizedRequirement],
     chosen: Roles,
     options: Options,
@@ -187,7 +187,7 @@ def _emit(
         return
     form = Form(emitted)
     try:
-        found = [*findings(controllers(rules, chosen, assumed, options, form), at_work)]
+        found = [*findings(controllers(requirements, chosen, assumed, options, form), at_work)]
     except Stopped:
         raise SystemExit(INTERRUPTED) from None
     circuits = [each for each in found if isinstance(each, Circuit)]
@@ -197,7 +197,7 @@ def _emit(
             message = f"no strategy can be written: {each.why}"
             stop(Diagnostic(Code.TOO_LARGE, message, help=_smaller(form)))
     if form is Form.PYTHON:
-        sentences = {rule.id: printed(rule.written) for rule in rules}
+        sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
         promises = {each.id: each.sentence for each in analysis.assumptions}
         artifacts = [controller(circuits, sentences, promises)]
     else:
@@ -217,21 +217,25 @@ def _smaller(form: str) -> str:
 def active_requirements(
     project: Project, component: str | None
 ) -> tuple[FormalizedRequirement, ...]:
-    """The rules that are asked about: those that are in force."""
-    rules = tuple(rule for rule in project.rules if rule.requirement.status != "retired")
+    """The requirements that are asked about: those that are in force."""
+    requirements = tuple(
+        requirement for requirement in project.formalized if requirement.entry.status != "retired"
+    )
     if component is not None:
-        rules = _of_component(rules, component)
-    if not rules:
+        requirements = _of_component(requirements, component)
+    if not requirements:
         stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to analyze"))
-    return rules
+    return requirements
 
 
 def _of_component(
-    rules: Sequence[FormalizedRequirement], component: str
+    requirements: Sequence[FormalizedRequirement], component: str
 ) -> tuple[FormalizedRequirement, ...]:
-    chosen = tuple(rule for rule in rules if rule.sentence.component == component)
+    chosen = tuple(
+        requirement for requirement in requirements if requirement.sentence.component == component
+    )
     if not chosen:
-        known = tuple(dict.fromkeys(rule.sentence.component for rule in rules))
+        known = tuple(dict.fromkeys(requirement.sentence.component for requirement in requirements))
         near = suggestion(component, known)
         stop(
             Diagnostic(

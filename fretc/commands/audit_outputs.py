@@ -148,8 +148,8 @@ def annotation_files(outcome: Outcome, project: Project, folder: str | None) -> 
 
     found, place = [*bare(outcome.source, project)], Path(folder or "build/annotations")
     return {
-        **sidecars(found, project.rules, place),
-        **layout_file(found, project.rules, place),
+        **sidecars(found, project.formalized, place),
+        **layout_file(found, project.formalized, place),
     }
 
 
@@ -169,7 +169,7 @@ def text(outcome: Outcome, project: Project, refusals: Iterable[Diagnostic], for
     diagnostics = (*project.diagnostics, *refusals, *outcome.diagnostics)
     together = [AllRuns.of(one) for one in outcome.estimates]
     each = [OneRun.of(one) for one in found]
-    return sarif(each, project.rules, diagnostics, together, project.without_rule)
+    return sarif(each, project.formalized, diagnostics, together, project.without_rule)
 
 
 def _json(outcome: Outcome) -> str:

@@ -79,7 +79,7 @@ class Subject:
     estimates: Sequence[Estimated]
     project: Project
     refused: Collection[str]
-    """The ids of requirements that could not be held against any run."""
+    """The ids of requirements that could not be compared with any run."""
     places: Places
     seconds: float
     """That the audit took."""

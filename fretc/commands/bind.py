@@ -210,8 +210,14 @@ def _unbound(project: Project) -> list[Diagnostic]:
     from compiler.formalization.binding_agreement import unbound
 
     assert project.declarations is not None
-    rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
-    return [missing for rule in rules for missing in unbound(rule, project.declarations)]
+    requirements = [
+        requirement for requirement in project.formalized if requirement.entry.status != "retired"
+    ]
+    return [
+        missing
+        for requirement in requirements
+        for missing in unbound(requirement, project.declarations)
+    ]
 
 
 def _no_bindings() -> Diagnostic:

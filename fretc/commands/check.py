@@ -99,7 +99,7 @@ def check(
     project = load_folder(requirements, bindings, hazards)
     if isinstance(project, Diagnostic):
         stop(project)
-    units = first_unit(project.rules)
+    units = first_unit(project.formalized)
     diagnostics = [*project.diagnostics, *([units] if units is not None else [])]
     audited = (required_source if is_given("evidence") else source)(evidence)
     if isinstance(audited, Diagnostic) and audited.is_error:
@@ -147,18 +147,20 @@ def _together(project: Project, known: AnalyzedSet | None) -> Iterator[Diagnosti
     from fretc.analysis.evidence import remarks, suspicions
     from fretc.commands.analyze import asked
 
-    rules = tuple(rule for rule in project.rules if rule.requirement.status != "retired")
-    assumed, said = assumptions(rules, project.declarations)
+    requirements = tuple(
+        requirement for requirement in project.formalized if requirement.entry.status != "retired"
+    )
+    assumed, said = assumptions(requirements, project.declarations)
     yield from said
-    chosen = roles([*rules, *assumed])
+    chosen = roles([*requirements, *assumed])
     if isinstance(chosen, tuple):
         yield from chosen
-    elif rules and not has_errors(said):
-        if known is not None and not [*suspicions(known.document, rules, assumed)]:
+    elif requirements and not has_errors(said):
+        if known is not None and not [*suspicions(known.document, requirements, assumed)]:
             analysis = known.document.analysis
         else:
-            analysis, _ = asked(rules, assumed, chosen, DEFAULT)
-        yield from remarks(analysis, rules)
+            analysis, _ = asked(requirements, assumed, chosen, DEFAULT)
+        yield from remarks(analysis, requirements)
 
 
 def _fix(folder: str) -> None:

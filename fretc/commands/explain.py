@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from compiler.formalization.formalized import FormalizedRequirement
     from compiler.project.folder import Project
-    from fretish.documents import Requirement
+    from fretish.documents import RequirementEntry
 
 
 @click.command()
@@ -56,13 +56,13 @@ def explain(
         _explain_code(code, form)
         return
     if is_sentence(what):
-        rules = _typed(what, requirements, bindings)
+        formalized = _typed(what, requirements, bindings)
     else:
-        rules = _rules(what, requirements, bindings, is_file=is_file)
-    if picture is not None and len(rules) > 1:
-        fix = f"name one of them: `fretc explain {quote(rules[0].id)}`"
+        formalized = _rules(what, requirements, bindings, is_file=is_file)
+    if picture is not None and len(formalized) > 1:
+        fix = f"name one of them: `fretc explain {quote(formalized[0].id)}`"
         stop(Diagnostic(Code.BAD_USAGE, f"`{what}` holds several requirements", help=fix))
-    _explain_rules(rules, form, picture)
+    _explain_rules(formalized, form, picture)
 
 
 def _is_path(what: str) -> bool:
@@ -88,60 +88,64 @@ _MOST_TICKS = 100_000
 """Of a duration: a picture has a column for each of them."""
 
 
-def _too_long(rule: FormalizedRequirement) -> Diagnostic:
+def _too_long(requirement: FormalizedRequirement) -> Diagnostic:
     return Diagnostic(
         Code.TOO_LARGE,
-        f"the picture of {rule.id} would have more than {_MOST_TICKS} ticks",
-        rule.requirement.wording,
+        f"the picture of {requirement.id} would have more than {_MOST_TICKS} ticks",
+        requirement.entry.wording,
         help="state a shorter duration, or use a clock with longer ticks",
     )
 
 
-def _explain_rules(rules: Sequence[FormalizedRequirement], form: str, picture: str | None) -> None:
+def _explain_rules(
+    requirements: Sequence[FormalizedRequirement], form: str, picture: str | None
+) -> None:
     from compiler.explanation import explain as explanation
     from compiler.explanation.drawing import svg
     from compiler.files.templating import to_json
 
-    for rule in rules:
-        if (rule.ticks or 0) > _MOST_TICKS:
-            stop(_too_long(rule))
-    explained = [explanation.explanation(rule) for rule in rules]
+    for requirement in requirements:
+        if (requirement.ticks or 0) > _MOST_TICKS:
+            stop(_too_long(requirement))
+    explained = [explanation.explanation(requirement) for requirement in requirements]
     if picture != "-":
         if form == "json":
             click.echo(to_json([explanation.as_record(each) for each in explained]))
         else:
             click.echo("\n".join(map(explanation.text, explained)), nl=False)
     if picture is not None:
-        sources = [rule.requirement.wording.source.name for rule in rules]
+        sources = [requirement.entry.wording.source.name for requirement in requirements]
         deliver({Path(picture): svg(explained[0].picture)}, protected=sources)
 
 
 def _typed(sentence: str, folder: str, bindings: str | None) -> list[FormalizedRequirement]:
-    """The rule of a sentence; the project's clock, if there is one, says what a second is."""
+    """A sentence as a requirement; the clock of the project, if any, says what a second is."""
     from compiler.formalization.binding_agreement import broken_tables
     from compiler.formalization.formalize import formalize
     from compiler.project.folder import load
     from compiler.project.paths import BINDINGS, sibling_path
     from fretish.diagnostics.source import Source
-    from fretish.documents import Requirement
+    from fretish.documents import RequirementEntry
 
     project = load([], bindings or sibling_path(folder, BINDINGS), reads=())
-    requirement = Requirement("sentence", Source("<sentence>", sentence.strip()).span())
-    rule, remarks = formalize(requirement, project.declarations)
+    entry = RequirementEntry("sentence", Source("<sentence>", sentence.strip()).span())
+    requirement, remarks = formalize(entry, project.declarations)
     say([*project.diagnostics, *remarks])
     if has_errors(project.diagnostics):
         fail_at_the_end()
-    if rule is None or has_errors((*project.general, *remarks)):
+    if requirement is None or has_errors((*project.general, *remarks)):
         raise SystemExit(BAD)
-    if rule.declarations is not None and [*broken_tables(rule, rule.declarations)]:
+    if requirement.declarations is not None and [
+        *broken_tables(requirement, requirement.declarations)
+    ]:
         raise SystemExit(BAD)
-    return [rule]
+    return [requirement]
 
 
 def _rules(
     what: str, folder: str, bindings: str | None, *, is_file: bool
 ) -> list[FormalizedRequirement]:
-    """The rules asked for; exits where there is none."""
+    """The requirements asked for; exits where there is none."""
     from compiler.project.folder import load
     from compiler.project.paths import listed, requirement_files
 
@@ -149,22 +153,24 @@ def _rules(
     if isinstance(paths, Diagnostic):
         stop(_unknown_code(what) or paths)
     project = load(paths, bindings, reads=())
-    ids = [requirement.id for requirement in project.requirements]
+    ids = [entry.id for entry in project.requirements]
     matches = ids if is_file else [id for id in ids if id.casefold() == what.casefold()]
     if not matches:
         _say_of(project, ())
         stop(_unknown(what, ids, folder, is_file=is_file))
     subjects = [r for r in project.requirements if r.id in matches]
     _say_of(project, subjects)
-    rules = [rule for rule in project.sound.rules if rule.id in matches]
-    if not rules:
+    requirements = [
+        requirement for requirement in project.sound.formalized if requirement.id in matches
+    ]
+    if not requirements:
         raise SystemExit(NOT_SHOWN)  # free text, or a mistake, which wins
     refused = {r.requirement.id: r.why for r in project.refused if r.requirement.id in matches}
     list_refused(refused, len(subjects))
-    return rules
+    return requirements
 
 
-def _say_of(project: Project, subjects: Sequence[Requirement]) -> None:
+def _say_of(project: Project, subjects: Sequence[RequirementEntry]) -> None:
     """Print what there is to say of the chosen requirements and of the bindings."""
     others = {
         diagnostic
@@ -181,7 +187,7 @@ def _say_of(project: Project, subjects: Sequence[Requirement]) -> None:
         fail_at_the_end()
 
 
-def _nearest(project: Project, diagnostic: Diagnostic) -> Requirement | None:
+def _nearest(project: Project, diagnostic: Diagnostic) -> RequirementEntry | None:
     """The requirement that a place in its file belongs to: the first that does not end before."""
     assert diagnostic.span is not None
     for requirement in project.requirements:

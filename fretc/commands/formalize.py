@@ -98,7 +98,7 @@ def compile_(
         stop(paths)
     of_loop = any(TARGETS[kind].of_loop for kind in kinds)
     project = load(paths, bindings, reads=("interceptor", "assume") if of_loop else ())
-    undecided = _undecided(project.sound.rules)
+    undecided = _undecided(project.sound.formalized)
     say([*project.diagnostics, *project.answered(undecided)])
     if form == "json" and set(kinds) <= {"ltl"} and not has_errors(project.general):
         if has_errors(project.diagnostics):
@@ -124,10 +124,14 @@ def compile_(
         _print_formulas(project, options)
 
 
-def _undecided(rules: Sequence[FormalizedRequirement]) -> list[Diagnostic]:
-    """F203 for each rule that no run decides: the same, whatever is made of it."""
+def _undecided(requirements: Sequence[FormalizedRequirement]) -> list[Diagnostic]:
+    """F203 for each requirement that no run decides: the same, whatever is made of it."""
     monitor = TARGETS["monitor"]
-    remarks = [monitor.remark(rule) for rule in rules if monitor.refuse(rule) is None]
+    remarks = [
+        monitor.remark(requirement)
+        for requirement in requirements
+        if monitor.refuse(requirement) is None
+    ]
     return [remark for remark in remarks if remark is not None]
 
 
@@ -150,9 +154,9 @@ def _deliver_formulas(project: Project, output: str) -> None:
     from compiler.formalization.record import failed, formulas
 
     records = {}
-    for rule in project.rules:
-        names = renamed(rule)
-        records[id(rule.requirement)] = formulas(rule) | ({"names": names} if names else {})
+    for requirement in project.formalized:
+        names = renamed(requirement)
+        records[id(requirement.entry)] = formulas(requirement) | ({"names": names} if names else {})
     records |= {id(f.requirement): failed(f.requirement, f.diagnostic) for f in project.failed}
     records |= {id(r.requirement): failed(r.requirement, r.why[0]) for r in project.refused}
     text = to_json([records[id(r)] for r in project.requirements])
@@ -162,7 +166,9 @@ def _deliver_formulas(project: Project, output: str) -> None:
 def _print_formulas(project: Project, options: Options) -> None:
     from compiler.targets.ltl import text
 
-    click.echo("\n".join(text(rule, options) for rule in project.rules), nl=False)
+    click.echo(
+        "\n".join(text(requirement, options) for requirement in project.formalized), nl=False
+    )
 
 
 def _emit(
@@ -172,19 +178,26 @@ def _emit(
     options: Options,
     remarks: Sequence[Diagnostic],
 ) -> None:
-    """Write whatever can be; what a target refuses is told and keeps nothing else from it."""
+    """Write whatever can be; what a target refuses is reported and keeps nothing else from it."""
     named = [TARGETS[kind] for kind in kinds]
     targets = [(options.weaken and target.weak) or target for target in named]
     outputs = [(target, *_emitted(target, project, options)) for target in targets]
     refusals = list(dict.fromkeys(chain.from_iterable(wrong for _, _, wrong in outputs)))
-    jobs = [(target, rules) for target, rules, _ in outputs if rules is not None]
+    jobs = [
+        (target, requirements) for target, requirements, _ in outputs if requirements is not None
+    ]
     say(refusals)
-    of_rules = [d for target, rules in jobs for rule in rules if (d := target.remark(rule))]
+    of_rules = [
+        d
+        for target, requirements in jobs
+        for requirement in requirements
+        if (d := target.remark(requirement))
+    ]
     say(project.answered(remark for remark in of_rules if remark not in remarks))
     say(project.answered(d for target, _ in jobs for d in target.remarks(options)))
     files = {
-        target.name: {str(a.path): a.text for a in target.emit(rules, options)}
-        for target, rules in jobs
+        target.name: {str(a.path): a.text for a in target.emit(requirements, options)}
+        for target, requirements in jobs
     }
     texts = {path: text for each in files.values() for path, text in each.items()}
     first_time = output != "-" and not any((Path(output) / path).exists() for path in texts)
@@ -219,19 +232,19 @@ def _next_steps(project: Project, firsts: Mapping[str, str], output: str) -> str
 def _emitted(
     target: Target, project: Project, options: Options
 ) -> tuple[list[FormalizedRequirement] | None, list[Diagnostic]]:
-    """The rules that the target can make files of, None: no file at all; and what it refuses.
+    """The requirements that the target accepts, None: no file at all; and what it refuses.
 
-    A file of all rules is made of all of them or not at all.
+    A file of all requirements is made of all of them or not at all.
     """
     from compiler.formalization.formalize import name_collisions
 
-    rules = project.rules
-    answers = [(rule, target.refuse(rule)) for rule in rules]
+    requirements = project.formalized
+    answers = [(requirement, target.refuse(requirement)) for requirement in requirements]
     wrong = [diagnostic for _, diagnostic in answers if diagnostic is not None]
     whole = [diagnostic] if (diagnostic := target.refuse_project(options)) else []
     one_file = target.together or (options.one_file and target.joins)
     if one_file:
-        whole += name_collisions(rules)
+        whole += name_collisions(requirements)
     if target.together and any(
         each.is_error and each.code is Code.BAD_SETTINGS for each in project.diagnostics
     ):  # a package says who answers for it: the settings do
@@ -240,7 +253,7 @@ def _emitted(
         whole.append(_not_of_all(target, project.refused))
     if whole or (wrong and (one_file or not target.per_rule)):
         return None, [*wrong, *whole]
-    expressible = [rule for rule, diagnostic in answers if diagnostic is None]
+    expressible = [requirement for requirement, diagnostic in answers if diagnostic is None]
     return (expressible or None) if wrong else expressible, wrong
 
 

@@ -59,7 +59,7 @@ def sound_part(project: Project, *, others: bool = False) -> Project:
     if has_errors(project.diagnostics):
         fail_at_the_end()
     sound = project.sound
-    if project.refused and not sound.rules and not (others and project.declarations):
+    if project.refused and not sound.formalized and not (others and project.declarations):
         raise SystemExit(BAD)
     list_mistaken(project)
     return sound

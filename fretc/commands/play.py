@@ -82,7 +82,7 @@ def play(
 
     project, _ = project_of(files, requirements, bindings, ("environment",))
     now, refusals = _side(project)
-    known = now.rules
+    known = now.requirements
     if not known:
         stop(*refusals)
     earlier = (
@@ -101,7 +101,7 @@ def play(
         *(start for run in recorded for start in run.starts),
         *filter(None, [pair.start for pair in changes.pairs]),
         *of_examples(known),
-        *of_files(project.rules, known, tests, analysis),
+        *of_files(project.formalized, known, tests, analysis),
     ]
     notes = [*(pair.note for pair in changes.pairs), *changes.notes]
     notes += [note for run in recorded for note in run.notes]
@@ -120,9 +120,13 @@ def _side(project: Project) -> tuple[Side, list[Diagnostic]]:
     from fretc.commands.analyze import active_requirements
     from fretc.play.versions import Side
 
-    rules = active_requirements(project, None)
-    refused = {rule.id: why for rule in rules if (why := refuse(rule)) is not None}
-    known = [rule for rule in rules if rule.id not in refused]
+    requirements = active_requirements(project, None)
+    refused = {
+        requirement.id: why
+        for requirement in requirements
+        if (why := refuse(requirement)) is not None
+    }
+    known = [requirement for requirement in requirements if requirement.id not in refused]
     mistaken = {each.requirement.id: each.why[0] for each in project.refused if each.is_in_force}
     reasons = {id: why.message for id, why in (mistaken | refused).items()}
     return Side(known, reasons, project.declarations), [*refused.values()]
@@ -148,7 +152,7 @@ def _recorded(
 
 
 def of_files(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     known: Sequence[FormalizedRequirement],
     tests: str | None,
     analysis: str | None,
@@ -163,14 +167,14 @@ def of_files(
     path = tests or (DEFAULT if Path(DEFAULT).exists() else None)
     if path is not None:
         suite = _good(read_suite(path))
-        old = changed(suite, rules)
+        old = changed(suite, requirements)
         if old:
             say([stale(path, f"{', '.join(old)} changed since", "fretc test")])
         yield from of_suite(suite, known)
     path = analysis or default_path()
     if path is not None:
         found = _good(read_analysis(path)).document
-        old = others(found, rules)
+        old = others(found, requirements)
         if old:
             say([stale(path, f"{', '.join(old)} changed since", "fretc analyze")])
         yield from of_analysis(found, old)

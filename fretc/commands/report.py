@@ -193,8 +193,12 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
 
     refused = {each.requirement.id: each.why[0].message for each in project.refused}
     project = project.sound
-    refused |= {rule.id: said.message for rule in project.rules if (said := refuse(rule))}
-    known = [rule for rule in project.rules if rule.id not in refused]
+    refused |= {
+        requirement.id: said.message
+        for requirement in project.formalized
+        if (said := refuse(requirement))
+    }
+    known = [requirement for requirement in project.formalized if requirement.id not in refused]
     if not known or [*name_collisions(known)]:
         return None
     plan = planned(project)
@@ -204,7 +208,7 @@ def _inset(project: Project, evidence: EvidenceSource | None, analysis: str | No
     starts = [
         *recorded.starts,
         *of_examples(known),
-        *of_files(project.rules, known, None, analysis),
+        *of_files(project.formalized, known, None, analysis),
     ]
     return inset(known, [*refused.items()], starts, notes=recorded.notes)
 

@@ -233,7 +233,7 @@ def _chains(
         evidence: of audits.
         verification: of proofs.
         analysis: of the requirements together.
-        accept: all that is read will be accepted, so a store is held against its results in full.
+        accept: all that is read will be accepted, so a store is compared with its results in full.
     """
     from compiler.project.folder import load_folder
     from fretc.analysis.evidence import known as known_analysis

@@ -142,7 +142,7 @@ def _known(scenario: Scenario) -> None:
     from fretc.campaigns.experiment import project
     from simulation.world.scenario import ScenarioError
 
-    ids = [rule.id for rule in project().rules]
+    ids = [requirement.id for requirement in project().formalized]
     for id, verdict in scenario.expect.verdicts.items():
         if id not in ids:
             where = f"`expect.{verdict.replace(' ', '_')}`"

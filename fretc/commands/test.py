@@ -145,14 +145,14 @@ def test(
     from fretc.commands.analyze import active_requirements
 
     project, first = project_of(files, requirements, bindings, ("environment", *OF_AUDITS))
-    rules = active_requirements(project, component)
+    formalized = active_requirements(project, component)
     if show is not None:
-        _check_shown(show, [rule.id for rule in rules])
-    assumed, remarks = assumptions(rules, project.declarations)
+        _check_shown(show, [requirement.id for requirement in formalized])
+    assumed, remarks = assumptions(formalized, project.declarations)
     say_briefly(remarks, first)
     if has_errors(remarks):
         raise SystemExit(BAD)
-    sources = [requirement.wording.source.name for requirement in project.requirements]
+    sources = [entry.wording.source.name for entry in project.requirements]
     protected = [*sources, *companions(sources), *filter(None, [bindings])]
     if languages and emitted != "pytest":
         why = "`--language` is about the tests of `--emit pytest`"
@@ -162,26 +162,30 @@ def test(
             clash = "`--against` tests a program, and makes no tests to emit or show"
             stop(Diagnostic(Code.BAD_USAGE, clash, help="ask for one of them"))
         place = output or "build/tests/conformance.json"
-        test_against.against(against, rules, assumed, seconds, line_time, form, place, protected)
+        test_against.against(
+            against, formalized, assumed, seconds, line_time, form, place, protected
+        )
     output = output or "build/tests/suite.json"
     on_stage = emitted if emitted in test_staging.FORMS else None
     if on_stage is not None:
         test_staging.check(on_stage, emit_to)
     if saved is not None:
         protected.append(saved)
-    suite, stopped = (_of(saved, rules), False) if saved else _made(rules, assumed, seconds)
+    suite, stopped = (
+        (_of(saved, formalized), False) if saved else _made(formalized, assumed, seconds)
+    )
     text = f"{to_json(plain(suite))}\n"
     if emitted is not None and emit_to == "-":
         pass  # what is printed is the tests
     elif output == "-" or form == "json":
         click.echo(text, nl=False)
     else:
-        found = _lines(suite, rules, show, of_file=saved is not None)
+        found = _lines(suite, formalized, show, of_file=saved is not None)
         all_lines = [(visible(text), colour) for text, colour in found]
         click.echo(coloured(all_lines), nl=False)
     outputs: dict[Path, str] = {} if saved or output == "-" else {Path(output): text}
     if emitted is not None and on_stage is None:
-        outputs |= _files(suite, rules, emitted, emit_to, languages)
+        outputs |= _files(suite, formalized, emitted, emit_to, languages)
     deliver(outputs, protected)
     if stopped:
         raise SystemExit(INTERRUPTED)
@@ -199,7 +203,7 @@ def _check_shown(id: str, known: Sequence[str]) -> None:
         stop(Diagnostic(Code.BAD_USAGE, f"there is no requirement `{id}`", help=hint))
 
 
-def _of(path: str, rules: Sequence[FormalizedRequirement]) -> Suite:
+def _of(path: str, requirements: Sequence[FormalizedRequirement]) -> Suite:
     """The suite of a file, as far as it is about requirements as they are."""
     from fretc.testing.exports.saved import WrongError
     from fretc.testing.exports.saved import saved as checked
@@ -210,7 +214,7 @@ def _of(path: str, rules: Sequence[FormalizedRequirement]) -> Suite:
         stop(suite)
     again = "make it again: `fretc test`"
     try:
-        found = checked(suite, rules)
+        found = checked(suite, requirements)
     except WrongError as error:
         stop(Diagnostic(Code.BAD_EVIDENCE, f"`{path}`: {error}", help=again))
     if found.others:
@@ -223,7 +227,9 @@ def _of(path: str, rules: Sequence[FormalizedRequirement]) -> Suite:
 
 
 def _made(
-    rules: Sequence[FormalizedRequirement], assumed: Sequence[FormalizedRequirement], seconds: float
+    requirements: Sequence[FormalizedRequirement],
+    assumed: Sequence[FormalizedRequirement],
+    seconds: float,
 ) -> tuple[Suite, bool]:
     """The suite, and whether Ctrl-C has stopped it."""
     from fretc.analysis.worker import Stopped, findings
@@ -233,16 +239,16 @@ def _made(
     found = []
     stopped = False
     try:
-        for each in findings(jobs(rules, assumed, seconds), at_work):
+        for each in findings(jobs(requirements, assumed, seconds), at_work):
             found.append(each)
     except Stopped:
         stopped = True
-    return suite(rules, assumed, found), stopped
+    return suite(requirements, assumed, found), stopped
 
 
 def _files(
     suite: Suite,
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     emitted: str,
     output: str,
     languages: Sequence[str],
@@ -252,7 +258,7 @@ def _files(
     from fretc.testing.exports.pytest_file import Language
 
     chosen = [each for each in Language if each in languages] or [Language.PYTHON]
-    artifacts, left = files(suite, rules, Form(emitted), chosen)
+    artifacts, left = files(suite, requirements, Form(emitted), chosen)
     for why in dict.fromkeys(left.values()):
         names = [name for name in left if left[name] == why]
         more = f" and {len(names) - 1} more" if len(names) > 1 else ""
@@ -263,7 +269,7 @@ def _files(
 
 
 def _lines(
-    suite: Suite, rules: Sequence[FormalizedRequirement], show: str | None, *, of_file: bool
+    suite: Suite, requirements: Sequence[FormalizedRequirement], show: str | None, *, of_file: bool
 ) -> Iterator[Line]:
     from fretc.testing.bench import demands
     from fretc.testing.text_output import lines, lines_of_file, shown
@@ -272,10 +278,10 @@ def _lines(
     if show is None:
         yield from lines_of_file(suite) if of_file else lines(suite)
         return
-    rule = next(each for each in rules if each.id == show)
+    requirement = next(each for each in requirements if each.id == show)
     roles = {name: Role(own) for name, own in suite.roles.items()}
-    declared = rule.declarations.propositions if rule.declarations else {}
-    bound = (declared[name] for name in rule.watched if name in declared)
+    declared = requirement.declarations.propositions if requirement.declarations else {}
+    bound = (declared[name] for name in requirement.watched if name in declared)
     signals = (signal for each in bound for signal in each.signals)
-    names = [*rule.variables, *demands(rule).atoms, *signals]
-    yield from shown(suite, show, names, roles, rule.wordings)
+    names = [*requirement.variables, *demands(requirement).atoms, *signals]
+    yield from shown(suite, show, names, roles, requirement.wordings)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 def against(
     command: str,
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumed: Sequence[FormalizedRequirement],
     seconds: float,
     line_time: float,
@@ -44,7 +44,7 @@ def against(
 
     Args:
         command: the program and its arguments, as a shell would read them.
-        rules: the requirements.
+        requirements: the requirements.
         assumed: what its environment keeps.
         seconds: of a processor, for the strategy towards each situation.
         line_time: seconds that the program may take for a line.
@@ -54,22 +54,22 @@ def against(
     """
     from compiler.files.records import plain
     from compiler.files.templating import to_json
-    from fretc.analysis.arena.alphabet import UnsupportedError
     from fretc.analysis.arena.budget import OutOfTimeError
     from fretc.analysis.arena.roles import roles
+    from fretc.analysis.arena.variables import UnsupportedError
     from fretc.terminal.progress import at_work
     from fretc.testing.conformance.conformance_run import ConformanceRun
     from fretc.testing.conformance.program import Program, ProgramError
     from fretc.testing.conformance.text_output import lines
 
     words = _words(command)
-    chosen = roles([*rules, *assumed])
+    chosen = roles([*requirements, *assumed])
     if isinstance(chosen, tuple):
         stop(*chosen)
     wrong: Diagnostic | None = None
     stopped = False
     try:
-        campaign = ConformanceRun(rules, assumed, chosen, seconds)
+        campaign = ConformanceRun(requirements, assumed, chosen, seconds)
         oracle = campaign.oracle
         try:
             campaign.run(lambda: Program(words, oracle.inputs, oracle.outputs, line_time), at_work)

@@ -191,7 +191,7 @@ def verify(
     proofs = _proofs(project, request)
     if refused and not proofs:
         raise SystemExit(BAD)
-    list_refused({id: (why,) for id, why in refused.items()}, len(project.rules))
+    list_refused({id: (why,) for id, why in refused.items()}, len(project.formalized))
     own = header.name if header else None
     options = (monitor_file, own, interceptor, agent, properties, bindings, *results)
     sources = [requirement.wording.source.name for requirement in project.requirements]
@@ -222,7 +222,7 @@ def _ajpf_proofs(project: Project, results: Sequence[str]) -> Sequence[Proof]:
     """The proofs that files of results of AJPF hold; an error in one stops the command."""
     from fretc.verification.ajpf_results import ajpf_proofs
 
-    proofs, diagnostics = ajpf_proofs(project.rules, results)
+    proofs, diagnostics = ajpf_proofs(project.formalized, results)
     say(diagnostics)
     if has_errors(diagnostics):
         raise SystemExit(BAD)
@@ -240,9 +240,9 @@ def _half_an_agent(agent: str | None) -> Diagnostic:
 
 
 def _project(files: Sequence[str], requirements: str, bindings: str | None) -> Project:
-    """The sound part of the project, which has a rule at least; else the command stops."""
+    """The sound part of the project, which has a requirement at least; else the command stops."""
     project, _ = project_of(files, requirements, bindings, ("interceptor", "assume"))
-    if not project.rules:
+    if not project.formalized:
         stop(Diagnostic(Code.NOTHING_TO_DO, "there is no requirement to verify"))
     return project
 

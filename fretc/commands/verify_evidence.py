@@ -241,7 +241,7 @@ def _places(runs: Sequence[str], named: Sequence[str], *, offline: bool) -> dict
     return {run: place for run, place in places.items() if run not in refusals}
 
 
-# What it is held against ------------------------------------------------------------------------
+# What it is compared with ------------------------------------------------------------------------
 
 
 def _scope(plan: Plan, only: str | None, requirements: str) -> Scope:
@@ -406,19 +406,25 @@ def _asked_again(
         why = f"nothing was analyzed again: `{'--no-analysis' if skip else '--only'}`"
         return (unknown(TOGETHER, "", why),)
     document = known.document
-    in_force = [rule for rule in project.rules if rule.requirement.status != "retired"]
-    rules = [rule for rule in in_force if rule.id in document.requirements]
+    in_force = [
+        requirement for requirement in project.formalized if requirement.entry.status != "retired"
+    ]
+    requirements = [
+        requirement for requirement in in_force if requirement.id in document.requirements
+    ]
     assumed, remarks = assumptions(in_force, project.declarations)
-    chosen = roles([*rules, *assumed])
+    chosen = roles([*requirements, *assumed])
     if has_errors(remarks):
         stop(*remarks)
     if isinstance(chosen, tuple):
         stop(*chosen)
-    now, stopped = asked(rules, assumed, chosen, Options(as_fret=document.as_fret))
+    now, stopped = asked(requirements, assumed, chosen, Options(as_fret=document.as_fret))
     if stopped:
         raise SystemExit(INTERRUPTED)
-    old = [differs(TOGETHER, "", why) for why in changes(document, rules, assumed)]
-    others = (rule.id for rule in in_force if rule not in rules)  # of another `--component`, or new
+    old = [differs(TOGETHER, "", why) for why in changes(document, requirements, assumed)]
+    others = (
+        requirement.id for requirement in in_force if requirement not in requirements
+    )  # of another `--component`, or new
     new = [unknown(TOGETHER, id, "it was no part of the set") for id in others]
     return (*old, *new, *compared(document, now))
 

@@ -131,7 +131,7 @@ def watch(
         run = Watch(plan, Path(record) if record is not None else None, followed)
     except OSError as error:
         stop(not_written(str(record), error.strerror or str(error)))
-    titles = {rule.id: rule.requirement.title for rule in project.rules}
+    titles = {requirement.id: requirement.entry.title for requirement in project.formalized}
     shown = outputs_of(form, titles)
     with until_stopped() as stopped:
         watched(run, source, shown, reaction, Publishing(publishers), stopped)

@@ -52,7 +52,7 @@ class JsonLines:
         sys.stdout.flush()
 
     def refresh(self, session: Session) -> None:
-        """Nothing: only news is told."""
+        """Nothing: only news is reported."""
 
     def end(self, session: Session) -> None:
         """Nothing more."""
@@ -76,7 +76,7 @@ class Lines:
             sys.stdout.flush()
 
     def refresh(self, session: Session) -> None:
-        """Nothing: only news is told."""
+        """Nothing: only news is reported."""
 
     def end(self, session: Session) -> None:
         """Nothing more."""

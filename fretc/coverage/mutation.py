@@ -89,11 +89,15 @@ def inquiry(project: Project, plan: Plan) -> MutationJob:
         plan: of an audit.
     """
     audited = {claim.id for claim in plan.claims}
-    rules = {rule.id: rule for rule in project.rules if rule.id in audited}
-    found = tuple(map(suspects, rules.values()))
+    requirements = {
+        requirement.id: requirement
+        for requirement in project.formalized
+        if requirement.id in audited
+    }
+    found = tuple(map(suspects, requirements.values()))
     declarations = project.declarations
     assert declarations is not None, "there is a plan"
-    for own in (mutant.rule.declarations for one in found for mutant in one.mutants):
+    for own in (mutant.requirement.declarations for one in found for mutant in one.mutants):
         if own is not None:
             declarations = extended(declarations, own.propositions, own.mistakes)
     declarations = replace(declarations, signals=plan.declarations.signals)
@@ -108,25 +112,27 @@ def _is_told(declarations: Declarations, name: str) -> bool:
     return proposition is not None and declarations.signals.keys() >= {*proposition.signals}
 
 
-def suspects(rule: FormalizedRequirement) -> MutantBatch:
-    """The mutants of a rule in one monitor, with the rule itself."""
+def suspects(requirement: FormalizedRequirement) -> MutantBatch:
+    """The mutants of a requirement in one monitor, with the requirement itself."""
     judged: list[Mutant] = []
     refused: list[tuple[Mutant, str]] = []
-    for mutant in mutants(rule):
-        why = monitors.refuse(plain(mutant.rule))
+    for mutant in mutants(requirement):
+        why = monitors.refuse(plain(mutant.requirement))
         if why is None:
             judged.append(mutant)
         else:
             refused.append((mutant, why.message))
-    numbered = [_called(each.rule, f"M{n}") for n, each in enumerate(judged)]
-    text = monitors.text(_called(rule, "R"), *numbered)
-    watching = load(f"{rule.id}_mutants", text)
-    return MutantBatch(rule.id, rule.fingerprint, tuple(judged), tuple(refused), watching)
+    numbered = [_called(each.requirement, f"M{n}") for n, each in enumerate(judged)]
+    text = monitors.text(_called(requirement, "R"), *numbered)
+    watching = load(f"{requirement.id}_mutants", text)
+    return MutantBatch(
+        requirement.id, requirement.fingerprint, tuple(judged), tuple(refused), watching
+    )
 
 
-def _called(rule: FormalizedRequirement, id: str) -> FormalizedRequirement:
-    """The rule under another id: in a monitor each has its own."""
-    return replace(rule, requirement=replace(rule.requirement, id=id))
+def _called(requirement: FormalizedRequirement, id: str) -> FormalizedRequirement:
+    """The requirement under another id: in a monitor each has its own."""
+    return replace(requirement, entry=replace(requirement.entry, id=id))
 
 
 # One run ----------------------------------------------------------------------------------------

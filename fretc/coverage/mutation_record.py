@@ -96,7 +96,7 @@ def _mutants(suspects: MutantBatch, survey: MutationResult) -> Iterator[Judged]:
 
 def written(mutant: Mutant) -> str:
     """Its sentence."""
-    return sentence(mutant.rule.written)
+    return sentence(mutant.requirement.written)
 
 
 def _notice(run: int, found: Difference) -> Notice:

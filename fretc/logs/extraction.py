@@ -1,7 +1,7 @@
 """Payloads of one stream → the numbers of its signals, many messages at once.
 
 Fields are read from their places in the payloads. The official decoder, slower and the reference,
-also decodes made-up messages, and of the first real ones some whose numbers are held against those
+also decodes made-up messages, and of the first real ones some whose numbers are compared with those
 that were read of all at once; where it disagrees, it reads the whole stream.
 """
 

@@ -2,7 +2,7 @@
 
 The first source that says something counts; others that say something else are F552, and a label
 without a value is F553. `--label` of a command comes before all sources. Values are texts of
-strangers: they are bounded here, and escaped wherever they are shown.
+untrusted sources: they are bounded here, and escaped wherever they are shown.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Where the index of a log explains every byte of it, only the messages in question are read. Any
 other log is read from its first record to its last; what its summary states (where the chunks are,
-how many messages there are) is held against what was found, so that a damaged place is a named
+how many messages there are) is compared with what was found, so that a damaged place is a named
 gap and never a silent loss. The files of a rosbag2 folder are one log. Times are nanoseconds.
 """
 

@@ -1,4 +1,4 @@
-"""What a watch writes into its recording, and what a log of a stranger may claim instead.
+"""What a watch writes into its recording, and what an untrusted log may claim instead.
 
 The metadata record `fretc.grid` says where the grid of ticks begins, as soon as it is placed, and
 `fretc.watch`, at the end, up to when was watched and what was missed meanwhile. Both name the clock
@@ -70,7 +70,7 @@ def watch_record(
 
 
 _SHOWN = 80
-"""Characters of a text of a stranger."""
+"""Characters of an untrusted text."""
 
 
 def watched(columns: Columns, described: Mapping[str, tuple[str, ...]], place: Span) -> Watched:

@@ -47,18 +47,18 @@ _WORDS: Mapping[str, str] = {
 
 
 def html(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     left_out: Sequence[tuple[str, str]],
     starts: Sequence[Start],
     before: Mapping[str, str] | None = None,
     notes: Sequence[str] = (),
 ) -> str:
     """The whole file; arguments as of `inset`."""
-    return inset(rules, left_out, starts, before, notes).text
+    return inset(requirements, left_out, starts, before, notes).text
 
 
 def inset(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     left_out: Sequence[tuple[str, str]],
     starts: Sequence[Start],
     before: Mapping[str, str] | None = None,
@@ -67,14 +67,14 @@ def inset(
     """The whole file, for another page to open.
 
     Args:
-        rules: at least one, of which JavaScript can be made, and all on one clock.
+        requirements: at least one, of which JavaScript can be made, and all on one clock.
         left_out: the ids of the others, and why they are.
         starts: traces to begin with; those of more than `MOST` ticks are passed over.
-        before: the id of a requirement → that of the rule that it was before.
+        before: the id of a requirement → that of the requirement that it was before.
         notes: sentences about versions.
     """
-    made, before = body(*rules), before or {}
-    now = [rule for rule in rules if rule.id not in before.values()]
+    made, before = body(*requirements), before or {}
+    now = [requirement for requirement in requirements if requirement.id not in before.values()]
     known = [each for each in starts if 0 < each.ticks <= MOST]
     names = ", ".join(("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "truths", "judge"))
     code = "\n".join(line for line in made.text.splitlines() if not line.lstrip().startswith("//"))
@@ -87,16 +87,16 @@ def inset(
     hashes = [hash_source(each) for each in (monitor, script, style)]
     text = render(
         "play/page.html.j2",
-        title=visible(", ".join(rule.id for rule in now[:_TITLED]) + _more(len(now))),
+        title=visible(", ".join(requirement.id for requirement in now[:_TITLED]) + _more(len(now))),
         notes=[visible(note) for note in notes],
         is_compared=bool(before),
-        tick=str(rules[0].clock) if rules[0].clock else "",
+        tick=str(requirements[0].clock) if requirements[0].clock else "",
         left_out=[(visible(id), visible(why)) for id, why in left_out],
-        labels=[visible(rule.id) for rule in rules],
+        labels=[visible(requirement.id) for requirement in requirements],
         starts=[*_grouped(known)],
         glyphs=[(_WORDS[word], glyph) for word, glyph in _GLYPHS.items() if word in _WORDS],
         version=__version__,
-        data=_data(rules, made, known, before),
+        data=_data(requirements, made, known, before),
         monitor=monitor,
         script=script,
         style=style,
@@ -104,7 +104,12 @@ def inset(
         script_hash=hashes[1],
         style_hash=hashes[2],
     )
-    return Inset(text, frozenset(rule.id for rule in rules), (hashes[0], hashes[1]), hashes[2])
+    return Inset(
+        text,
+        frozenset(requirement.id for requirement in requirements),
+        (hashes[0], hashes[1]),
+        hashes[2],
+    )
 
 
 _PARTS = ("trace", "words", "grid", "gestures")
@@ -123,7 +128,7 @@ def _grouped(starts: Sequence[Start]) -> Iterator[tuple[str, list[tuple[int, str
 
 
 def _data(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     made: Body,
     starts: Sequence[Start],
     before: Mapping[str, str],
@@ -134,24 +139,24 @@ def _data(
     reads = {name: [places[name]] for name in made.propositions if name in places}
     for name, compared in front.comparisons.items():
         reads[name] = [places[each] for each in compared.inputs]
-    ids = {rule.id: place for place, rule in enumerate(rules)}
+    ids = {requirement.id: place for place, requirement in enumerate(requirements)}
     return {
         "most": MOST,
         "suite": {
             "schema": SCHEMA,
             "fretc": __version__,
-            "clock": str(rules[0].clock) if rules[0].clock else "",
+            "clock": str(requirements[0].clock) if requirements[0].clock else "",
         },
         "requirements": [
-            _requirement(rule, made.propositions, reads)
-            | {"before": ids[before[rule.id]] if rule.id in before else None}
-            for rule in rules
+            _requirement(requirement, made.propositions, reads)
+            | {"before": ids[before[requirement.id]] if requirement.id in before else None}
+            for requirement in requirements
         ],
         "variables": [_variable(name, front) for name in variables],
         "comparisons": [
             {
                 "proposition": place,
-                "label": visible(_written(name, rules).strip("()")),
+                "label": visible(_written(name, requirements).strip("()")),
                 "limit": _limit(front.comparisons[name], places),
             }
             for place, name in enumerate(made.propositions)
@@ -170,21 +175,25 @@ def _data(
 
 
 def _requirement(
-    rule: FormalizedRequirement, propositions: Sequence[str], reads: Mapping[str, Sequence[int]]
+    requirement: FormalizedRequirement,
+    propositions: Sequence[str],
+    reads: Mapping[str, Sequence[int]],
 ) -> dict[str, Any]:
-    demand = obligation(rule.sentence, rule.ticks or 0).demand
-    formula = boolean(rule.sentence.response, Uninterpreted().alone())
+    demand = obligation(requirement.sentence, requirement.ticks or 0).demand
+    formula = boolean(requirement.sentence.response, Uninterpreted().alone())
     known = all(name in propositions for name in f.atoms(formula))
     return {
-        "label": visible(rule.id),
-        "file": stem(rule),
-        "tested": plain(Tested(rule.id, printed(rule.written), rule.fingerprint, ())),
-        "sentence": visible(printed(rule.written)),
-        "response": visible(expression(rule.written.response)),
+        "label": visible(requirement.id),
+        "file": stem(requirement),
+        "tested": plain(
+            Tested(requirement.id, printed(requirement.written), requirement.fingerprint, ())
+        ),
+        "sentence": visible(printed(requirement.written)),
+        "response": visible(expression(requirement.written.response)),
         "formula": _tree(formula, propositions) if known else None,
         "waits": Trait.WAITS in TRAITS[demand.kind],
-        "watches": [propositions.index(name) for name in rule.watched],
-        "reads": sorted({place for name in rule.watched for place in reads[name]}),
+        "watches": [propositions.index(name) for name in requirement.watched],
+        "reads": sorted({place for name in requirement.watched for place in reads[name]}),
     }
 
 
@@ -231,9 +240,11 @@ def _variable(name: str, front: InputAdapter) -> dict[str, Any]:
     }
 
 
-def _written(name: str, rules: Sequence[FormalizedRequirement]) -> str:
+def _written(name: str, requirements: Sequence[FormalizedRequirement]) -> str:
     """A comparison as the first sentence that has it writes it."""
-    return next((found for rule in rules if (found := rule.wordings.get(name))), name)
+    return next(
+        (found for requirement in requirements if (found := requirement.wordings.get(name))), name
+    )
 
 
 def _limit(compared: Compared, places: Mapping[str, int]) -> tuple[int, float] | None:

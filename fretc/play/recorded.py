@@ -51,27 +51,29 @@ class Recorded:
     """Of the one log that it is of."""
 
 
-def of_log(rules: Sequence[FormalizedRequirement], plan: Plan, log: str) -> Recorded | Diagnostic:
+def of_log(
+    requirements: Sequence[FormalizedRequirement], plan: Plan, log: str
+) -> Recorded | Diagnostic:
     """The violations of a recorded run, or why the log cannot be read.
 
     Args:
-        rules: those that the plan audits are looked at.
+        requirements: those that the plan audits are looked at.
         plan: of an audit.
         log: its path.
     """
     audited = {claim.id for claim in plan.claims}
-    chosen = [rule for rule in rules if rule.id in audited]
+    chosen = [requirement for requirement in requirements if requirement.id in audited]
     recording = read(log, plan.declarations, tuple(plan.declarations.signals), plan.integrity)
     if isinstance(recording, Diagnostic):
         return recording
-    names = dict.fromkeys(name for rule in chosen for name in rule.watched)
+    names = dict.fromkeys(name for requirement in chosen for name in requirement.watched)
     truths = trace(plan.declarations, recording, tuple(names))
     starts: list[Start] = []
     notes: list[str] = []
     violations = 0
-    for rule in chosen:
-        columns = {name: truths.columns[name] for name in rule.watched}
-        run = Run(rule, columns, truths.timeline, recording.name)
+    for requirement in chosen:
+        columns = {name: truths.columns[name] for name in requirement.watched}
+        run = Run(requirement, columns, truths.timeline, recording.name)
         starts += run.starts()
         notes += run.notes()
         violations += run.violations
@@ -83,16 +85,16 @@ def of_log(rules: Sequence[FormalizedRequirement], plan: Plan, log: str) -> Reco
 
 
 def of_evidence(
-    rules: Sequence[FormalizedRequirement], plan: Plan, evidence: EvidenceSource
+    requirements: Sequence[FormalizedRequirement], plan: Plan, evidence: EvidenceSource
 ) -> Recorded:
     """The violations of audited runs, as far as their logs are there as they were audited.
 
     Args:
-        rules: those that the plan audits are looked at.
+        requirements: those that the plan audits are looked at.
         plan: of the audit.
         evidence: of it; the names of its logs are their paths.
     """
-    ids = {rule.id for rule in rules}
+    ids = {requirement.id for requirement in requirements}
     violated = dict.fromkeys(
         (each.run, each.log)
         for _, each in evidence.briefs()
@@ -101,7 +103,7 @@ def of_evidence(
     starts: list[Start] = []
     notes: list[str] = []
     for name, sha256 in [*violated][:RUNS]:
-        found = of_log(rules, plan, path_of(name))
+        found = of_log(requirements, plan, path_of(name))
         if isinstance(found, Diagnostic):
             notes.append(f"violations of {name} are not here: {found.message}")
         elif found.sha256 != sha256:
@@ -119,13 +121,13 @@ class Run:
 
     def __init__(
         self,
-        rule: FormalizedRequirement,
+        requirement: FormalizedRequirement,
         columns: Mapping[str, Column],
         timeline: Timeline,
         name: str,
     ) -> None:
-        self._id, self._name, self._columns = rule.id, name, columns
-        self._monitor: Monitor = load(f"{rule.id}.py", emitted.text(rule))
+        self._id, self._name, self._columns = requirement.id, name, columns
+        self._monitor: Monitor = load(f"{requirement.id}.py", emitted.text(requirement))
         self._times = timeline.times
         self._ticks = len(timeline.times)
         (self._outcome,) = evaluate(self._monitor, columns, self._ticks)

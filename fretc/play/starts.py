@@ -39,12 +39,12 @@ class Start:
         return sum(count for count, _ in self.rows)
 
 
-def of_examples(rules: Sequence[FormalizedRequirement]) -> Iterator[Start]:
+def of_examples(requirements: Sequence[FormalizedRequirement]) -> Iterator[Start]:
     """The traces of `fretc explain`; what repeats comes twice."""
-    for rule in rules:
-        if (rule.ticks or 0) > MOST:
+    for requirement in requirements:
+        if (requirement.ticks or 0) > MOST:
             continue
-        explained = explanation(rule)
+        explained = explanation(requirement)
         for shown in explained.traces:
             names = explained.propositions
             rows: list[Ticks] = [
@@ -53,13 +53,13 @@ def of_examples(rules: Sequence[FormalizedRequirement]) -> Iterator[Start]:
             ]
             again = [row for row, each in zip(rows, shown.rows, strict=True) if each.repeats]
             word = "satisfied" if shown.satisfied else "violated"
-            name = f"{rule.id}, {word}: {shown.reason}"
-            yield Start("Examples", name, name, (rule.id,), (*rows, *again))
+            name = f"{requirement.id}, {word}: {shown.reason}"
+            yield Start("Examples", name, name, (requirement.id,), (*rows, *again))
 
 
-def of_suite(suite: Suite, rules: Sequence[FormalizedRequirement]) -> Iterator[Start]:
+def of_suite(suite: Suite, requirements: Sequence[FormalizedRequirement]) -> Iterator[Start]:
     """The tests of requirements whose sentences are still the same."""
-    fingerprints = {rule.id: rule.fingerprint for rule in rules}
+    fingerprints = {requirement.id: requirement.fingerprint for requirement in requirements}
     same = {each.id for each in suite.requirements if fingerprints.get(each.id) == each.fingerprint}
     for test in suite.tests:
         if test.requirement in same:
@@ -69,9 +69,9 @@ def of_suite(suite: Suite, rules: Sequence[FormalizedRequirement]) -> Iterator[S
             yield Start("Tests", name, about, (test.requirement,), rows)
 
 
-def changed(suite: Suite, rules: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
+def changed(suite: Suite, requirements: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
     """The requirements that the tests are about as they were before."""
-    fingerprints = {rule.id: rule.fingerprint for rule in rules}
+    fingerprints = {requirement.id: requirement.fingerprint for requirement in requirements}
     return tuple(
         each.id
         for each in suite.requirements
@@ -79,9 +79,9 @@ def changed(suite: Suite, rules: Sequence[FormalizedRequirement]) -> tuple[str, 
     )
 
 
-def others(document: Document, rules: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
+def others(document: Document, requirements: Sequence[FormalizedRequirement]) -> tuple[str, ...]:
     """The requirements of an analysis that are not those of the project, or have changed."""
-    sentences = {rule.id: printed(rule.written) for rule in rules}
+    sentences = {requirement.id: printed(requirement.written) for requirement in requirements}
     members = document.requirements.items()
     return tuple(id for id, member in members if sentences.get(id) != member.sentence)
 

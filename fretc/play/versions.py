@@ -1,7 +1,7 @@
 """Requirements as they are and as they were: what has changed, and what tells both apart.
 
-Two sentences are held against each other only where a tick is the same and all that both read means
-the same in the bindings: a run of the one is then a run of the other.
+Two sentences are compared with each other only where a tick is the same and all that both read
+means the same in the bindings: a run of the one is then a run of the other.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from fretish.reading.recursion import with_recursion_limit
 class Side:
     """One version of a project."""
 
-    rules: Sequence[FormalizedRequirement]
+    requirements: Sequence[FormalizedRequirement]
     """Those that a monitor can be made of."""
     refused: Mapping[str, str]
     """The ids of the others, and why they are none."""
@@ -33,7 +33,7 @@ class Side:
     @property
     def ids(self) -> tuple[str, ...]:
         """Of all its requirements."""
-        return (*(rule.id for rule in self.rules), *self.refused)
+        return (*(requirement.id for requirement in self.requirements), *self.refused)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,27 +63,27 @@ def versions(new: Side, old: Side, seconds: float) -> Versions:
 
     Args:
         new: as they are.
-        old: as they were; an only one is held against an only one, whatever their ids are.
+        old: as they were; an only one is compared with an only one, whatever their ids are.
         seconds: of a processor, for each pair.
     """
     ids, earlier = new.ids, old.ids
     names = {id: id for id in earlier}
     if len(ids) == len(earlier) == 1:
         names, earlier = {ids[0]: earlier[0]}, ids
-    before = {rule.id: rule for rule in old.rules}
+    before = {requirement.id: requirement for requirement in old.requirements}
     taken = {*new.ids, *old.ids}
     pairs, notes, same = [], [], []
-    for rule in new.rules:
-        other = before.get(names.get(rule.id, ""))
+    for requirement in new.requirements:
+        other = before.get(names.get(requirement.id, ""))
         if other is None:
             continue
-        unlike = _unlike(rule, other, new.declarations, old.declarations)
+        unlike = _unlike(requirement, other, new.declarations, old.declarations)
         if unlike:
-            notes.append(f"{rule.id}: {unlike}: its versions are not compared")
-        elif (rule.fingerprint, rule.ticks) == (other.fingerprint, other.ticks):
-            same.append(rule.id)
+            notes.append(f"{requirement.id}: {unlike}: its versions are not compared")
+        elif (requirement.fingerprint, requirement.ticks) == (other.fingerprint, other.ticks):
+            same.append(requirement.id)
         else:
-            pairs.append(_pair(rule, _named(other, rule.id, taken), seconds))
+            pairs.append(_pair(requirement, _named(other, requirement.id, taken), seconds))
     gone = "no monitor can be made of what it was"
     notes += [
         f"{id}: {gone}: {old.refused[names[id]]}" for id in ids if names.get(id) in old.refused
@@ -114,22 +114,24 @@ def _unlike(
 
 
 def _meanings(
-    rule: FormalizedRequirement, declarations: Declarations | None
+    requirement: FormalizedRequirement, declarations: Declarations | None
 ) -> dict[tuple[str, str], Any]:
-    """What the bindings say of each name that a rule reads; None: nothing."""
-    found: dict[tuple[str, str], Any] = {("proposition", name): None for name in rule.watched}
+    """What the bindings say of each name that a requirement reads; None: nothing."""
+    found: dict[tuple[str, str], Any] = {
+        ("proposition", name): None for name in requirement.watched
+    }
     if declarations is not None:
-        known = bound(declarations, rule.watched)
+        known = bound(declarations, requirement.watched)
         found |= {(kind, name): known[kind][name] for kind in known for name in known[kind]}
     return found
 
 
-def _named(rule: FormalizedRequirement, id: str, taken: set[str]) -> FormalizedRequirement:
+def _named(requirement: FormalizedRequirement, id: str, taken: set[str]) -> FormalizedRequirement:
     """Under an id of its own."""
     name = f"{id} before"
     while name in taken:
         name += "'"
-    return replace(rule, requirement=replace(rule.requirement, id=name))
+    return replace(requirement, entry=replace(requirement.entry, id=name))
 
 
 @with_recursion_limit
@@ -155,20 +157,20 @@ def _pair(new: FormalizedRequirement, old: FormalizedRequirement, seconds: float
     return Pair(new, old, about, start)
 
 
-def _has_numbers(rule: FormalizedRequirement) -> bool:
+def _has_numbers(requirement: FormalizedRequirement) -> bool:
     """Whether it compares some, itself or by what the bindings say of its propositions."""
-    declared = rule.declarations.propositions if rule.declarations else {}
-    return bool(comparisons(rule)) or any(
-        declared[name].signals for name in rule.watched if name in declared
+    declared = requirement.declarations.propositions if requirement.declarations else {}
+    return bool(comparisons(requirement)) or any(
+        declared[name].signals for name in requirement.watched if name in declared
     )
 
 
 def side_by_side(
-    versions: Versions, rules: Sequence[FormalizedRequirement]
+    versions: Versions, requirements: Sequence[FormalizedRequirement]
 ) -> Iterator[FormalizedRequirement]:
     """Each requirement, and behind it what it was."""
     before = {pair.new.id: pair.old for pair in versions.pairs}
-    for rule in rules:
-        yield rule
-        if rule.id in before:
-            yield before[rule.id]
+    for requirement in requirements:
+        yield requirement
+        if requirement.id in before:
+            yield before[requirement.id]

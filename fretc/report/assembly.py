@@ -91,7 +91,7 @@ def report(
     withdrawn = withdrawn_requirements(project.requirements, chains, lock)
     anchors = {assessment.id: assessment.anchor for assessment in reversed(assessed)}
     shared = shared_products(project.declarations) if all_proofs else ()
-    joint = joint_monitors(project.rules, all_proofs)
+    joint = joint_monitors(project.formalized, all_proofs)
     exercised = situations(assessed, evidence)
     sections = tuple(
         section(
@@ -126,7 +126,9 @@ def report(
     rows = matrix(project, assessed, sections)
     run_list = run_summaries(all_runs, project)
     all_changes = (*changes, *reviews.withdrawals(withdrawn))
-    components = tuple(sorted({rule.sentence.component for rule in project.rules}))
+    components = tuple(
+        sorted({requirement.sentence.component for requirement in project.formalized})
+    )
     checked = _checks(project, assessed, lock, evidence)
     first_screen = front(
         ": ".join(filter(None, [phrases.joined(components), folder_of(project)])),
@@ -213,7 +215,7 @@ def _longest_waits(
     rows = [
         max(waiting, key=lambda row: row.latency_max_s or 0)
         for assessment, view in zip(assessed, sections, strict=True)
-        if view.mark.shows and not is_bounded(assessment.rule)
+        if view.mark.shows and not is_bounded(assessment.requirement)
         if (waiting := [row for row in view.results if row.at_once < row.answers])
     ]
     return {row.requirement: result for row, result in details.results(rows)}
@@ -240,7 +242,7 @@ def _reservations(view: RequirementView, longest: Mapping[str, ResultView]) -> S
 
 def _claims(assessed: Sequence[Assessment], runs: int, selection: Selection | None) -> str:
     active = [one for one in assessed if one.verdict != RETIRED]
-    drafts = sum(one.requirement.status == "draft" for one in active)
+    drafts = sum(one.entry.status == "draft" for one in active)
     retired = len(assessed) - len(active)
     parts = [
         f"{phrases.times(len(active), 'requirement')} in force",

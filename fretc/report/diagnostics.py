@@ -30,7 +30,7 @@ def stale_evidence(
             Code.STALE_EVIDENCE,
             f"the evidence of {phrases.joined([each.id for each in some])} is suspect in "
             f"{phrases.times(count, 'run')}{' each' if len(some) > 1 else ''}: {why}",
-            some[0].requirement.wording,
+            some[0].entry.wording,
             help=again,
             severity=Severity.WARNING,
         )

@@ -13,7 +13,8 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.project.folder import Project
 from fretc.analysis.evidence import read as read_analysis
 from fretc.attestation.signatures import read_signatures
-from fretc.audit.store.anywhere import StoreError, source
+from fretc.audit.store.anywhere import source
+from fretc.audit.store.errors import StoreError
 from fretc.report.assembly import report
 from fretc.report.forms.json_text import json_pieces
 from fretc.report.model.views import Report
@@ -38,7 +39,7 @@ class ReportBuild:
     waived is then open in the report, and the diagnostics say why.
     """
     diagnostics: tuple[Diagnostic, ...]
-    rules: tuple[FormalizedRequirement, ...] = ()
+    requirements: tuple[FormalizedRequirement, ...] = ()
     """The formalized requirements; the HTML page draws what they mean."""
     details: Details | None = None
     """What the report has in rows only; None where there is no report."""
@@ -48,7 +49,7 @@ class ReportBuild:
         """The HTML page."""
         if self.report is None or self.details is None:
             return None
-        return html(self.report, self.details, self.rules)
+        return html(self.report, self.details, self.requirements)
 
     @property
     def json(self) -> str | None:
@@ -100,7 +101,7 @@ def make(
     if isinstance(signatures, Diagnostic):
         return ReportBuild(None, (signatures,))
     waivers_in_force, waiver_diagnostics = _waivers_in_force(project, waivers)
-    proofs_of_ajpf, ajpf_diagnostics = ajpf_proofs(project.rules, ajpf)
+    proofs_of_ajpf, ajpf_diagnostics = ajpf_proofs(project.formalized, ajpf)
     # A missing file of evidence is a note: the report shows that nothing has been exercised.
     present, notes = (None, (audits,)) if isinstance(audits, Diagnostic) else (audits, ())
     try:
@@ -120,7 +121,7 @@ def make(
     return ReportBuild(
         full_report,
         (*notes, *waiver_diagnostics, *ajpf_diagnostics, *report_diagnostics),
-        project.rules,
+        project.formalized,
         details,
     )
 

@@ -71,7 +71,7 @@ def _results(document: Document, scope: Scope) -> Iterator[Recheck]:
         for id in sorted(named | here | {*scope.claimed}, key=natural):
             count = counts[run, id]
             if count > 1:
-                yield differs(run, id, "it is told twice")
+                yield differs(run, id, "it appears twice")
             elif not count and id in scope.claimed:
                 yield differs(run, id, f"{id} is claimed and the evidence has no result of it")
             elif not count:
@@ -123,7 +123,7 @@ def _runs(review: Review, results: Sequence[Result], prints_of: _PrintsOf) -> It
             why = "the lock names this run and the evidence has no result of it"
             yield differs(node.name, review.requirement, why)
         elif node.name not in prints_of:
-            why = "its log is not found, to be held against the lock"
+            why = "its log is not found, to be compared with the lock"
             yield unknown(node.name, review.requirement, why)
         elif sha not in prints_of[node.name]():
             why = "its log is not the one that was reviewed"

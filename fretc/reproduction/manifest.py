@@ -1,6 +1,6 @@
 """A manifest: which logs there must be, each with its SHA-256, as `sha256sum` writes them.
 
-Evidence held against it has each of these logs, with that hash, and no other one.
+Evidence compared with it has each of these logs, with that hash, and no other one.
 """
 
 from __future__ import annotations
@@ -167,6 +167,6 @@ def _differences(
             continue
         sha = claim if now == place and claim is not None else file_sha256(now) if now else None
         if sha is None:
-            yield unknown(run, "", "its hash cannot be taken, to be held against the manifest")
+            yield unknown(run, "", "its hash cannot be taken, to be compared with the manifest")
         elif sha != listed[path]:
             yield differs(run, "", f"the manifest has another hash for `{path}`")

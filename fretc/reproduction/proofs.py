@@ -104,8 +104,12 @@ def _prove(
     layers = [layer for layer in Layer if any(record.layer == layer for record in own)]
     if AGENT in named:
         layers = [layer for layer in layers if layer != Layer.AGENT]
-    rules = [rule for rule in project.rules if rule.id in named and monitor.refuse(rule) is None]
-    monitor_text, header = remade(own, project.rules)
+    requirements = [
+        requirement
+        for requirement in project.formalized
+        if requirement.id in named and monitor.refuse(requirement) is None
+    ]
+    monitor_text, header = remade(own, project.formalized)
     plans_agent = {
         each.id for each in project.requirements if {Layer.AGENT, Layer.AJPF} & {*each.verify}
     }
@@ -117,10 +121,10 @@ def _prove(
         header=header,
         demanded=(Layer.AGENT,) if of_agent - plans_agent else (),
         provers=sorted({_prover(record.engine) for record in records} - {""}),
-        ajpf=ajpf_proofs(rules, default_paths())[0] if Layer.AJPF in layers else (),
+        ajpf=ajpf_proofs(requirements, default_paths())[0] if Layer.AJPF in layers else (),
         progress=progress,
     )
-    return prove(replace(project, rules=tuple(rules)), request)
+    return prove(replace(project, formalized=tuple(requirements)), request)
 
 
 def _key(record: Proof) -> tuple[str, ...]:
@@ -190,7 +194,7 @@ _COMPARED = ("result", "artefacts")
 def _twice(records: Sequence[Proof]) -> Iterator[Recheck]:
     for (requirement, layer, claim, _), count in Counter(map(_key, records)).items():
         if count > 1:
-            yield differs(PROOFS, requirement, "it is told twice", claim=f"{layer}: {claim}")
+            yield differs(PROOFS, requirement, "it appears twice", claim=f"{layer}: {claim}")
 
 
 def _left_out(records: Sequence[Proof], proofs_now: Sequence[Proof]) -> Iterator[Recheck]:

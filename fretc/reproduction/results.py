@@ -1,7 +1,7 @@
 """Whether evidence still stands: the hashes of its logs and its verdicts are made again.
 
 All results are made from the present logs and requirements, each log with the integrity that its
-results claim, and compared with the evidence to the letter. Only two things may differ: places (of
+results claim, and compared with the evidence exactly. Only two things may differ: places (of
 the bindings, and of lines in them), and whether a default is written out.
 """
 
@@ -217,7 +217,7 @@ def _estimates_again(document: Document, now: _Now, ids: Collection[str]) -> Ite
         if one is None:
             yield differs(ALL_RUNS, claim.id, "what all runs say of it is left out")
         elif count[claim.id] > 1:
-            yield differs(ALL_RUNS, claim.id, "it is told twice")
+            yield differs(ALL_RUNS, claim.id, "it appears twice")
         elif any(run not in now.places for run in runs):
             yield unknown(ALL_RUNS, claim.id, "a log is not found")
         else:
@@ -257,7 +257,7 @@ class _Now:
     bindings: str
     """What the evidence calls the file of the bindings."""
     hashed: Collection[str]
-    """Runs that all of a manifest is held against."""
+    """Runs that all of a manifest is compared with."""
 
 
 def _result(before: Result, now: _Now) -> Recheck:
@@ -307,7 +307,7 @@ _COMPARED_APART = {"run", "requirement", "verdict", "hashes", "health", "assumpt
 def _different_keys(
     before: Mapping[str, object], now: Mapping[str, object], except_for: Collection[str] = ()
 ) -> list[str]:
-    """The keys whose values differ, to the letter: `1` is neither `1.0` nor `true`."""
+    """The keys whose values differ, exactly: `1` is neither `1.0` nor `true`."""
     keys = sorted({*before, *now} - {*except_for})
     return [key for key in keys if _letters(before, key) != _letters(now, key)]
 

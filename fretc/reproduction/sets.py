@@ -22,7 +22,7 @@ _OF_TIME = ("why", "complete", "open")
 
 
 def compared(document: Document, now: Analysis) -> Iterator[Recheck]:
-    """Each component, each conflict, and what else was found, held against an analysis made now.
+    """Each component, each conflict, and what else was found, compared with an analysis made now.
 
     Args:
         document: the evidence.
@@ -40,7 +40,7 @@ def compared(document: Document, now: Analysis) -> Iterator[Recheck]:
     for ids in (each for each in known if each not in then):
         yield differs(TOGETHER, "", "it is left out", claim=", ".join(ids))
     if len(then) != len(before.components):
-        yield differs(TOGETHER, "", "a component is told twice")
+        yield differs(TOGETHER, "", "a component appears twice")
     yield from _conflicts(before, now)
     others = [name for name in _REST if getattr(before, name) != getattr(now, name)]
     claim = "what else is said of them"
@@ -92,7 +92,7 @@ def _conflicts(before: Analysis, now: Analysis) -> Iterator[Recheck]:
         else:
             yield differs(TOGETHER, "", "its play is another one", claim=claim)
     if len(then) != len(before.conflicts):
-        yield differs(TOGETHER, "", "a conflict is told twice")
+        yield differs(TOGETHER, "", "a conflict appears twice")
 
 
 def _by_members(analysis: Analysis) -> dict[tuple[str, ...], Conflict]:

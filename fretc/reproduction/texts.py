@@ -21,8 +21,8 @@ class Remade(NamedTuple):
     header: Source | None
 
 
-def remade(records: Sequence[Proof], rules: Sequence[FormalizedRequirement]) -> Remade:
-    """What fretc writes now for some of the rules, letter for letter what the proofs are about.
+def remade(records: Sequence[Proof], requirements: Sequence[FormalizedRequirement]) -> Remade:
+    """What fretc writes now for some requirements, byte for byte what the proofs are about.
 
     None where that is no such text, where there are several, and where its tool is not installed.
     """
@@ -32,7 +32,7 @@ def remade(records: Sequence[Proof], rules: Sequence[FormalizedRequirement]) -> 
     if len(found) != 1 or len(of_monitor) != len(records):
         return Remade(None, None)
     ((name, language),) = found.items()
-    for files in _written(language, records, rules) if language.module.tool() else ():
+    for files in _written(language, records, requirements) if language.module.tool() else ():
         if all(sha256(files.get(each, "")) == value for each, value in hashes.items()):
             headers = [Source(each, files[each]) for each in hashes if each != name]
             return Remade(Source(name, files[name]), next(iter(headers), None))
@@ -53,11 +53,15 @@ def _texts(record: Proof) -> Mapping[str, str]:
 
 
 def _written(
-    language: Row, records: Sequence[Proof], rules: Sequence[FormalizedRequirement]
+    language: Row, records: Sequence[Proof], requirements: Sequence[FormalizedRequirement]
 ) -> Iterator[Mapping[str, str]]:
-    """The files of a monitor of all rules, of those that the proofs are of, and of each."""
+    """The files of a monitor of all requirements, of those that the proofs are of, and of each."""
     target, ids = TARGETS[language.emit], {record.requirement for record in records}
-    named = [rule for rule in rules if rule.id in ids]
-    for group, one_file in ((rules, True), (named, True), *(([rule], False) for rule in named)):
+    named = [requirement for requirement in requirements if requirement.id in ids]
+    for group, one_file in (
+        (requirements, True),
+        (named, True),
+        *(([requirement], False) for requirement in named),
+    ):
         files = target.emit(group, Options(one_file=one_file))
         yield {each.path.name: each.text for each in reversed(files)}  # the first `lib.rs` counts

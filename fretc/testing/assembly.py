@@ -17,50 +17,60 @@ from fretish.bindings.declarations import Role
 
 
 def jobs(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
     seconds: float,
 ) -> tuple[Job[Batch], ...]:
     """The tests of each requirement, in the order of the files.
 
     Args:
-        rules: the requirements.
+        requirements: the requirements.
         assumptions: what the environment keeps.
         seconds: of a processor, for each of them.
     """
-    roles = {name: Role.OUTPUT for rule in (*rules, *assumptions) for name in rule.variables}
+    roles = {
+        name: Role.OUTPUT
+        for requirement in (*requirements, *assumptions)
+        for name in requirement.variables
+    }
     others: dict[str, list[FormalizedRequirement]] = {}
-    for group in by_variables(rules, assumptions, roles):
+    for group in by_variables(requirements, assumptions, roles):
         near = about(group, assumptions, roles)
-        for rule in group:
-            others[rule.id] = [*(each for each in group if each is not rule), *near]
-    return tuple(_job(rule, others[rule.id], seconds) for rule in rules)
+        for requirement in group:
+            others[requirement.id] = [*(each for each in group if each is not requirement), *near]
+    return tuple(_job(requirement, others[requirement.id], seconds) for requirement in requirements)
 
 
 def _job(
-    rule: FormalizedRequirement, others: Sequence[FormalizedRequirement], seconds: float
+    requirement: FormalizedRequirement, others: Sequence[FormalizedRequirement], seconds: float
 ) -> Job[Batch]:
     def ask(known: Sequence[Batch]) -> Iterator[Batch]:
-        yield batch(rule, others, seconds)
+        yield batch(requirement, others, seconds)
 
-    return Job(f"which runs show that {rule.id} is right?", ask, partial(lost, rule))
+    return Job(f"which runs show that {requirement.id} is right?", ask, partial(lost, requirement))
 
 
 def suite(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
     found: Iterable[Batch],
 ) -> Suite:
     """All tests as one value; their names become unique."""
     made = tuple(_renamed(found))
-    names = dict.fromkeys(name for rule in (*rules, *assumptions) for name in rule.variables)
+    names = dict.fromkeys(
+        name for requirement in (*requirements, *assumptions) for name in requirement.variables
+    )
     roles = {
         name: str(own)
         for name in sorted(names)
-        for own in [next(filter(None, (role(rule, name) for rule in rules)), None)]
+        for own in [
+            next(filter(None, (role(requirement, name) for requirement in requirements)), None)
+        ]
         if own is not None
     }
-    clock = next((rule.clock for rule in rules if rule.clock is not None), None)
+    clock = next(
+        (requirement.clock for requirement in requirements if requirement.clock is not None), None
+    )
     return Suite(
         schema=SCHEMA,
         fretc=__version__,

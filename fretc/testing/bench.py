@@ -17,12 +17,13 @@ from compiler.formalization.predicates import Past as PastWords
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.formula import Formula, atoms
-from fretc.analysis.arena.alphabet import Alphabet, Numbers, UnsupportedError, numbers
+from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter, counter
-from fretc.analysis.arena.memory import Bit, Memory, Past, side_by_side
+from fretc.analysis.arena.counters import counter
+from fretc.analysis.arena.memory import Bit, Counter, Memory, Past, side_by_side
 from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.transition import Transition
+from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
 from fretc.analysis.games.runs import Runs
 from fretc.analysis.realizability_problem import alphabet_of
 from fretc.testing.search import Endings, Letter, Words
@@ -51,7 +52,7 @@ class Bench:
 
     def __init__(
         self,
-        rule: FormalizedRequirement,
+        requirement: FormalizedRequirement,
         others: Sequence[FormalizedRequirement],
         more: Iterable[FormalizedRequirement],
         budget: Budget,
@@ -60,7 +61,7 @@ class Bench:
         """The bench.
 
         Args:
-            rule: the requirement under test.
+            requirement: the requirement under test.
             others: requirements and assumptions that its tests keep.
             more: sentences whose atoms belong to the letters, too.
             budget: for all searches.
@@ -69,20 +70,20 @@ class Bench:
         Raises:
             UnsupportedError: the requirement has no counter.
         """
-        every = [rule, *others, *more]
+        every = [requirement, *others, *more]
         roles = dict.fromkeys((name for each in every for name in each.variables), Role.OUTPUT)
-        self.rule, self.budget = rule, budget
+        self.requirement, self.budget = requirement, budget
         self._fresh = fresh or numbers()
         self._shared: dict[Function, Bit] = {}
         alphabet = alphabet_of(every, roles, self._fresh, Role.OUTPUT, of_moments=True)
         self.beyond: dict[str, str] = {}
         """Why another requirement has no counter, by its id."""
         self._counters: dict[str, Counter] = {}
-        for each in near_each_other([rule, *others]):
+        for each in near_each_other([requirement, *others]):
             try:
                 self._counters[each.id] = counter(each, alphabet, self._fresh, self._shared)
             except UnsupportedError as error:
-                if each is rule:
+                if each is requirement:
                     raise
                 self.beyond[each.id] = str(error)
         for each in every:
@@ -99,18 +100,20 @@ class Bench:
         self._always = () if numbers_before is None else (numbers_before,)
         self.alphabet = Fixed(alphabet)
         self._letters = (*self.alphabet.inputs, *self.alphabet.outputs)
-        self._quiet = frozenset(self._asked(rule))
+        self._quiet = frozenset(self._asked(requirement))
         self.others: Ids = tuple(each.id for each in others if each.id in self._counters)
         self._memory = Memory(self._fresh, self._shared)
         self._past = Past(self.alphabet.atom, self._memory)
-        self._own = self._judged(self._counters[rule.id], rule, self._past, self._memory)
+        self._own = self._judged(
+            self._counters[requirement.id], requirement, self._past, self._memory
+        )
         self._setting = cache(self._built)
         self._kept = cache(self._keeping)
         self._ends = cache(self._endings)
 
-    def _asked(self, rule: FormalizedRequirement) -> Iterator[int]:
+    def _asked(self, requirement: FormalizedRequirement) -> Iterator[int]:
         """The variables of condition, response and stop condition."""
-        whole = demands(rule)
+        whole = demands(requirement)
         for part in (whole.trigger, whole.demand.response, whole.demand.stop):
             for name in atoms(part):
                 yield from bdd.support(self.alphabet.atom(name))
@@ -121,7 +124,7 @@ class Bench:
         What goals count and what the requirement counts stand side by side: they are compared, and
         two long counts one after the other need as many nodes for that as they have values.
         """
-        words = [*self._counters[self.rule.id].words, *self._memory.words]
+        words = [*self._counters[self.requirement.id].words, *self._memory.words]
         return side_by_side(words, next(self._fresh))
 
     # Situations
@@ -219,7 +222,7 @@ class Bench:
         bit = memory.bit()
         was = bdd.variable(bit.now)
         memory.steps[bit] = was | here
-        judged, more = self._beside(self.rule, mirror, memory)
+        judged, more = self._beside(self.requirement, mirror, memory)
         once = -here | (goal - was)
         words, lasts = self._built(kept, False, more, letters=(number,), safe=once)
         ends = (self._own.accepts ^ judged.accepts) & (was | here) & lasts
@@ -229,25 +232,25 @@ class Bench:
         return found, next(tick for tick, letter in enumerate(found) if letter[number])
 
     def _beside(
-        self, rule: FormalizedRequirement, alphabet: Alphabet, memory: Memory
+        self, requirement: FormalizedRequirement, alphabet: Alphabet, memory: Memory
     ) -> tuple[Judgement, Counter]:
         """What another sentence says of a run, and its bits."""
-        theirs = counter(rule, alphabet, self._fresh, memory.shared)
-        judged = self._judged(theirs, rule, Past(alphabet.atom, memory), memory)
+        theirs = counter(requirement, alphabet, self._fresh, memory.shared)
+        judged = self._judged(theirs, requirement, Past(alphabet.atom, memory), memory)
         bits = _of_memory(memory)
         return judged, replace(bits, bits=bits.bits + theirs.bits, steps=bits.steps + theirs.steps)
 
     # Both
 
     def _judged(
-        self, counter: Counter, rule: FormalizedRequirement, past: Past, memory: Memory
+        self, counter: Counter, requirement: FormalizedRequirement, past: Past, memory: Memory
     ) -> Judgement:
         bit = memory.bit()
         was = bdd.variable(bit.now)
         broken = was | -counter.safe
         memory.steps[bit] = broken
-        accepts = -(broken | past.value(rule.watch.fails))
-        return Judgement(broken - was, broken, accepts, past.value(rule.watch.owed))
+        accepts = -(broken | past.value(requirement.watch.fails))
+        return Judgement(broken - was, broken, accepts, past.value(requirement.watch.owed))
 
     def _built(
         self,
@@ -259,7 +262,7 @@ class Bench:
     ) -> tuple[Words, Function]:
         """The words that keep some counters, and the ticks after which these can last."""
         runs, lasting = self._kept(kept, with_rule)
-        counters = [self._counters[id] for id in (self.rule.id, *kept)]
+        counters = [self._counters[id] for id in (self.requirement.id, *kept)]
         memory = _of_memory(self._memory)
         transition = Transition([*counters, *self._always, memory, *more])
         safe = runs.safe if safe is None else runs.safe & safe
@@ -269,7 +272,7 @@ class Bench:
 
     def _keeping(self, kept: Ids, with_rule: bool) -> tuple[Runs, Function]:
         """The runs that keep some counters, and the states from which they last for ever."""
-        ids = (*kept, self.rule.id) if with_rule else kept
+        ids = (*kept, self.requirement.id) if with_rule else kept
         counters = [*(self._counters[id] for id in ids), *self._always]
         runs = Runs(self.alphabet, counters, self.budget)
         return runs, runs.lasting()
@@ -280,9 +283,9 @@ class Bench:
         return self.alphabet.doubts.get(Role.OUTPUT, "")
 
 
-def demands(rule: FormalizedRequirement) -> Obligation:
-    """What a rule demands, as formulas of the past over what letters tell."""
-    return obligation(rule.sentence, rule.ticks or 0, PastWords())
+def demands(requirement: FormalizedRequirement) -> Obligation:
+    """What a requirement demands, as formulas of the past over what letters tell."""
+    return obligation(requirement.sentence, requirement.ticks or 0, PastWords())
 
 
 def _of_memory(memory: Memory) -> Counter:

@@ -11,7 +11,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.situations.mutants import Mutant, mutants
 from compiler.situations.situations import Situation, situations
 from compiler.targets.python import monitor as emitted
-from fretc.analysis.arena.alphabet import UnsupportedError
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.testing.bench import Ids
 from fretc.testing.cover import cover
 from fretc.testing.runs import Absence, Answer, Need, Run, Runs
@@ -35,42 +35,46 @@ class Batch:
 
 @with_recursion_limit
 def batch(
-    rule: FormalizedRequirement, others: Sequence[FormalizedRequirement], seconds: float
+    requirement: FormalizedRequirement, others: Sequence[FormalizedRequirement], seconds: float
 ) -> Batch:
     """The tests of a requirement.
 
     Args:
-        rule: the requirement.
+        requirement: the requirement.
         others: requirements and assumptions whose variables hang together with its own; its tests
             keep them.
         seconds: of a processor.
     """
     try:
-        return _Generation(Runs(rule, others, seconds)).batch()
+        return _Generation(Runs(requirement, others, seconds)).batch()
     except UnsupportedError as error:
-        return lost(rule, str(error))
+        return lost(requirement, str(error))
 
 
-def lost(rule: FormalizedRequirement, why: str) -> Batch:
+def lost(requirement: FormalizedRequirement, why: str) -> Batch:
     """What stands there where nothing could be searched, for a reason."""
     return Batch(
-        _tested(rule, (), ""),
+        _tested(requirement, (), ""),
         (),
         tuple(
-            _obligation(rule, each, polarity, Met.NOT_SEARCHED, why=why)
-            for each in situations(rule)
+            _obligation(requirement, each, polarity, Met.NOT_SEARCHED, why=why)
+            for each in situations(requirement)
             for polarity in _polarities(each)
         ),
-        tuple(_mutated(rule, each, Fate.NOT_SEARCHED, why=why) for each in mutants(rule)),
+        tuple(
+            _mutated(requirement, each, Fate.NOT_SEARCHED, why=why) for each in mutants(requirement)
+        ),
     )
 
 
-def _tested(rule: FormalizedRequirement, kept: Ids, doubt: str) -> Tested:
-    return Tested(rule.id, printed(rule.written), rule.fingerprint, kept, doubt)
+def _tested(requirement: FormalizedRequirement, kept: Ids, doubt: str) -> Tested:
+    return Tested(
+        requirement.id, printed(requirement.written), requirement.fingerprint, kept, doubt
+    )
 
 
 def _obligation(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     situation: Situation,
     polarity: Polarity,
     outcome: Met,
@@ -79,11 +83,13 @@ def _obligation(
     by: Ids = (),
     why: str = "",
 ) -> Obligation:
-    return Obligation(rule.id, situation.key, situation.words, polarity, outcome, tests, by, why)
+    return Obligation(
+        requirement.id, situation.key, situation.words, polarity, outcome, tests, by, why
+    )
 
 
 def _mutated(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     mutant: Mutant,
     outcome: Fate,
     *,
@@ -92,7 +98,14 @@ def _mutated(
     why: str = "",
 ) -> Mutated:
     return Mutated(
-        rule.id, mutant.key, mutant.words, printed(mutant.rule.written), outcome, tests, by, why
+        requirement.id,
+        mutant.key,
+        mutant.words,
+        printed(mutant.requirement.written),
+        outcome,
+        tests,
+        by,
+        why,
     )
 
 
@@ -118,7 +131,7 @@ class _Generation:
     """What is made of the runs of one requirement."""
 
     def __init__(self, runs: Runs) -> None:
-        self._runs, self._rule = runs, runs.rule
+        self._runs, self._rule = runs, runs.requirement
         self._situations, self._wrong = runs.situations, runs.mutants
         self._monitor = load(f"{self._rule.id}.py", emitted.text(self._rule))
 
@@ -204,12 +217,12 @@ class _Generation:
             yield f"{self._rule.id} is {polarity}"
 
     def _expected(self, run: Run) -> Expected:
-        rule, monitor = self._rule, self._monitor
+        requirement, monitor = self._rule, self._monitor
         if run.polarity is Polarity.UNKNOWN:
             atom = next(each.unknown for each in self._situations if each.key in run.situations)
             assert atom is not None
-            return undecided(rule, monitor, run.word, atom)
-        found = expected(rule, monitor, run.word)
+            return undecided(requirement, monitor, run.word, atom)
+        found = expected(requirement, monitor, run.word)
         assert found.finite is (run.polarity is Polarity.KEPT)
         return found
 

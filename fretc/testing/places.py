@@ -15,7 +15,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Uninterpreted, boolean
 from compiler.logic import formula as f
 from compiler.situations.situations import Situation
-from fretc.analysis.arena.alphabet import UnsupportedError
+from fretc.analysis.arena.variables import UnsupportedError
 from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.expressions import ticks_back
@@ -26,8 +26,8 @@ from fretish.printer import sentence as printed
 class Places:
     """The thresholds of one requirement."""
 
-    def __init__(self, rule: FormalizedRequirement) -> None:
-        self._rule = rule
+    def __init__(self, requirement: FormalizedRequirement) -> None:
+        self._rule = requirement
         self._found: dict[e.Expression, FormalizedRequirement | None] = {}
         self.pinned: defaultdict[str, set[f.Formula]] = defaultdict(set)
         """Of a signal what says its number, and that propositions agree with it."""
@@ -85,7 +85,7 @@ class Places:
             timing=s.Always(),
             response=_as_written(expression),
         )
-        requirement = self._rule.requirement
+        requirement = self._rule.entry
         source = Source(requirement.wording.source.name, printed(written))
         found, _ = formalize(replace(requirement, wording=source.span()), self._rule.declarations)
         return found

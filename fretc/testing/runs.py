@@ -14,8 +14,8 @@ from compiler.logic.evaluation import evaluate
 from compiler.logic.formula import Formula
 from compiler.situations.mutants import Mutant, mutants
 from compiler.situations.situations import Situation, situations
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.games.cores import minimal
 from fretc.testing.bench import Bench, Ids, demands
 from fretc.testing.places import Places
@@ -77,26 +77,29 @@ class Runs:
     """
 
     def __init__(
-        self, rule: FormalizedRequirement, others: Sequence[FormalizedRequirement], seconds: float
+        self,
+        requirement: FormalizedRequirement,
+        others: Sequence[FormalizedRequirement],
+        seconds: float,
     ) -> None:
-        self.rule, self.others = rule, others
-        self.situations, self.mutants = situations(rule), mutants(rule)
-        places = Places(rule)
+        self.requirement, self.others = requirement, others
+        self.situations, self.mutants = situations(requirement), mutants(requirement)
+        places = Places(requirement)
         self._formulas: dict[str, Formula | Absence] = {}
         for each in self.situations:
             try:
                 self._formulas[each.key] = places.formula(each)
             except UnsupportedError as error:
                 self._formulas[each.key] = Absence(why=str(error))
-        more = [*(each.rule for each in self.mutants), *places.carriers]
+        more = [*(each.requirement for each in self.mutants), *places.carriers]
         budget = Budget(seconds)
-        self.bench = Bench(rule, others, more, budget)
-        every = [rule, *others]
+        self.bench = Bench(requirement, others, more, budget)
+        every = [requirement, *others]
         signals = {name: read for name, read in _read(every).items() if name not in read}
         self._naming = Naming(_atoms([*every, *more]), _atoms(every), signals, places.pinned)
         self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
-        if (rule.ticks or 0) >= _LONG:
-            self.bench = Bench(rule, others, more, budget, self.bench.order())
+        if (requirement.ticks or 0) >= _LONG:
+            self.bench = Bench(requirement, others, more, budget, self.bench.order())
             self._goals = {key: self._goal(formula) for key, formula in self._formulas.items()}
         self._found: dict[tuple[int, ...], Run] = {}
 
@@ -133,7 +136,7 @@ class Runs:
 
     def telling(self, mutant: Mutant) -> Answer:
         """A shortest run that kills a mutant."""
-        found = self._answer(partial(self.bench.difference, mutant.rule), self._run)
+        found = self._answer(partial(self.bench.difference, mutant.requirement), self._run)
         if isinstance(found, Run):
             assert mutant.key in found.kills
         return found
@@ -175,7 +178,7 @@ class Runs:
                 raise UnsupportedError(f"the shortest run breaks {each.id}, and of that {why}")
 
     def _judged(self, made: Word) -> Run:
-        own = judged(self.rule, made)
+        own = judged(self.requirement, made)
         columns = {each.key: self._column(each, made) for each in self.situations}
         first = own.breach & -own.breach
         early = (first << 1) - 1 if first else -1
@@ -187,7 +190,7 @@ class Runs:
             frozenset(
                 each.key
                 for each in self.mutants
-                if is_killed(own, judged(each.rule, made), made.ticks)
+                if is_killed(own, judged(each.requirement, made), made.ticks)
             ),
         )
 
@@ -211,7 +214,7 @@ class Runs:
 
     def _linked(self, atom: str) -> set[str]:
         """What an atom reads, and the other atoms that read some of it."""
-        readers = _read([self.rule, *self.others])
+        readers = _read([self.requirement, *self.others])
         read = readers.get(atom, frozenset())
         return {*read, *(name for name, theirs in readers.items() if theirs & read)}
 
@@ -226,18 +229,18 @@ class Difference:
 
 
 def difference(
-    rule: FormalizedRequirement, other: FormalizedRequirement, seconds: float
+    requirement: FormalizedRequirement, other: FormalizedRequirement, seconds: float
 ) -> Difference | Absence:
     """What tells two sentences apart; without it they judge all finite runs alike.
 
     Args:
-        rule: a sentence.
+        requirement: a sentence.
         other: another one, over the same bindings.
         seconds: of a processor.
     """
-    both = [rule, other]
+    both = [requirement, other]
     try:
-        bench = Bench(rule, (), [other], Budget(seconds))
+        bench = Bench(requirement, (), [other], Budget(seconds))
         letters = bench.difference(other, ())
     except (UnsupportedError, OutOfTimeError) as error:
         return Absence(why=str(error))
@@ -246,14 +249,14 @@ def difference(
     atoms = _atoms(both)
     signals = {name: read for name, read in _read(both).items() if name not in read}
     made = word(letters, bench.alphabet, Naming(atoms, atoms, signals, {}))
-    assert is_killed(judged(rule, made), judged(other, made), made.ticks)
+    assert is_killed(judged(requirement, made), judged(other, made), made.ticks)
     return Difference(made, bench.doubt)
 
 
-def _read(rules: Iterable[FormalizedRequirement]) -> dict[str, frozenset[str]]:
+def _read(requirements: Iterable[FormalizedRequirement]) -> dict[str, frozenset[str]]:
     """The signals or variables that each atom reads."""
     found: dict[str, frozenset[str]] = {}
-    for each in rules:
+    for each in requirements:
         declared = each.declarations.propositions if each.declarations else {}
         for name, part in candidates(each.sentence):
             bound = declared.get(name)
@@ -261,5 +264,7 @@ def _read(rules: Iterable[FormalizedRequirement]) -> dict[str, frozenset[str]]:
     return found
 
 
-def _atoms(rules: Iterable[FormalizedRequirement]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(name for rule in rules for name in demands(rule).atoms))
+def _atoms(requirements: Iterable[FormalizedRequirement]) -> tuple[str, ...]:
+    return tuple(
+        dict.fromkeys(name for requirement in requirements for name in demands(requirement).atoms)
+    )

@@ -118,7 +118,7 @@ class Mutated(Record, frozen=True):
 
 
 class Tested(Record, frozen=True):
-    """A requirement of a suite, to the letter."""
+    """A requirement of a suite, exactly."""
 
     id: Name
     sentence: Name

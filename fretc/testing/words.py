@@ -124,12 +124,12 @@ class Judged:
     """FRET's verdict, were the word to end here."""
 
 
-def judged(rule: FormalizedRequirement, word: Word) -> Judged:
+def judged(requirement: FormalizedRequirement, word: Word) -> Judged:
     """By the formulas of the monitor, as columns."""
     every = (1 << word.ticks) - 1
-    first = evaluate(rule.watch.breach, word.columns, word.ticks)
+    first = evaluate(requirement.watch.breach, word.columns, word.ticks)
     breach = every & -(first & -first) if first else 0
-    fails = evaluate(rule.watch.fails, word.columns, word.ticks)
+    fails = evaluate(requirement.watch.fails, word.columns, word.ticks)
     return Judged(breach, every & ~(breach | fails))
 
 
@@ -146,9 +146,9 @@ def is_killed(own: Judged, mutant: Judged, ticks: int) -> bool:
 # By the definition ------------------------------------------------------------------------------
 
 
-def letters(rule: FormalizedRequirement, word: Word) -> tuple[Parts, ...]:
+def letters(requirement: FormalizedRequirement, word: Word) -> tuple[Parts, ...]:
     """Mode, condition, response and stop condition of a sentence at each tick of a word."""
-    sentence = rule.sentence
+    sentence = requirement.sentence
     scope, condition, stop = sentence.scope, sentence.condition, s.stop(sentence.timing)
     mode = boolean(scope.mode, Past().alone()) if scope else f.TRUE
     read = partial(boolean, expand=Past().inside(scope.kind if scope else None, mode))
@@ -174,40 +174,43 @@ class Expected:
     because: str
 
 
-def expected(rule: FormalizedRequirement, monitor: Monitor, word: Word) -> Expected:
+def expected(requirement: FormalizedRequirement, monitor: Monitor, word: Word) -> Expected:
     """The verdict of a word in which all is known: definition, monitor and reasons agree on it.
 
     Args:
-        rule: the sentence.
+        requirement: the sentence.
         monitor: what is emitted of it, and of nothing else.
         word: a run of all its atoms.
     """
-    parts = letters(rule, word)
-    broken, finite = defined(rule, parts)
-    because = why(rule, parts, ends=True, satisfied=finite)
+    parts = letters(requirement, word)
+    broken, finite = defined(requirement, parts)
+    because = why(requirement, parts, ends=True, satisfied=finite)
     found = _monitored(monitor, word, because)
-    assert found.finite is finite, (rule.id, word)
+    assert found.finite is finite, (requirement.id, word)
     sooner = found.decided is not None and broken is not None and found.decided <= broken
-    assert broken is None or sooner, (rule.id, word)
+    assert broken is None or sooner, (requirement.id, word)
     return found
 
 
-def undecided(rule: FormalizedRequirement, monitor: Monitor, word: Word, atom: str) -> Expected:
+def undecided(
+    requirement: FormalizedRequirement, monitor: Monitor, word: Word, atom: str
+) -> Expected:
     """The verdict of a word in which an atom is unknown at one tick, where both values differ."""
     at, own = word.unknown[atom], word.columns[atom]
     finite: dict[bool, bool] = {}
     for value, column in {True: own | at, False: own & ~at}.items():
         known = replace(word, columns={**word.columns, atom: column})
-        finite[value] = defined(rule, letters(rule, known))[1]
-    assert finite[True] is not finite[False], (rule.id, word)
+        finite[value] = defined(requirement, letters(requirement, known))[1]
+    assert finite[True] is not finite[False], (requirement.id, word)
     says = {True: "kept", False: "broken"}
-    shown = rule.wordings.get(atom, atom)
+    shown = requirement.wordings.get(atom, atom)
     because = (
-        f"`{shown}` is unknown at tick {at.bit_length() - 1}: {rule.id} is {says[finite[True]]} if "
+        f"`{shown}` is unknown at tick {at.bit_length() - 1}: {requirement.id} is "
+        f"{says[finite[True]]} if "
         f"it is true there, and {says[finite[False]]} if it is false"
     )
     found = _monitored(monitor, word, because)
-    assert found.finite is None, (rule.id, word)
+    assert found.finite is None, (requirement.id, word)
     return found
 
 
@@ -240,9 +243,9 @@ def _row(monitor: Monitor, word: Word, tick: int) -> tuple[Truth, ...]:
     return tuple(column.at(tick) for column in columns)
 
 
-def defined(rule: FormalizedRequirement, parts: Sequence[Parts]) -> tuple[int | None, bool]:
+def defined(requirement: FormalizedRequirement, parts: Sequence[Parts]) -> tuple[int | None, bool]:
     """By the reference automaton: the tick at which a demand is broken, and FRET's verdict."""
-    template = reference.template(rule.sentence, rule.ticks or 0)
+    template = reference.template(requirement.sentence, requirement.ticks or 0)
     state = reference.initial(template)
     for tick, letter in enumerate(parts):
         after = reference.step(template, state, *letter)

@@ -119,7 +119,7 @@ def chart(one: Comparison, rounds: int, is_after: Sequence[bool], id: str) -> Ch
     Args:
         one: with the values of its runs.
         rounds: how many there are.
-        is_after: of each run, whether it is of what is held against the others.
+        is_after: of each run, whether it is of what is compared with the others.
         id: of the drawing.
     """
     numbers = [value.number for value in one.values]

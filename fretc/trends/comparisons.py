@@ -101,7 +101,7 @@ class Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Sides:
-    """Which runs are held against which."""
+    """Which runs are compared with which."""
 
     after: str
     before: str
@@ -146,7 +146,7 @@ def comparisons(histories: Histories, held: Sides, level: float = LEVEL) -> tupl
 
     Args:
         histories: what was read.
-        held: which runs are held against which.
+        held: which runs are compared with which.
         level: the chance of even one regression that is none.
     """
     measured = _measured(histories)

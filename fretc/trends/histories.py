@@ -1,7 +1,7 @@
 """Evidence as histories: what each round says of each requirement in each scenario.
 
 Runs of one scenario are comparable; a run that names none is comparable with those of its log's
-name. A round is what is held against earlier ones: each evidence, or each day, or each value of a
+name. A round is what is compared with earlier ones: each evidence, or each day, or each value of a
 label. Rounds are in the order of time, and of names where times do not decide. Times are
 nanoseconds since 1970, of UTC.
 """
@@ -63,7 +63,7 @@ class Run:
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """What is held against earlier ones."""
+    """What is compared with earlier ones."""
 
     name: str
     first: int | None

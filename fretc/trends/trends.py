@@ -77,7 +77,7 @@ class Trends:
     comparisons: tuple[Comparison, ...]
     level: float
     is_after: tuple[bool, ...]
-    """Of each run, whether it is of what is held against others."""
+    """Of each run, whether it is of what is compared with others."""
     order: str
     """By what rounds are ordered, in words."""
 
@@ -161,7 +161,7 @@ def not_selected(trends: Trends) -> tuple[Group, ...]:
 
 
 def arrived(trends: Trends) -> tuple[Group, ...]:
-    """What was never judged before; what is violated of it is told one by one, too."""
+    """What was never judged before; what is violated of it is reported one by one, too."""
     return grouped(trends, Change.FIRST, Change.FIRST_VIOLATED)
 
 

@@ -94,18 +94,18 @@ def default_paths() -> tuple[str, ...]:
 
 
 def ajpf_proofs(
-    rules: Sequence[FormalizedRequirement], paths: Sequence[str]
+    requirements: Sequence[FormalizedRequirement], paths: Sequence[str]
 ) -> tuple[tuple[Proof, ...], tuple[Diagnostic, ...]]:
     """A proof for each result, in the order of the paths, and the diagnostics of the files.
 
     Args:
-        rules: the requirements as they are now.
+        requirements: the requirements as they are now.
         paths: files of `run.py`.
 
     Returns:
         The proofs; F616 for what cannot be read, F617 for a requirement that is not there.
     """
-    known = {rule.id: rule for rule in rules}
+    known = {requirement.id: requirement for requirement in requirements}
     proofs: list[Proof] = []
     diagnostics: list[Diagnostic] = []
     for path in paths:
@@ -137,7 +137,7 @@ def merged(proofs: Sequence[Proof], present: Sequence[Proof]) -> tuple[Proof, ..
 def _unheld(one: Proof) -> Proof:
     if one.result is Result.COUNTEREXAMPLE:
         return one
-    reason = "the file of AJPF's result is not there, to be held against what is made now"
+    reason = "the file of AJPF's result is not there, to be compared with what is made now"
     outcome = not_checked(f"it was {one.result}; {reason}")
     return proof(
         one.requirement, Layer.AJPF, one.claim, outcome, one.engine, one.assumptions, one.artefacts
@@ -233,14 +233,14 @@ def _trace(at: Shape) -> Trace:
 
 
 @with_recursion_limit
-def _proof(rule: FormalizedRequirement, result: AjpfResult) -> Proof:
+def _proof(requirement: FormalizedRequirement, result: AjpfResult) -> Proof:
     options = Options(weaken=True) if result.weakened else DEFAULT
     main = next((c for c in result.checks if c.role == "requirement"), None)
     stated = f": {main.text}" if main else ""
     which = "its bundle"
     if result.own:
         which = f"{Path(result.own[0]).name} (SHA-256 {result.own[1][:12]})"
-    folder = bundle.package(rule)
+    folder = bundle.package(requirement)
     hashes = {
         f"{folder}/{name}": hashed
         for name, hashed in result.files.items()
@@ -248,24 +248,25 @@ def _proof(rule: FormalizedRequirement, result: AjpfResult) -> Proof:
     }
     if result.own:
         hashes[Path(result.own[0]).name] = result.own[1]
-    reason = _reason(rule, result, options)
+    reason = _reason(requirement, result, options)
     outcome = _conclusion(result)
     if reason is not None:
         was = "it was refuted; " if outcome.result is Result.COUNTEREXAMPLE else ""
         outcome = not_checked(f"{was}{reason}")
-    loss = ajpf.weakened(rule, options)
+    loss = ajpf.weakened(requirement, options)
     if outcome.result is Result.PROVED and loss is not None:
-        outcome = not_checked(f"what AJPF shows is weaker than {rule.id}: {loss}")
-    claim = f"AJPF: every run of the agent of {which} keeps {rule.id}{stated}"
-    return proof(rule.id, Layer.AJPF, claim, outcome, result.engine, _ASSUMED, hashes)
+        outcome = not_checked(f"what AJPF shows is weaker than {requirement.id}: {loss}")
+    claim = f"AJPF: every run of the agent of {which} keeps {requirement.id}{stated}"
+    return proof(requirement.id, Layer.AJPF, claim, outcome, result.engine, _ASSUMED, hashes)
 
 
-def _reason(rule: FormalizedRequirement, result: AjpfResult, options: Options) -> str | None:
+def _reason(requirement: FormalizedRequirement, result: AjpfResult, options: Options) -> str | None:
     """Why the result is not about the present texts; None: it is."""
-    refused = bundle.refusal(rule, options)
+    refused = bundle.refusal(requirement, options)
     if refused is not None:
-        return f"no bundle is made of {rule.id} any more: {refused.code.number} {refused.message}"
-    artifacts = bundle.emit([rule], options)
+        why = f"{refused.code.number} {refused.message}"
+        return f"no bundle is made of {requirement.id} any more: {why}"
+    artifacts = bundle.emit([requirement], options)
     texts = {artifact.path.name: artifact.text for artifact in artifacts}
     manifest = json.loads(texts.pop("manifest.json"))
     stale = sorted(_stale(result, {name: sha256(text) for name, text in texts.items()}))
@@ -315,7 +316,7 @@ def _changed(file: str, hashed: str) -> str | None:
     try:
         own = content(file)
     except (OSError, ValueError):
-        return f"the agent {file} cannot be read, to be held against the one that was checked"
+        return f"the agent {file} cannot be read, to be compared with the one that was checked"
     if hashlib.sha256(own).hexdigest() != hashed:
         return f"the agent {file} was changed since: run AJPF again"
     return None

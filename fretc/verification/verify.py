@@ -29,22 +29,22 @@ def prove(project: Project, request: Request) -> tuple[Proof, ...] | Diagnostic:
     for method in TABLE:
         if request.names(method.name):
             part = _part(project) if method.needs_monitor else project
-            results = method.prove(part.rules, part, request)
+            results = method.prove(part.formalized, part, request)
             if isinstance(results, Diagnostic):
                 return results
             (single if method.of_requirement else common).extend(results)
-    places = {rule.id: place for place, rule in enumerate(project.rules)}
+    places = {requirement.id: place for place, requirement in enumerate(project.formalized)}
     proofs = (*sorted(single, key=lambda each: places[each.requirement]), *common)
     return tuple(_open_where_demanded(each, project, request) for each in proofs)
 
 
 def _open_where_demanded(proof: Proof, project: Project, request: Request) -> Proof:
     """A claim that does not apply, and that somebody demands or plans, is open: not checked."""
-    by_id = {rule.id: rule.requirement for rule in project.rules}
+    by_id = {requirement.id: requirement.entry for requirement in project.formalized}
     shared = tuple(by_id.values())
     own = (by_id[proof.requirement],) if proof.requirement in by_id else shared
     if proof.result is not Result.NOT_APPLICABLE or not any(
-        request.demands(proof.layer, requirement) for requirement in own
+        request.demands(proof.layer, entry) for entry in own
     ):
         return proof
     return records.replace(proof, result=Result.NOT_CHECKED)
@@ -66,15 +66,15 @@ def refusals(project: Project, request: Request) -> Mapping[str, Diagnostic]:
     """
     if not any(method.needs_monitor and request.names(method.name) for method in TABLE):
         return {}
-    return _without_monitor(project.rules)
+    return _without_monitor(project.formalized)
 
 
-def _without_monitor(rules: Sequence[FormalizedRequirement]) -> Mapping[str, Diagnostic]:
-    refused = ((rule.id, monitor.refuse(rule)) for rule in rules)
+def _without_monitor(requirements: Sequence[FormalizedRequirement]) -> Mapping[str, Diagnostic]:
+    refused = ((requirement.id, monitor.refuse(requirement)) for requirement in requirements)
     return {id: why for id, why in refused if why is not None}
 
 
 def _part(project: Project) -> Project:
     """The requirements that a monitor can be made of."""
-    refused = _without_monitor(project.rules)
-    return replace(project, rules=tuple(r for r in project.rules if r.id not in refused))
+    refused = _without_monitor(project.formalized)
+    return replace(project, formalized=tuple(r for r in project.formalized if r.id not in refused))

@@ -29,7 +29,7 @@ LOOK = 50 * 10**6
 """Nanoseconds of receive time after which it is looked again what is owed, if not even a tick was
 judged: to look costs as much as a tick."""
 SILENCE = 5 * 10**9
-"""Nanoseconds after which a topic that has not begun is told of."""
+"""Nanoseconds after which a topic that has not begun is reported."""
 
 
 class Watch:

@@ -16,7 +16,7 @@ from typing import Any
 from fretish.clock import Clock
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source, Span
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.expressions import Expression, names
 from fretish.reading.caching import cache_by_identity
 from fretish.units import Unit
@@ -345,7 +345,7 @@ class Declarations:
     """`[run.label]`: each label of runs, with its sources; the first that says something counts."""
     fret: tuple[Mapping[str, Any], ...] = ()
     """`[[fret.variable]]`: FRET's records of variables that are none here; nothing reads them."""
-    environment: tuple[Requirement, ...] = ()
+    environment: tuple[RequirementEntry, ...] = ()
     """`[[assume.requirement]]`: what the environment is taken to keep, where requirements are
     asked whether they can be kept together; no verdict on a log depends on it."""
 

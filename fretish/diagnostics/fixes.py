@@ -31,7 +31,7 @@ class Fix:
 
     @property
     def change(self) -> str:
-        """What it does, for whoever has had it applied."""
+        """What it does, for the user who applied it."""
         text, replaced = _plain(self.text), _plain(self.span.text)
         if not replaced:
             return f"put `{text}` in"

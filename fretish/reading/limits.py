@@ -1,6 +1,6 @@
 """What reading a text or a log may cost: processor time and memory, by its size.
 
-Files come from strangers, and a small one may ask for hours or for all the memory there is. A
+Files are untrusted, and a small one may ask for hours or for all the memory there is. A
 clock of the process's own time looks in while something is read, and ends it where it has taken
 more than a text or a log of its size ever needs. What one call of a library may take at once is
 bounded where it is called; this is for all that is slow or grows step by step.
@@ -31,7 +31,7 @@ MEMORY = 300 * 2**20
 _MEMORY_A_BYTE = 100
 """Reading may add so many more bytes of memory for each byte of the text."""
 _LOOK = 0.05
-"""Seconds of a processor between two looks."""
+"""CPU seconds between two looks."""
 
 R = TypeVar("R")
 
@@ -104,7 +104,7 @@ def with_budget(size: int, place: Span, reading: Callable[[], R]) -> R | Diagnos
         with budget(size):
             return reading()
     except ExceededError as error:
-        if inner:  # whoever has set the budget says so
+        if inner:  # the caller that set the budget reports it
             raise
         return exceeded(error, place)
     except MemoryError:
@@ -124,7 +124,7 @@ def exceeded(error: ExceededError, place: Span | None = None) -> Diagnostic:
 def _look(_number: int, _frame: FrameType | None) -> None:
     for current in _budgets:
         if time.process_time() > current.seconds:
-            raise ExceededError(f"more than {SECONDS:g} seconds of a processor")
+            raise ExceededError(f"more than {SECONDS:g} CPU seconds")
         if _resident() > current.memory:
             raise ExceededError(f"more than {MEMORY // 2**20} MiB of memory")
 

@@ -13,13 +13,13 @@ from functools import lru_cache
 
 _TOKEN = re.compile(r"\{(?P<name>[A-Za-z][A-Za-z0-9_-]*)\}|(?P<star>\*)|(?P<text>[^{}*]+)")
 _LONGEST, _LONGEST_PART = 200, 1000
-"""Characters of a pattern, and of a part of a path that it is held against."""
+"""Characters of a pattern, and of a part of a path that it is compared with."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Token:
     text: str
-    """What stands there to the letter; of a place the name, nothing of `*`."""
+    """What stands there exactly; of a place the name, nothing of `*`."""
     least: int | None = None
     """Of a place the least number of characters; None of a text."""
 
@@ -39,7 +39,7 @@ def match(pattern: str, path: str) -> Mapping[str, str] | None:
     """What each name of a pattern stands for in a path; None where the path does not match.
 
     Args:
-        pattern: a sound one; it is held against as many parts of the path as it has itself.
+        pattern: a sound one; it is compared with as many parts of the path as it has itself.
         path: with slashes.
     """
     parts = _parts(pattern)

@@ -1,4 +1,4 @@
-"""YAML of strangers, within bounds: its nodes are counted before they become values.
+"""Untrusted YAML, within bounds: its nodes are counted before they become values.
 
 An alias stands for all that its anchor holds, so a few lines may stand for more nodes than memory
 has room for; and the library recurses over nested nodes, in C without any limit.

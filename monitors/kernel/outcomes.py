@@ -3,7 +3,7 @@
 Two engines give the columns: `evaluate` computes all ticks at once, `stepped` steps the monitor
 tick by tick. Both compute a certain column (`must`) and a possible one (`may`) of each signal.
 
-The text below the imports is copied into every generated monitor to the letter, names and comments
+The text below the imports is copied into every generated monitor exactly, names and comments
 included: a change of it changes all of them.
 """
 

@@ -57,12 +57,12 @@ Answer = Possible | Impossible | Undecided
 
 
 class Reals:
-    """The comparisons of a rule, to be asked about."""
+    """The comparisons of a requirement, to be asked about."""
 
-    def __init__(self, rule: FormalizedRequirement) -> None:
+    def __init__(self, requirement: FormalizedRequirement) -> None:
         """Nothing is asked yet."""
-        compared = comparisons(rule)
-        terms = Terms([rule], is_linear=False)
+        compared = comparisons(requirement)
+        terms = Terms([requirement], is_linear=False)
         self._solver = z3.Solver()
         self._solver.set("rlimit", MOST_STEPS)
         self._flags: dict[str, Term] = {}
@@ -160,7 +160,7 @@ def only_rounded(exclusion: Exclusion) -> str:
 
 
 def by_numbers(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     atoms: Sequence[str],
     kind: type[Found],
     compare: Callable[[Sequence[Exclusion]], Found | Other],
@@ -168,7 +168,7 @@ def by_numbers(
     """What a comparison finds: a counterexample that real numbers make, where it finds one.
 
     Args:
-        rule: whose comparisons its atoms are.
+        requirement: whose comparisons its atoms are.
         atoms: the order of the values of a tick.
         kind: of counterexamples.
         compare: searches for one without valuations that have any of these, where there are any
@@ -179,9 +179,9 @@ def by_numbers(
         of its numbers. Whatever is left out, a counterexample becomes no proof.
     """
     first = compare(())
-    if not isinstance(first, kind) or not comparisons(rule):
+    if not isinstance(first, kind) or not comparisons(requirement):
         return first, ""
-    reals, excluded, shown = Reals(rule), list[Exclusion](), first
+    reals, excluded, shown = Reals(requirement), list[Exclusion](), first
     for _ in range(MOST_ROUNDS):
         word: Sequence[Sequence[bool | None]] = shown.word
         answers = [reals.answer(dict(zip(atoms, row, strict=False))) for row in word]

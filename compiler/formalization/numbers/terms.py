@@ -38,23 +38,31 @@ class Before:
 
 
 class Terms:
-    """The variables of some rules, and what is said of them."""
+    """The variables of some requirements, and what is said of them."""
 
-    def __init__(self, rules: Sequence[FormalizedRequirement], *, is_linear: bool = True) -> None:
+    def __init__(
+        self, requirements: Sequence[FormalizedRequirement], *, is_linear: bool = True
+    ) -> None:
         """No variable is known yet.
 
         Args:
-            rules: whose comparisons are read.
+            requirements: whose comparisons are read.
             is_linear: whether products of variables are refused, and signals without a unit that
                 meet one; else such a signal has a variable of its own in base units.
         """
         self._is_linear = is_linear
         self._signals = {
             name: signal
-            for rule in rules
-            for name, signal in (rule.declarations.signals if rule.declarations else {}).items()
+            for requirement in requirements
+            for name, signal in (
+                requirement.declarations.signals if requirement.declarations else {}
+            ).items()
         }
-        self._types = {name: each.type for rule in rules for name, each in rule.glossary.items()}
+        self._types = {
+            name: each.type
+            for requirement in requirements
+            for name, each in requirement.glossary.items()
+        }
         self._words: dict[str, int] = {}
         self.variables: dict[str, Term] = {}
         """Constants of z3 for all that is read."""

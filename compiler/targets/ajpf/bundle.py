@@ -37,13 +37,13 @@ _WEAKEN = Options(weaken=True)
 
 
 @with_recursion_limit
-def refusal(rule: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
+def refusal(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """F601 for what AJPF or the agent cannot express; F614 where the agent is not proved right."""
-    refused = ajpf.refusal(rule, options)
+    refused = ajpf.refusal(requirement, options)
     if refused is not None:
         return refused
-    agent = checked_agent(rule, options)
-    return agent if isinstance(agent, Diagnostic) else _not_kept(rule, agent.evidence)
+    agent = checked_agent(requirement, options)
+    return agent if isinstance(agent, Diagnostic) else _not_kept(requirement, agent.evidence)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +59,12 @@ class CheckedAgent:
         return all(line.result is Result.PROVED for line in self.evidence)
 
 
-def forms(rule: FormalizedRequirement) -> tuple[Sif, ...] | Diagnostic:
+def forms(requirement: FormalizedRequirement) -> tuple[Sif, ...] | Diagnostic:
     """The possible agents: one that checks the whole condition, and one that does not.
 
     Only one where both are the same; F601 where there is none.
     """
-    asking, bare = sif(rule), sif(rule, guarded=False)
+    asking, bare = sif(requirement), sif(requirement, guarded=False)
     if isinstance(asking, Diagnostic):
         return asking
     if isinstance(bare, Diagnostic) or not bare.over_responds:
@@ -74,12 +74,12 @@ def forms(rule: FormalizedRequirement) -> tuple[Sif, ...] | Diagnostic:
 
 @with_recursion_limit
 def checked_agent(
-    rule: FormalizedRequirement, options: Options = DEFAULT, limit: int | None = None
+    requirement: FormalizedRequirement, options: Options = DEFAULT, limit: int | None = None
 ) -> CheckedAgent | Diagnostic:
     """The first form of the agent that is proved to keep its requirement, the guarded one first.
 
     Args:
-        rule: one that `ajpf.refusal` does not refuse, with the same options.
+        requirement: one that `ajpf.refusal` does not refuse, with the same options.
         options: `weaken` counts.
         limit: how many states are explored of each form.
 
@@ -88,13 +88,15 @@ def checked_agent(
     """
     from compiler.agents.checking import STATES, agent_evidence
 
-    candidates = forms(rule)
+    candidates = forms(requirement)
     if isinstance(candidates, Diagnostic):
         return candidates
     agents: list[CheckedAgent] = []
     for form in candidates:
-        files = texts(rule, form, options)
-        agents.append(CheckedAgent(form, agent_evidence(rule, files, form.drawn, limit or STATES)))
+        files = texts(requirement, form, options)
+        agents.append(
+            CheckedAgent(form, agent_evidence(requirement, files, form.drawn, limit or STATES))
+        )
         if agents[-1].is_proved:
             return agents[-1]
         if any(line.result is Result.NOT_CHECKED for line in agents[-1].evidence):
@@ -102,14 +104,15 @@ def checked_agent(
     return agents[0]
 
 
-def _not_kept(rule: FormalizedRequirement, evidence: Sequence[Proof]) -> Diagnostic | None:
+def _not_kept(requirement: FormalizedRequirement, evidence: Sequence[Proof]) -> Diagnostic | None:
     for line in evidence:
         if line.result is Result.PROVED:
             continue
         return Diagnostic(
             Code.NOT_KEPT,
-            f"the agent that would be made of {rule.id} is not shown to keep it: {line.detail}",
-            rule.requirement.wording,
+            f"the agent that would be made of {requirement.id} is not shown to keep it: "
+            f"{line.detail}",
+            requirement.entry.wording,
             help="an agent needs time to react: use `eventually`, no scope or stop condition that "
             "may come first, and few triggers",
         )
@@ -118,54 +121,60 @@ def _not_kept(rule: FormalizedRequirement, evidence: Sequence[Proof]) -> Diagnos
 
 @with_recursion_limit
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """A folder `<id>_ajpf/` for each rule."""
-    return tuple(artifact for rule in rules for artifact in _bundle(rule, options))
+    """A folder `<id>_ajpf/` for each requirement."""
+    return tuple(
+        artifact for requirement in requirements for artifact in _bundle(requirement, options)
+    )
 
 
-def _bundle(rule: FormalizedRequirement, options: Options) -> Iterator[Artifact]:
-    agent = checked_agent(rule, options)
-    assert isinstance(agent, CheckedAgent), f"{rule.id} was to be refused"
-    assert agent.is_proved, f"{rule.id} was to be refused"
+def _bundle(requirement: FormalizedRequirement, options: Options) -> Iterator[Artifact]:
+    agent = checked_agent(requirement, options)
+    assert isinstance(agent, CheckedAgent), f"{requirement.id} was to be refused"
+    assert agent.is_proved, f"{requirement.id} was to be refused"
     form = agent.sif
     contents = {
-        **texts(rule, form, options),
-        **_configuration(rule, form, options),
+        **texts(requirement, form, options),
+        **_configuration(requirement, form, options),
         "run.py": files("compiler.targets.ajpf").joinpath("runner.py").read_text(encoding="utf-8"),
-        "README.md": render("ajpf-bundle/README.md.j2", id=rule.id),
+        "README.md": render("ajpf-bundle/README.md.j2", id=requirement.id),
     }
-    manifest = f"{to_json(_manifest(rule, form, options, contents))}\n"
+    manifest = f"{to_json(_manifest(requirement, form, options, contents))}\n"
     for name, text in {**contents, "manifest.json": manifest}.items():
-        yield Artifact(PurePosixPath(package(rule)) / name, text)
+        yield Artifact(PurePosixPath(package(requirement)) / name, text)
 
 
-def package(rule: FormalizedRequirement) -> str:
+def package(requirement: FormalizedRequirement) -> str:
     """The name of the folder, which is that of the Java package: neither has room for more."""
-    name = re.sub(r"[^a-z0-9]+", "_", stem(rule)).strip("_")
+    name = re.sub(r"[^a-z0-9]+", "_", stem(requirement)).strip("_")
     return f"{name if name[:1].isalpha() else f'r{name}'}_ajpf"
 
 
-def texts(rule: FormalizedRequirement, form: Sif, options: Options = DEFAULT) -> dict[str, str]:
+def texts(
+    requirement: FormalizedRequirement, form: Sif, options: Options = DEFAULT
+) -> dict[str, str]:
     """The texts that the model examines and the bundle contains, by the names of the files."""
     return {
-        "SIF.gwen": _agent(rule, form, form.plans, "the agent of"),
+        "SIF.gwen": _agent(requirement, form, form.plans, "the agent of"),
         "SIF_mutant.gwen": _agent(
-            rule, form, form.mutant, "an agent without the response, which is to break"
+            requirement, form, form.mutant, "an agent without the response, which is to break"
         ),
-        "SIF.psl": ajpf.text(rule, options),
+        "SIF.psl": ajpf.text(requirement, options),
     }
 
 
-def _sentence(rule: FormalizedRequirement) -> str:
-    return " ".join(rule.requirement.wording.text.split())
+def _sentence(requirement: FormalizedRequirement) -> str:
+    return " ".join(requirement.entry.wording.text.split())
 
 
-def _agent(rule: FormalizedRequirement, form: Sif, plans: Sequence[Reaction], title: str) -> str:
+def _agent(
+    requirement: FormalizedRequirement, form: Sif, plans: Sequence[Reaction], title: str
+) -> str:
     return render(
         "ajpf-bundle/agent.gwen.j2",
-        title=f"{title} {rule.id}",
-        sentence=_sentence(rule),
+        title=f"{title} {requirement.id}",
+        sentence=_sentence(requirement),
         over_responds=form.over_responds,
         agent=form.agent,
         plans=[_plan(plan) for plan in plans],
@@ -178,9 +187,11 @@ def _plan(plan: Reaction) -> str:
     return f"{plan.event} : {{{', '.join(guards)}}}{deeds};"
 
 
-def _configuration(rule: FormalizedRequirement, form: Sif, options: Options) -> dict[str, str]:
+def _configuration(
+    requirement: FormalizedRequirement, form: Sif, options: Options
+) -> dict[str, str]:
     """The further files for MCAPL and Java PathFinder."""
-    name = package(rule)
+    name = package(requirement)
     texts = {
         "Env.java": render(
             "ajpf-bundle/Env.java.j2",
@@ -190,18 +201,18 @@ def _configuration(rule: FormalizedRequirement, form: Sif, options: Options) -> 
     }
     for agent in ("SIF", "SIF_mutant"):
         texts[f"{agent}.ail"] = render(
-            "ajpf-bundle/agent.ail.j2", title=rule.id, file=f"{agent}.gwen", package=name
+            "ajpf-bundle/agent.ail.j2", title=requirement.id, file=f"{agent}.gwen", package=name
         )
-    for check in _checks(rule, options):
+    for check in _checks(requirement, options):
         texts[check["jpf"]] = render(
-            "ajpf-bundle/check.jpf.j2", title=rule.id, ail=check["agent"], key=check["key"]
+            "ajpf-bundle/check.jpf.j2", title=requirement.id, ail=check["agent"], key=check["key"]
         )
     return texts
 
 
-def _checks(rule: FormalizedRequirement, options: Options) -> list[dict[str, str]]:
+def _checks(requirement: FormalizedRequirement, options: Options) -> list[dict[str, str]]:
     """The checks for AJPF, each with its expected answer."""
-    main, *controls = ajpf.properties(rule, options)
+    main, *controls = ajpf.properties(requirement, options)
     return [
         _check("requirement", main, "SIF", main.key, main.expected, main.why),
         *(_check("control", c, "SIF", c.key, c.expected, c.why) for c in controls),
@@ -231,35 +242,35 @@ def _check(
 
 
 def _manifest(
-    rule: FormalizedRequirement, form: Sif, options: Options, texts: Mapping[str, str]
+    requirement: FormalizedRequirement, form: Sif, options: Options, texts: Mapping[str, str]
 ) -> dict[str, Any]:
     from compiler.logic import printing
 
     return {
         "schema": SCHEMA,
         "fretc": __version__,
-        "requirement": rule.id,
-        "sentence": _sentence(rule),
-        "fingerprint": rule.fingerprint,
+        "requirement": requirement.id,
+        "sentence": _sentence(requirement),
+        "fingerprint": requirement.fingerprint,
         "formulas": {
-            "ft_infinite": printing.readable(rule.ft_infinite),
-            "ft_finite": printing.readable(rule.ft_finite),
-            "pt": printing.readable(rule.pt),
+            "ft_infinite": printing.readable(requirement.ft_infinite),
+            "ft_finite": printing.readable(requirement.ft_finite),
+            "pt": printing.readable(requirement.pt),
         },
-        "weakened": ajpf.weakened(rule, options),
+        "weakened": ajpf.weakened(requirement, options),
         "agent": form.agent,
         "percepts": list(form.percepts),
         "responses": list(form.responses),
         "released": form.released,
         "over_responds": form.over_responds,
-        "atoms": [_atom(rule, form, name) for name in (*form.percepts, *form.responses)],
-        "checks": _checks(rule, options),
+        "atoms": [_atom(requirement, form, name) for name in (*form.percepts, *form.responses)],
+        "checks": _checks(requirement, options),
         "files": {name: sha256(text) for name, text in sorted(texts.items())},
     }
 
 
-def _atom(rule: FormalizedRequirement, form: Sif, name: str) -> dict[str, Any]:
-    declared = rule.glossary.get(name)
+def _atom(requirement: FormalizedRequirement, form: Sif, name: str) -> dict[str, Any]:
+    declared = requirement.glossary.get(name)
     return {
         "proposition": name,
         **({"name": form.names[name]} if form.names[name] != name else {}),
@@ -267,7 +278,7 @@ def _atom(rule: FormalizedRequirement, form: Sif, name: str) -> dict[str, Any]:
         "part": "percept" if name in form.percepts else "response",
         "role": declared.role if declared else "",
         "text": declared.text if declared else "",
-        **_binding(rule.declarations, name),
+        **_binding(requirement.declarations, name),
     }
 
 
@@ -303,38 +314,41 @@ def _comparisons(declarations: Declarations, expression: e.Expression) -> Iterat
         yield from _comparisons(declarations, part)
 
 
-def _refuse(rule: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(rule)
+def _refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
+    return refusal(requirement)
 
 
-def _refuse_weak(rule: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(rule, _WEAKEN)
+def _refuse_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
+    return refusal(requirement, _WEAKEN)
 
 
 @with_recursion_limit
-def remark(rule: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
+def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """A warning about the properties (F605, F606, F607); else about the agent (F615)."""
-    warning = ajpf.remark(rule, options)
-    agent = checked_agent(rule, options) if warning is None else warning
+    warning = ajpf.remark(requirement, options)
+    agent = checked_agent(requirement, options) if warning is None else warning
     if not isinstance(agent, CheckedAgent) or not agent.sif.over_responds:
         return warning
     return Diagnostic(
         Code.OVER_RESPONDS,
-        f"the agent of {rule.id} responds to every event of its condition, also where the rest "
+        f"the agent of {requirement.id} responds to every event of its condition, also where the "
+        "rest "
         "of the condition does not hold",
-        rule.sentence.condition.span if rule.sentence.condition else rule.requirement.wording,
+        requirement.sentence.condition.span
+        if requirement.sentence.condition
+        else requirement.entry.wording,
         "percepts are believed one after the other, so that an agent which asks for the rest may "
         "miss its trigger; where that is too often, bind the whole condition to one proposition",
         Severity.WARNING,
     )
 
 
-def _remark(rule: FormalizedRequirement) -> Diagnostic | None:
-    return remark(rule)
+def _remark(requirement: FormalizedRequirement) -> Diagnostic | None:
+    return remark(requirement)
 
 
-def _remark_weak(rule: FormalizedRequirement) -> Diagnostic | None:
-    return remark(rule, _WEAKEN)
+def _remark_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
+    return remark(requirement, _WEAKEN)
 
 
 _SUMMARY = "an agent, its environment and its properties, ready for AJPF"

@@ -14,10 +14,10 @@ from compiler.targets.comparison_names import comparison_names
 from compiler.targets.comparison_names import definitions as meanings
 
 
-def spelt(rule: FormalizedRequirement) -> Mapping[str, str]:
+def spelt(requirement: FormalizedRequirement) -> Mapping[str, str]:
     """A functor for each proposition: it begins with a small letter, and is no key word."""
-    spoken = comparison_names(rule)
-    atoms = tuple(dict.fromkeys((*rule.propositions, *atoms_of(rule.sentence))))
+    spoken = comparison_names(requirement)
+    atoms = tuple(dict.fromkeys((*requirement.propositions, *atoms_of(requirement.sentence))))
     wanted = {atom: _functor(spoken.get(atom) or identifier(atom)) for atom in atoms}
     return legal_names(atoms, AJPF, names=wanted)
 
@@ -26,20 +26,20 @@ def _functor(name: str) -> str:
     return name if name[0].islower() else f"v_{name}"
 
 
-def agent(rule: FormalizedRequirement) -> str:
+def agent(requirement: FormalizedRequirement) -> str:
     """The agent's name: the component's, where it can be one."""
-    component = rule.sentence.component
+    component = requirement.sentence.component
     name = component if AGENT.fullmatch(component) else None
     return legal_names([component], AJPF, names={component: name} if name else None)[component]
 
 
-def definitions(rule: FormalizedRequirement) -> Mapping[str, str]:
+def definitions(requirement: FormalizedRequirement) -> Mapping[str, str]:
     """What each name means that is not the user's own."""
-    component, own = rule.sentence.component, agent(rule)
-    found = meanings(rule, spelt(rule))
+    component, own = requirement.sentence.component, agent(requirement)
+    found = meanings(requirement, spelt(requirement))
     return found if own == component else {**found, own: f"the agent `{component}`"}
 
 
-def everything(rule: FormalizedRequirement) -> Mapping[str, str]:
+def everything(requirement: FormalizedRequirement) -> Mapping[str, str]:
     """Names of propositions and of the agent; a proposition counts where one has both names."""
-    return {rule.sentence.component: agent(rule), **spelt(rule)}
+    return {requirement.sentence.component: agent(requirement), **spelt(requirement)}

@@ -78,88 +78,89 @@ class ExpectedProperty:
 
 @with_recursion_limit
 def properties(
-    rule: FormalizedRequirement, options: Options = DEFAULT
+    requirement: FormalizedRequirement, options: Options = DEFAULT
 ) -> tuple[ExpectedProperty, ...]:
     """The requirement, and the controls that make a verdict about it mean something.
 
     Args:
-        rule: one that `refusal` does not refuse, with the same options.
+        requirement: one that `refusal` does not refuse, with the same options.
         options: `weaken` counts.
     """
-    formula = _formula(rule, options)
-    assert formula is not None, f"{rule.id} was to be refused"
-    key = _key(rule.id)
-    loss = weakened(rule, options) is not None
+    formula = _formula(requirement, options)
+    assert formula is not None, f"{requirement.id} was to be refused"
+    key = _key(requirement.id)
+    loss = weakened(requirement, options) is not None
     why = "weaker than the requirement" if loss else "the requirement"
     return (
-        ExpectedProperty(key, _text(formula, rule), HOLDS, why),
+        ExpectedProperty(key, _text(formula, requirement), HOLDS, why),
         *(
-            ExpectedProperty(f"{key}_{name}", _text(control, rule), VIOLATED, reason)
-            for name, control, reason in _controls(rule, key)
+            ExpectedProperty(f"{key}_{name}", _text(control, requirement), VIOLATED, reason)
+            for name, control, reason in _controls(requirement, key)
             if not isinstance(control, f.Const)
         ),
     )
 
 
-def weakened(rule: FormalizedRequirement, options: Options = DEFAULT) -> str | None:
+def weakened(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str | None:
     """The loss in words, where the property is weaker than the requirement; None: no loss."""
-    if not options.weaken or not _can_be_weakened(rule):
+    if not options.weaken or not _can_be_weakened(requirement):
         return None
     loss = (
-        f"`{printing_of(rule.sentence.timing)}` has lost its bound: a response that comes later, "
+        f"`{printing_of(requirement.sentence.timing)}` has lost its bound: a response that comes "
+        "later, "
         "however late, satisfies it"
     )
-    scope = rule.sentence.scope
+    scope = requirement.sentence.scope
     if scope is None or scope.kind is s.ScopeKind.AFTER:
         return loss
     return f"{loss}, and so does a stretch of the scope that ends without one, however long"
 
 
-def _can_be_weakened(rule: FormalizedRequirement) -> bool:
+def _can_be_weakened(requirement: FormalizedRequirement) -> bool:
     """`within` only: without their numbers the other timings say nothing, or something else.
 
     Nor in the `only` scopes, where the demand is that the response is missed for that long.
     """
-    scope = rule.sentence.scope
+    scope = requirement.sentence.scope
     negates = scope is not None and scope.kind.negates
-    return s.deadline(rule.sentence.timing) is not None and not negates
+    return s.deadline(requirement.sentence.timing) is not None and not negates
 
 
 # Refusals ---------------------------------------------------------------------------------------
 
 
 @with_recursion_limit
-def refusal(rule: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
-    """F601 for the first part of the rule that AJPF's language cannot say; F604."""
+def refusal(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
+    """F601 for the first part of the requirement that AJPF's language cannot say; F604."""
     return (
-        _refused_timing(rule, options)
-        or _refused_name(rule)
-        or _refused_form(rule, _formula(rule, options))
+        _refused_timing(requirement, options)
+        or _refused_name(requirement)
+        or _refused_form(requirement, _formula(requirement, options))
     )
 
 
-def _refused_timing(rule: FormalizedRequirement, options: Options) -> Diagnostic | None:
-    if rule.pctl is not None:
-        return _not(rule, "the probability", "leave it out, or use a probabilistic tool")
-    for expression in conditions(rule.sentence):
+def _refused_timing(requirement: FormalizedRequirement, options: Options) -> Diagnostic | None:
+    if requirement.pctl is not None:
+        return _not(requirement, "the probability", "leave it out, or use a probabilistic tool")
+    for expression in conditions(requirement.sentence):
         for name in (*calls(expression), *(n.id for n in names_of(expression))):
             if name in LOOK_BACK | LOOK_AHEAD:
                 fix = (
                     "it has no past, and counts no steps ahead: make it a proposition, and bind it"
                 )
-                return _not(rule, f"`{name}`", fix)
-    timing = rule.sentence.timing
-    if not _counts_states(timing) or weakened(rule, options):
+                return _not(requirement, f"`{name}`", fix)
+    timing = requirement.sentence.timing
+    if not _counts_states(timing) or weakened(requirement, options):
         return None
     fix = f"AJPF has no next, no past and no time; {_MONITOR}"
-    if _can_be_weakened(rule):
+    if _can_be_weakened(requirement):
         fix = (
             "AJPF has no next, no past and no time; state the requirement with `eventually`, "
             f"let the file say less with `--weaken`, or {_MONITOR}"
         )
     elif options.weaken:
         fix = f"no weaker form of it says anything of use: {_MONITOR}"
-    return _not(rule, f"the timing `{printing_of(timing)}`", fix)
+    return _not(requirement, f"the timing `{printing_of(timing)}`", fix)
 
 
 def _counts_states(timing: s.Timing) -> bool:
@@ -174,42 +175,44 @@ def _counts_states(timing: s.Timing) -> bool:
             assert_never(extent)
 
 
-def _refused_name(rule: FormalizedRequirement) -> Diagnostic | None:
-    spoken = comparison_names(rule)
+def _refused_name(requirement: FormalizedRequirement) -> Diagnostic | None:
+    spoken = comparison_names(requirement)
     compared = {
         atom
-        for atom, part in candidates(rule.sentence)
+        for atom, part in candidates(requirement.sentence)
         if isinstance(part, Comparison) and FUNCTIONS.keys() - NUMBERS_BACK >= {*calls(part)}
     }
-    for atom in rule.propositions:
+    for atom in requirement.propositions:
         if atom in spoken and atom not in compared:
             fix = "give it a name of its own that begins with a small letter, and bind that"
-            return _not(rule, f"the proposition `{atom}`", fix)
+            return _not(requirement, f"the proposition `{atom}`", fix)
     return None
 
 
-def _refused_form(rule: FormalizedRequirement, formula: f.Formula | None) -> Diagnostic | None:
+def _refused_form(
+    requirement: FormalizedRequirement, formula: f.Formula | None
+) -> Diagnostic | None:
     if formula is None:
         return Diagnostic(
             Code.NOT_PROVED,
-            f"the form of {rule.id} for AJPF is not proved equal to the requirement",
-            rule.requirement.wording,
+            f"the form of {requirement.id} for AJPF is not proved equal to the requirement",
+            requirement.entry.wording,
             help=f"this is a fault of fretc: report it, and {_MONITOR}",
         )
     if isinstance(formula, f.Const):
-        return _not(rule, "a formula that is constant", "it says nothing")
-    long = too_long("AJPF", rule, formula)
+        return _not(requirement, "a formula that is constant", "it says nothing")
+    long = too_long("AJPF", requirement, formula)
     if long is not None:
         return long
-    levels = _levels(_text(formula, rule))
+    levels = _levels(_text(formula, requirement))
     if levels > _MOST_LEVELS:
         fix = "give parts of the expressions names of their own"
-        return _not(rule, f"{levels} parentheses within each other", fix)
+        return _not(requirement, f"{levels} parentheses within each other", fix)
     return None
 
 
-def _not(rule: FormalizedRequirement, part: str, fix: str) -> Diagnostic:
-    return not_expressible("AJPF", rule, part, fix)
+def _not(requirement: FormalizedRequirement, part: str, fix: str) -> Diagnostic:
+    return not_expressible("AJPF", requirement, part, fix)
 
 
 def _levels(text: str) -> int:
@@ -223,28 +226,28 @@ def _levels(text: str) -> int:
 # The formulas -----------------------------------------------------------------------------------
 
 
-def _formula(rule: FormalizedRequirement, options: Options) -> f.Formula | None:
-    """The rule's own formula where it has no X, else its next-free form; None: not proved."""
-    duty = obligation(rule.sentence, rule.ticks or 0)
+def _formula(requirement: FormalizedRequirement, options: Options) -> f.Formula | None:
+    """The requirement's own formula if it has no X, else its next-free form; None: not proved."""
+    duty = obligation(requirement.sentence, requirement.ticks or 0)
     condition = duty.condition
-    if weakened(rule, options):
+    if weakened(requirement, options):
         return nextfree.unbounded(duty) if nextfree.is_weaker(duty.scope, condition) else None
-    if nextfree.is_next_free(rule.ft_infinite):
-        return rule.ft_infinite
+    if nextfree.is_next_free(requirement.ft_infinite):
+        return requirement.ft_infinite
     proved = nextfree.is_proved(duty.scope, condition, duty.demand.kind)
     return nextfree.next_free(duty) if proved else None
 
 
-def _controls(rule: FormalizedRequirement, key: str) -> Iterator[tuple[str, f.Formula, str]]:
+def _controls(requirement: FormalizedRequirement, key: str) -> Iterator[tuple[str, f.Formula, str]]:
     """Name, formula and reason of each control; it may be constant where an expression is."""
-    duty = obligation(rule.sentence, rule.ticks or 0)
-    response = boolean(rule.sentence.response, Uninterpreted().alone())
+    duty = obligation(requirement.sentence, requirement.ticks or 0)
+    response = boolean(requirement.sentence.response, Uninterpreted().alone())
     never = nextfree.never_begins(duty)
     if never is not None:
         entered = _TRIGGERED if duty.scope is None else _ENTERED[duty.scope]
         why = entered if duty.condition is None else _TRIGGERED
         yield "reach", never, why.format(key)
-    timing = rule.sentence.timing
+    timing = requirement.sentence.timing
     negates = duty.scope is not None and duty.scope.negates
     # What `never` forbids, an `only` scope demands outside of its mode, and the other way round: a
     # prohibition is kept by not responding, and nothing is wrong with that.
@@ -256,11 +259,11 @@ def _controls(rule: FormalizedRequirement, key: str) -> Iterator[tuple[str, f.Fo
         yield "stop", f.globally(f.not_(duty.demand.stop)), reason
 
 
-def _text(formula: f.Formula, rule: FormalizedRequirement) -> str:
-    agent, functors = names.agent(rule), names.spelt(rule)
+def _text(formula: f.Formula, requirement: FormalizedRequirement) -> str:
+    agent, functors = names.agent(requirement), names.spelt(requirement)
 
     def spell(name: str) -> str:
-        declared = rule.glossary.get(name)
+        declared = requirement.glossary.get(name)
         modality = declared.modality if declared else Modality.BELIEF
         return f"{modality}({agent},{functors[name]})"
 
@@ -275,73 +278,78 @@ def _key(id: str) -> str:
 # What a user should know ------------------------------------------------------------------------
 
 
-def remark(rule: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
+def remark(requirement: FormalizedRequirement, options: Options = DEFAULT) -> Diagnostic | None:
     """F605, F606, F607: limits of AJPF's verdict on the property."""
-    loss = weakened(rule, options)
+    loss = weakened(requirement, options)
     if loss is not None:
-        message = f"the property of {rule.id} is weaker than the requirement: {loss}"
-        return _warning(rule, Code.WEAKENED, message, "check the bound with `--emit monitor`")
-    sentence = rule.sentence
+        message = f"the property of {requirement.id} is weaker than the requirement: {loss}"
+        return _warning(
+            requirement, Code.WEAKENED, message, "check the bound with `--emit monitor`"
+        )
+    sentence = requirement.sentence
     scope = sentence.scope.kind if sentence.scope else None
     if not _begins_at_once(sentence.timing) or (scope is not None and scope.negates):
         return None
     if sentence.condition is None and scope in (None, s.ScopeKind.NOT_IN, s.ScopeKind.BEFORE):
         return _warning(
-            rule,
+            requirement,
             Code.STATE_ZERO,
-            f"{rule.id} demands its response in the first state, where no percept is believed yet",
+            f"{requirement.id} demands its response in the first state, where no percept is "
+            "believed yet",
             "make the response an initial belief, or state it with a condition and `eventually`",
         )
     return _warning(
-        rule,
+        requirement,
         Code.NO_TIME_TO_REACT,
-        f"{rule.id} demands its response in the very state of its trigger: it is false of every "
+        f"{requirement.id} demands its response in the very state of its trigger: it is false of "
+        "every "
         "agent that has to react",
         "an agent needs some nine states from a percept to its answer: state it with `eventually`",
     )
 
 
-def _warning(rule: FormalizedRequirement, code: Code, message: str, fix: str) -> Diagnostic:
-    place = rule.sentence.timing_span or rule.requirement.wording
+def _warning(requirement: FormalizedRequirement, code: Code, message: str, fix: str) -> Diagnostic:
+    place = requirement.sentence.timing_span or requirement.entry.wording
     return Diagnostic(code, message, place, fix, Severity.WARNING)
 
 
 @with_recursion_limit
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>.psl` for each rule: the property, its key the requirement's id, and its controls."""
+    """`<id>.psl` for each requirement: the property, named by its id, and its controls."""
     return tuple(
-        Artifact(PurePosixPath(f"{stem(rule)}.psl"), text(rule, options)) for rule in rules
+        Artifact(PurePosixPath(f"{stem(requirement)}.psl"), text(requirement, options))
+        for requirement in requirements
     )
 
 
-def text(rule: FormalizedRequirement, options: Options = DEFAULT) -> str:
-    """The property file of one rule."""
+def text(requirement: FormalizedRequirement, options: Options = DEFAULT) -> str:
+    """The property file of one requirement."""
     return render(
         "ajpf/properties.psl.j2",
-        id=rule.id,
-        sentence=" ".join(rule.requirement.wording.text.split()),
-        loss=weakened(rule, options),
-        definitions=names.definitions(rule),
-        properties=properties(rule, options),
+        id=requirement.id,
+        sentence=" ".join(requirement.entry.wording.text.split()),
+        loss=weakened(requirement, options),
+        definitions=names.definitions(requirement),
+        properties=properties(requirement, options),
     )
 
 
-def _refuse(rule: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(rule)
+def _refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
+    return refusal(requirement)
 
 
-def _refuse_weak(rule: FormalizedRequirement) -> Diagnostic | None:
-    return refusal(rule, _WEAKEN)
+def _refuse_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
+    return refusal(requirement, _WEAKEN)
 
 
-def _remark(rule: FormalizedRequirement) -> Diagnostic | None:
-    return remark(rule)
+def _remark(requirement: FormalizedRequirement) -> Diagnostic | None:
+    return remark(requirement)
 
 
-def _remark_weak(rule: FormalizedRequirement) -> Diagnostic | None:
-    return remark(rule, _WEAKEN)
+def _remark_weak(requirement: FormalizedRequirement) -> Diagnostic | None:
+    return remark(requirement, _WEAKEN)
 
 
 _SUMMARY = "a property file for the AJPF model checker"

@@ -67,36 +67,36 @@ Term = tuple[tuple[str, bool], ...]
 """A conjunction: propositions, each true or false."""
 
 
-def sif(rule: FormalizedRequirement, guarded: bool = True) -> Sif | Diagnostic:
-    """The agent that reacts as the rule demands; or F601 for what no such agent can be made of.
+def sif(requirement: FormalizedRequirement, guarded: bool = True) -> Sif | Diagnostic:
+    """The agent that reacts as the requirement demands; or F601 if there is no such agent.
 
     Args:
-        rule: the requirement.
+        requirement: the requirement.
         guarded: whether plans ask for the rest of the condition, where there is any.
     """
-    sentence = rule.sentence
-    comparison = next(iter(comparison_names(rule)), None)
+    sentence = requirement.sentence
+    comparison = next(iter(comparison_names(requirement)), None)
     if comparison is not None:
         fix = "give it a name of its own, and bind that; `--emit ajpf` writes the property alone"
-        return not_expressible(_TARGET, rule, f"`{comparison}`", fix)
+        return not_expressible(_TARGET, requirement, f"`{comparison}`", fix)
     if sentence.condition is None:
         fix = "an agent reacts to an event: state what triggers it, `whenever ...`"
-        return not_expressible(_TARGET, rule, "a sentence without a condition", fix)
-    terms = _terms(rule, sentence.condition.expression)
+        return not_expressible(_TARGET, requirement, "a sentence without a condition", fix)
+    terms = _terms(requirement, sentence.condition.expression)
     if isinstance(terms, Diagnostic):
         return terms
-    responses = _responses(rule)
+    responses = _responses(requirement)
     if isinstance(responses, Diagnostic):
         return responses
     percepts = _percepts(sentence)
-    mistake = _wrong_name(rule, percepts, responses)
+    mistake = _wrong_name(requirement, percepts, responses)
     if mistake is not None:
         return mistake
-    believed = [name for name in responses if _is_belief(rule, name)]
+    believed = [name for name in responses if _is_belief(requirement, name)]
     released = len(terms) == len(terms[0]) == len(responses) == len(believed) == 1
-    answer = tuple(deed for name in responses for deed in _answer(rule, name))
-    spoilt = tuple(Action(_action(rule, name)) for name in believed)
-    spelt = _spelt(rule)
+    answer = tuple(deed for name in responses for deed in _answer(requirement, name))
+    spoilt = tuple(Action(_action(requirement, name)) for name in believed)
+    spelt = _spelt(requirement)
     terms = tuple(tuple((spelt[name], value) for name, value in term) for term in terms)
     last = Guard(False, spelt[believed[-1]]) if believed and not released else None
     plans, mutant = (
@@ -107,11 +107,13 @@ def sif(rule: FormalizedRequirement, guarded: bool = True) -> Sif | Diagnostic:
         for deeds in (answer, spoilt)
     )
     bare = not guarded and terms != _alone(terms)
-    agent = names.agent(rule)
+    agent = names.agent(requirement)
     return Sif(agent, percepts, responses, spelt, plans, mutant, released, bare)
 
 
-def _terms(rule: FormalizedRequirement, condition: e.Expression) -> tuple[Term, ...] | Diagnostic:
+def _terms(
+    requirement: FormalizedRequirement, condition: e.Expression
+) -> tuple[Term, ...] | Diagnostic:
     """The condition as a disjunction; each term has a proposition that has to be true."""
     parts = condition.args if isinstance(condition, e.Or) else (condition,)
     terms: list[Term] = []
@@ -120,10 +122,10 @@ def _terms(rule: FormalizedRequirement, condition: e.Expression) -> tuple[Term, 
         term = tuple(literal for literal in literals if literal is not None)
         if len(term) < len(literals):
             fix = "write it as `a`, `a & b` or `(a & !b) | c`, or give its parts names"
-            return not_expressible(_TARGET, rule, "the shape of the condition", fix)
+            return not_expressible(_TARGET, requirement, "the shape of the condition", fix)
         if not any(positive for _, positive in term):
             fix = "an absence at the start raises no event: name the opposite, and bind that"
-            return not_expressible(_TARGET, rule, "a condition that only negates", fix)
+            return not_expressible(_TARGET, requirement, "a condition that only negates", fix)
         terms.append(term)
     return tuple(terms)
 
@@ -143,14 +145,14 @@ def _literal(expression: e.Expression) -> tuple[str, bool] | None:
             return None
 
 
-def _responses(rule: FormalizedRequirement) -> tuple[str, ...] | Diagnostic:
-    response = rule.sentence.response
+def _responses(requirement: FormalizedRequirement) -> tuple[str, ...] | Diagnostic:
+    response = requirement.sentence.response
     parts = response.args if isinstance(response, e.And) else (response,)
     ids = [part.id for part in parts if isinstance(part, e.Name)]
     if len(ids) == len(parts):
         return tuple(dict.fromkeys(ids))
     fix = "an agent does things: state what is to be so, as `a` or `a & b`"
-    return not_expressible(_TARGET, rule, "the shape of the response", fix)
+    return not_expressible(_TARGET, requirement, "the shape of the response", fix)
 
 
 def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
@@ -166,53 +168,55 @@ def _percepts(sentence: s.Sentence) -> tuple[str, ...]:
 
 
 def _wrong_name(
-    rule: FormalizedRequirement, percepts: tuple[str, ...], responses: tuple[str, ...]
+    requirement: FormalizedRequirement, percepts: tuple[str, ...], responses: tuple[str, ...]
 ) -> Diagnostic | None:
     for name in percepts:
         if name in responses:
             fix = "an environment that shows the response verifies any agent: use two names"
-            return not_expressible(_TARGET, rule, f"`{name}` as trigger and response", fix)
-        if _modality(rule, name) is not Modality.BELIEF:
+            return not_expressible(_TARGET, requirement, f"`{name}` as trigger and response", fix)
+        if _modality(requirement, name) is not Modality.BELIEF:
             fix = 'the environment shows it: leave its `modality`, or make it "B"'
-            return not_expressible(_TARGET, rule, f"the trigger `{name}`, not a belief,", fix)
+            return not_expressible(
+                _TARGET, requirement, f"the trigger `{name}`, not a belief,", fix
+            )
     for name in responses:
-        if _modality(rule, name) not in (Modality.BELIEF, Modality.DONE):
+        if _modality(requirement, name) not in (Modality.BELIEF, Modality.DONE):
             fix = 'an agent brings about a belief ("B") or does an action ("D")'
-            return not_expressible(_TARGET, rule, f"the response `{name}`, neither,", fix)
-        done = _modality(rule, name) is Modality.DONE
-        action = _spelt(rule)[name] if done else _action(rule, name)
+            return not_expressible(_TARGET, requirement, f"the response `{name}`, neither,", fix)
+        done = _modality(requirement, name) is Modality.DONE
+        action = _spelt(requirement)[name] if done else _action(requirement, name)
         if action in AJPF_ACTIONS:
             fix = "MCAPL has an action or a word of that name: use another"
-            return not_expressible(_TARGET, rule, f"the action `{action}`", fix)
+            return not_expressible(_TARGET, requirement, f"the action `{action}`", fix)
     return None
 
 
-def _spelt(rule: FormalizedRequirement) -> Mapping[str, str]:
+def _spelt(requirement: FormalizedRequirement) -> Mapping[str, str]:
     """The names in the texts, also by names as the syntax tree has them: without quotes."""
-    spelt = names.spelt(rule)
+    spelt = names.spelt(requirement)
     return {**spelt, **{atom[1:-1]: spelt[atom] for atom in spelt if atom.startswith('"')}}
 
 
-def _modality(rule: FormalizedRequirement, name: str) -> Modality:
-    declared = rule.glossary.get(name)
+def _modality(requirement: FormalizedRequirement, name: str) -> Modality:
+    declared = requirement.glossary.get(name)
     return declared.modality if declared else Modality.BELIEF
 
 
-def _is_belief(rule: FormalizedRequirement, *names: str) -> bool:
-    return all(_modality(rule, name) is Modality.BELIEF for name in names)
+def _is_belief(requirement: FormalizedRequirement, *names: str) -> bool:
+    return all(_modality(requirement, name) is Modality.BELIEF for name in names)
 
 
-def _answer(rule: FormalizedRequirement, name: str) -> tuple[Deed, ...]:
+def _answer(requirement: FormalizedRequirement, name: str) -> tuple[Deed, ...]:
     """An action and the belief that it was done; only the action where that is the response."""
-    if not _is_belief(rule, name):
-        return (Action(_spelt(rule)[name]),)
-    return Action(_action(rule, name)), Change("+", _spelt(rule)[name])
+    if not _is_belief(requirement, name):
+        return (Action(_spelt(requirement)[name]),)
+    return Action(_action(requirement, name)), Change("+", _spelt(requirement)[name])
 
 
-def _action(rule: FormalizedRequirement, name: str) -> str:
+def _action(requirement: FormalizedRequirement, name: str) -> str:
     """What the agent does to make it true, as the bindings call it."""
-    declared = rule.glossary.get(name)
-    return (declared.action if declared else "") or f"do_{_spelt(rule)[name]}"
+    declared = requirement.glossary.get(name)
+    return (declared.action if declared else "") or f"do_{_spelt(requirement)[name]}"
 
 
 def _reactions(

@@ -87,13 +87,13 @@ class Chart:
 
 
 @with_recursion_limit
-def chart(rule: FormalizedRequirement) -> Chart:
-    """The automaton of a rule.
+def chart(requirement: FormalizedRequirement) -> Chart:
+    """The automaton of a requirement.
 
     Raises:
         TooManyStatesError: it has more than `MOST_STATES` states.
     """
-    automaton = explored(rule)
+    automaton = explored(requirement)
     pending = [i for i, verdict in enumerate(automaton.verdicts) if verdict == "pending"]
     numbers = {old: new for new, old in enumerate(pending)}
     numbers[BROKEN] = len(pending)
@@ -102,7 +102,7 @@ def chart(rule: FormalizedRequirement) -> Chart:
             numbers[index] = len(pending) + (verdict == "satisfied")
     return Chart(
         automaton.template,
-        {i: part for i, part in enumerate(parts(rule.sentence)) if part is not None},
+        {i: part for i, part in enumerate(parts(requirement.sentence)) if part is not None},
         automaton.letters,
         tuple(automaton.states[i] for i in pending),
         tuple(tuple(numbers[after] for after in automaton.moves[i]) for i in pending),
@@ -111,32 +111,32 @@ def chart(rule: FormalizedRequirement) -> Chart:
 
 
 @with_recursion_limit
-def explored(rule: FormalizedRequirement) -> Automaton:
-    """The automaton of a rule over the letters that can occur.
+def explored(requirement: FormalizedRequirement) -> Automaton:
+    """The automaton of a requirement over the letters that can occur.
 
     Raises:
         TooManyStatesError: it has more than `MOST_STATES`.
     """
-    kind = template(rule.sentence, rule.ticks or 0)
-    return _cached(kind, occurring(rule.sentence))
+    kind = template(requirement.sentence, requirement.ticks or 0)
+    return _cached(kind, occurring(requirement.sentence))
 
 
-@lru_cache(maxsize=4)  # a rule is asked whether it is refused before it is emitted
+@lru_cache(maxsize=4)  # a requirement is asked whether it is refused before it is emitted
 def _cached(kind: Template, letters: tuple[Letter, ...]) -> Automaton:
     return explore(kind, letters, MOST_STATES)
 
 
 @with_recursion_limit
-def kind(rule: FormalizedRequirement) -> Kind:
+def kind(requirement: FormalizedRequirement) -> Kind:
     """The kind of the demand; `only` scopes demand the dual of their timing."""
-    return obligation(rule.sentence, rule.ticks or 0).demand.kind
+    return obligation(requirement.sentence, requirement.ticks or 0).demand.kind
 
 
 def words(demanded: Kind, template: Template, state: State) -> tuple[str, ...]:
     """The memory of a state in words; its counter comes last, but before `condition was true`.
 
     Args:
-        demanded: the `kind` of the rule.
+        demanded: the `kind` of the requirement.
         template: of its sentence.
         state: one that has not decided.
     """

@@ -32,31 +32,34 @@ _WIDTH = 76
 """Characters of a line below the picture."""
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate, F670 for too many states."""
-    return refusal(rule, "DOT")
+    return refusal(requirement, "DOT")
 
 
 @with_recursion_limit
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>.dot` for each rule."""
-    return tuple(Artifact(PurePosixPath(f"{stem(rule)}.dot"), _text(rule)) for rule in rules)
+    """`<id>.dot` for each requirement."""
+    return tuple(
+        Artifact(PurePosixPath(f"{stem(requirement)}.dot"), _text(requirement))
+        for requirement in requirements
+    )
 
 
-def _text(rule: FormalizedRequirement) -> str:
-    picture = folded(rule)
-    automaton = chart(rule)
-    names = comparison_names(rule)
+def _text(requirement: FormalizedRequirement) -> str:
+    picture = folded(requirement)
+    automaton = chart(requirement)
+    names = comparison_names(requirement)
     inputs = {i: renamed(part, names) for i, part in automaton.inputs.items()}
     guard = automaton.guard
     long = {i: part for i, part in inputs.items() if len(printing.readable(part)) > _LONGEST}
     spelt = {i: f.Atom(PLACES[i]) if i in long else part for i, part in inputs.items()}
     return render(
         "dot/automaton.dot.j2",
-        id=rule.id,
-        title=_lines(_caption(rule, long, picture.nodes)),
+        id=requirement.id,
+        title=_lines(_caption(requirement, long, picture.nodes)),
         start=picture.start,
         nodes=[(node.name, _lines(_node_text(node)), _look(node)) for node in picture.nodes],
         edges=[
@@ -67,12 +70,12 @@ def _text(rule: FormalizedRequirement) -> str:
 
 
 def _caption(
-    rule: FormalizedRequirement, long: Mapping[int, f.Formula], nodes: Sequence[Node]
+    requirement: FormalizedRequirement, long: Mapping[int, f.Formula], nodes: Sequence[Node]
 ) -> list[str]:
-    lines = [f"{rule.id}: {wording(rule.requirement)}"]
-    lines.append(meaning(rule.written, rule.ticks, rule.clock))
+    lines = [f"{requirement.id}: {wording(requirement.entry)}"]
+    lines.append(meaning(requirement.written, requirement.ticks, requirement.clock))
     lines.extend(f"{PLACES[i]}: {printing.readable(part)}" for i, part in long.items())
-    lines.extend(notes(rule))
+    lines.extend(notes(requirement))
     if any(node.counts for node in nodes):
         lines.append("On edges: [a condition on k], / what k becomes.")
     if any(not node.accepts and node.name != VIOLATED for node in nodes):

@@ -10,36 +10,36 @@ from compiler.targets.target import not_expressible
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 
 
-def refusal(rule: FormalizedRequirement, target: str) -> Diagnostic | None:
+def refusal(requirement: FormalizedRequirement, target: str) -> Diagnostic | None:
     """F601 or F670 where the sentence has no automaton, or none that is small enough."""
-    return no_automaton(rule, target) or _too_large(rule)
+    return no_automaton(requirement, target) or _too_large(requirement)
 
 
-def no_automaton(rule: FormalizedRequirement, target: str) -> Diagnostic | None:
+def no_automaton(requirement: FormalizedRequirement, target: str) -> Diagnostic | None:
     """F601 for a sentence that says more than a counter automaton can tell."""
-    if rule.pctl is not None:
+    if requirement.pctl is not None:
         return not_expressible(
-            target, rule, "the probability", "leave it out, or use `--emit prism`"
+            target, requirement, "the probability", "leave it out, or use `--emit prism`"
         )
-    predicate = temporal_predicate(rule.sentence)
+    predicate = temporal_predicate(requirement.sentence)
     if predicate is not None:
         return not_expressible(
             target,
-            rule,
+            requirement,
             f"the predicate `{predicate}`",
             "say it by a condition or a timing, or check it with `--emit monitor`",
         )
     return None
 
 
-def _too_large(rule: FormalizedRequirement) -> Diagnostic | None:
+def _too_large(requirement: FormalizedRequirement) -> Diagnostic | None:
     try:
-        explored(rule)
+        explored(requirement)
     except TooManyStatesError:
         return Diagnostic(
             Code.TOO_LARGE,
-            f"the automaton of {rule.id} has more than {MOST_STATES} states",
-            rule.requirement.wording,
+            f"the automaton of {requirement.id} has more than {MOST_STATES} states",
+            requirement.entry.wording,
             help="state a shorter duration, use a clock with longer ticks, or `--emit smv`",
         )
     return None

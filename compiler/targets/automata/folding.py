@@ -54,23 +54,23 @@ class Folded:
     start: str
 
 
-def folded(rule: FormalizedRequirement) -> Folded:
-    """The chart of a rule, folded; a start that does as another node does is that node.
+def folded(requirement: FormalizedRequirement) -> Folded:
+    """The chart of a requirement, folded; a start that does as another node does is that node.
 
     Raises:
         TooManyStatesError: the automaton has more than `chart.MOST_STATES` states.
     """
-    return _without_twin(_Folding(rule, chart(rule)).result())
+    return _without_twin(_Folding(requirement, chart(requirement)).result())
 
 
 class _Folding:
-    def __init__(self, rule: FormalizedRequirement, unfolded: Chart) -> None:
+    def __init__(self, requirement: FormalizedRequirement, unfolded: Chart) -> None:
         self.chart = unfolded
-        self.demanded = kind(rule)
-        self.scoped = rule.sentence.scope is not None
+        self.demanded = kind(requirement)
+        self.scoped = requirement.sentence.scope is not None
         self.ticks = unfolded.template.ticks
         self.traits = TRAITS[self.demanded]
-        triggered = rule.sentence.condition is not None
+        triggered = requirement.sentence.condition is not None
         self.registers = Trait.REGISTERS in self.traits and triggered
         self.groups: dict[object, list[int]] = {}
         for index, state in enumerate(unfolded.states):

@@ -29,40 +29,43 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate, F670 for too many states."""
-    return refusal(rule, "HOA")
+    return refusal(requirement, "HOA")
 
 
 @with_recursion_limit
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>.hoa` for each rule."""
-    return tuple(Artifact(PurePosixPath(f"{stem(rule)}.hoa"), _text(rule)) for rule in rules)
+    """`<id>.hoa` for each requirement."""
+    return tuple(
+        Artifact(PurePosixPath(f"{stem(requirement)}.hoa"), _text(requirement))
+        for requirement in requirements
+    )
 
 
-def _text(rule: FormalizedRequirement) -> str:
-    automaton = chart(rule)
+def _text(requirement: FormalizedRequirement) -> str:
+    automaton = chart(requirement)
     atoms = tuple(
         dict.fromkeys(name for part in automaton.inputs.values() for name in f.atoms(part))
     )
-    names = comparison_names(rule)
+    names = comparison_names(requirement)
     numbers = _numbers(automaton)
     rejecting = [old for old in numbers if not automaton.accepts(old)]
     return render(
         "hoa/automaton.hoa.j2",
-        id=rule.id,
+        id=requirement.id,
         version=__version__,
-        sentence=_comment(wording(rule.requirement)),
+        sentence=_comment(wording(requirement.entry)),
         propositions=[names.get(name, printing.readable(f.Atom(name))) for name in atoms],
-        notes=[_comment(note) for note in notes(rule)],
+        notes=[_comment(note) for note in notes(requirement)],
         buchi=bool(rejecting),
         # Then no cycle has both accepting and rejecting states.
         weak=set(rejecting) <= {automaton.violated},
         aliases=_Aliases(atoms).of(automaton.inputs),
         start=numbers[automaton.start],
-        states=list(_states(rule, automaton, numbers)),
+        states=list(_states(requirement, automaton, numbers)),
     )
 
 
@@ -78,10 +81,10 @@ def _numbers(automaton: Chart) -> dict[int, int]:
 
 
 def _states(
-    rule: FormalizedRequirement, automaton: Chart, numbers: Mapping[int, int]
+    requirement: FormalizedRequirement, automaton: Chart, numbers: Mapping[int, int]
 ) -> Iterator[tuple[int, str, bool, list[tuple[str, int]]]]:
     """Number, name, whether it accepts, and edges of each state."""
-    demanded = kind(rule)
+    demanded = kind(requirement)
     labels: dict[tuple[Letter, ...], str] = {}
     for index, row in enumerate(automaton.moves):
         targets: dict[int, list[Letter]] = {}

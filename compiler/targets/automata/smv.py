@@ -30,17 +30,20 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601 for a probability or a temporal predicate."""
-    return no_automaton(rule, "NuSMV")
+    return no_automaton(requirement, "NuSMV")
 
 
 @with_recursion_limit
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>.smv` for each rule."""
-    return tuple(Artifact(PurePosixPath(f"{stem(rule)}.smv"), _text(rule)) for rule in rules)
+    """`<id>.smv` for each requirement."""
+    return tuple(
+        Artifact(PurePosixPath(f"{stem(requirement)}.smv"), _text(requirement))
+        for requirement in requirements
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,12 +55,12 @@ class Spec:
     comment: str
 
 
-def _text(rule: FormalizedRequirement) -> str:
-    demanded = obligation(rule.sentence, rule.ticks or 0)
-    plain = identifier(rule)
-    monitor_name, instance = _modules(rule)
-    names = _names(rule)
-    meanings = in_words(rule)
+def _text(requirement: FormalizedRequirement) -> str:
+    demanded = obligation(requirement.sentence, requirement.ticks or 0)
+    plain = identifier(requirement)
+    monitor_name, instance = _modules(requirement)
+    names = _names(requirement)
+    meanings = in_words(requirement)
     module = monitor(demanded)
     dialect = replace(printing.NUSMV, atom=names.__getitem__, full=True)
     actual = {
@@ -68,29 +71,31 @@ def _text(rule: FormalizedRequirement) -> str:
     }
     return render(
         "smv/monitor.smv.j2",
-        id=rule.id,
-        sentence=wording(rule.requirement),
+        id=requirement.id,
+        sentence=wording(requirement.entry),
         variables=[(names[name], meanings.get(name, name)) for name in names],
-        impossible=[_together(each, names) for each in excluded(rule)],
+        impossible=[_together(each, names) for each in excluded(requirement)],
         instance=instance,
         module_name=monitor_name,
         module=module,
         arguments=[printing.text(actual[name], dialect) for name in module.parameters],
         negated=demanded.scope is not None and demanded.scope.negates,
-        specs=_specs(rule, demanded, (plain, instance), dialect),
+        specs=_specs(requirement, demanded, (plain, instance), dialect),
     )
 
 
-def _modules(rule: FormalizedRequirement) -> tuple[str, str]:
+def _modules(requirement: FormalizedRequirement) -> tuple[str, str]:
     """The name of the module, and that of its instance."""
-    name = f"monitor_{identifier(rule)}"
+    name = f"monitor_{identifier(requirement)}"
     return name, f"the_{name}"
 
 
-def _names(rule: FormalizedRequirement) -> Mapping[str, str]:
+def _names(requirement: FormalizedRequirement) -> Mapping[str, str]:
     """Of all propositions; formulas may lack some: `only after m` drops m if it demands nothing."""
-    propositions = (*rule.propositions, *atoms_of(rule.sentence))
-    return legal_names(propositions, SMV | {*_modules(rule)}, names=comparison_names(rule))
+    propositions = (*requirement.propositions, *atoms_of(requirement.sentence))
+    return legal_names(
+        propositions, SMV | {*_modules(requirement)}, names=comparison_names(requirement)
+    )
 
 
 def _together(exclusion: Exclusion, names: Mapping[str, str]) -> str:
@@ -98,7 +103,7 @@ def _together(exclusion: Exclusion, names: Mapping[str, str]) -> str:
 
 
 def _specs(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     demanded: Obligation,
     names: tuple[str, str],
     dialect: printing.Dialect,
@@ -106,13 +111,13 @@ def _specs(
     """The formulas, and the properties that link them to the module.
 
     Args:
-        rule: what is formalized.
+        requirement: what is formalized.
         demanded: the obligation that the module implements.
         names: the prefix of the properties' names, and the name of the module's instance.
         dialect: with the names of the propositions.
     """
     prefix, instance = names
-    ft, pt = printing.text(rule.ft_infinite, dialect), printing.text(rule.pt, dialect)
+    ft, pt = printing.text(requirement.ft_infinite, dialect), printing.text(requirement.pt, dialect)
     safe = f"(G (!{instance}.violated))"
     traits = TRAITS[demanded.demand.kind]
     unmet = Trait.UNMET in traits

@@ -44,15 +44,15 @@ class _Range:
     most: int
 
 
-def driver(name: str, base: str, rules: Sequence[FormalizedRequirement]) -> Driver:
+def driver(name: str, base: str, requirements: Sequence[FormalizedRequirement]) -> Driver:
     """The driver of a monitor.
 
     Args:
         name: of its header, without the ending.
         base: what the names of its functions begin with.
-        rules: in the order of its outcomes.
+        requirements: in the order of its outcomes.
     """
-    printer = printed(name, rules)
+    printer = printed(name, requirements)
     made, ranges = printer.rail, [*_ranges(printer)]
     ends = {-1, 0, 1, *(end for cell in ranges for end in (cell.least, cell.most))}
     text = render(

@@ -34,15 +34,15 @@ _MOST_BITS = 2**23
 """Of a ring: a mebibyte on each rail."""
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """As a monitor in Python; and F601 for bounds beyond what a controller can keep."""
-    return refusal(rule, "C") or too_large(rule, "C")
+    return refusal(requirement, "C") or too_large(requirement, "C")
 
 
 @with_recursion_limit
-def too_large(rule: FormalizedRequirement, language: str) -> Diagnostic | None:
+def too_large(requirement: FormalizedRequirement, language: str) -> Diagnostic | None:
     """F601 where a counter or a ring is beyond what a controller can keep."""
-    cells = rail(program({rule.id: rule.watch}), {rule.id: "r"}).cells
+    cells = rail(program({requirement.id: requirement.watch}), {requirement.id: "r"}).cells
     if any(isinstance(cell, Counter) and cell.most >= 2**31 for cell in cells):
         what, fix = "a bound of 2^31 ticks or more", "counters have 32 bits: choose a longer tick"
     elif any(isinstance(cell, Ring) and cell.length > _MOST_BITS for cell in cells):
@@ -50,31 +50,35 @@ def too_large(rule: FormalizedRequirement, language: str) -> Diagnostic | None:
         fix = "it would keep more than a mebibyte: choose a longer tick"
     else:
         return None
-    return not_expressible(f"a monitor in {language}", rule, what, fix)
+    return not_expressible(f"a monitor in {language}", requirement, what, fix)
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>_monitor.h` and `.c` for each rule, or `monitors.h` and `.c` for all."""
+    """`<id>_monitor.h` and `.c` for each requirement, or `monitors.h` and `.c` for all."""
     if options.one_file:
-        return _files("monitors", "monitors", rules)
-    return tuple(file for name, base, rule in _apart(rules) for file in _files(name, base, [rule]))
+        return _files("monitors", "monitors", requirements)
+    return tuple(
+        file
+        for name, base, requirement in _apart(requirements)
+        for file in _files(name, base, [requirement])
+    )
 
 
 def _apart(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
 ) -> Iterator[tuple[str, str, FormalizedRequirement]]:
-    """The name of the files of each rule, and what its names begin with.
+    """The name of the files of each requirement, and what its names begin with.
 
     `r1_sample_init` is of the signal `init` of R1: names of R1_sample begin with `r1_sample_`, and
     go on with another `_`, which no name of a signal begins with.
     """
-    bases = prefixes_of([rule.id for rule in rules])
-    for rule in rules:
-        base = re.sub(r"_sample(?=_|$)", "_sample_", bases[rule.id])
+    bases = prefixes_of([requirement.id for requirement in requirements])
+    for requirement in requirements:
+        base = re.sub(r"_sample(?=_|$)", "_sample_", bases[requirement.id])
         base = f"{base}_" if base in C_LIBRARY else base
-        yield f"{module(stem(rule))}_monitor", base, rule
+        yield f"{module(stem(requirement))}_monitor", base, requirement
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,9 +95,12 @@ class Interface:
     """The member of the outcomes."""
 
 
-def interface(rules: Sequence[FormalizedRequirement]) -> tuple[Interface, ...]:
-    """Of each rule, in files of its own as `emit` writes them."""
-    every = [(name, base, printed(name, [rule])) for name, base, rule in _apart(rules)]
+def interface(requirements: Sequence[FormalizedRequirement]) -> tuple[Interface, ...]:
+    """Of each requirement, in files of its own as `emit` writes them."""
+    every = [
+        (name, base, printed(name, [requirement]))
+        for name, base, requirement in _apart(requirements)
+    ]
     return tuple(
         Interface(name, base, printer.names, printer.rail.readings[0].prefix)
         for name, base, printer in every
@@ -101,70 +108,80 @@ def interface(rules: Sequence[FormalizedRequirement]) -> tuple[Interface, ...]:
 
 
 @with_recursion_limit
-def _files(name: str, base: str, rules: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
-    """The header and the source of one monitor for all of the rules."""
-    printer = printed(name, rules)
-    meanings = {each: text for rule in rules for each, text in in_words(rule).items()}
+def _files(
+    name: str, base: str, requirements: Sequence[FormalizedRequirement]
+) -> tuple[Artifact, ...]:
+    """The header and the source of one monitor for all of the requirements."""
+    printer = printed(name, requirements)
+    meanings = {
+        each: text for requirement in requirements for each, text in in_words(requirement).items()
+    }
     values = _values(printer) | {"base": base, "header": f"{name}.h"}
-    values["title"] = ", ".join(rule.id for rule in rules)
+    values["title"] = ", ".join(requirement.id for requirement in requirements)
     source = render("c/monitor.c.j2", **values)
     inputs = printer.names.items()
     header = render(
         "c/monitor.h.j2",
         **values,
         guard=signals.guard(name),
-        rules=[described(rule) for rule in rules],
-        tick=str(rules[0].clock) if rules[0].clock else "not declared",
+        formalized=[described(requirement) for requirement in requirements],
+        tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         version=__version__,
         inputs=[{"name": own, "text": meanings.get(each, each)} for each, own in inputs],
         bytes=2 * printer.bytes,
-        operations=_operations(source, len(rules)),
+        operations=_operations(source, len(requirements)),
     )
     monitor = tuple(
         Artifact(PurePosixPath(f"{name}.{ending}"), text)
         for ending, text in (("c", source), ("h", header))
     )
-    return (*monitor, *signals.files(name, base, rules, printer.names, C))
+    return (*monitor, *signals.files(name, base, requirements, printer.names, C))
 
 
 @dataclass(frozen=True, slots=True)
 class Joined:
-    """What a caller of one monitor for all rules names; all names begin with `monitors`."""
+    """What a caller of one monitor for all requirements names; all names begin with `monitors`."""
 
     inputs: Mapping[str, str]
     """Proposition → the member of the inputs."""
     outcomes: tuple[str, ...]
-    """The member of each rule."""
+    """The member of each requirement."""
     signals: Functions
     """From samples to the inputs."""
 
 
 @with_recursion_limit
-def joined(rules: Sequence[FormalizedRequirement]) -> Joined:
-    """Of `emit` with `one_file`, for rules with bindings."""
-    printer = printed("monitors", rules)
-    found = functions(rules, printer.names, signals.LANGUAGE, C)
+def joined(requirements: Sequence[FormalizedRequirement]) -> Joined:
+    """Of `emit` with `one_file`, for requirements with bindings."""
+    printer = printed("monitors", requirements)
+    found = functions(requirements, printer.names, signals.LANGUAGE, C)
     assert found is not None, "there are bindings"
     return Joined(printer.names, tuple(each.prefix for each in printer.rail.readings), found)
 
 
-def printed(name: str, rules: Sequence[FormalizedRequirement]) -> Printer:
-    """The words of C for a monitor of all of the rules.
+def printed(name: str, requirements: Sequence[FormalizedRequirement]) -> Printer:
+    """The words of C for a monitor of all of the requirements.
 
     Args:
         name: of its header, without the ending.
-        rules: none of them refused.
+        requirements: none of them refused.
     """
-    prefixes = prefixes_of([rule.id for rule in rules])
+    prefixes = prefixes_of([requirement.id for requirement in requirements])
     members = legal_names(prefixes, C | {signals.guard(name)}, names=prefixes)
-    made = rail(program({rule.id: rule.watch for rule in rules}), members)
-    return Printer.of(made, _names(name, rules))
+    made = rail(
+        program({requirement.id: requirement.watch for requirement in requirements}), members
+    )
+    return Printer.of(made, _names(name, requirements))
 
 
-def _names(name: str, rules: Sequence[FormalizedRequirement]) -> Mapping[str, str]:
+def _names(name: str, requirements: Sequence[FormalizedRequirement]) -> Mapping[str, str]:
     """Proposition → the member of the inputs."""
-    propositions = (each for rule in rules for each in rule.watched)
-    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
+    propositions = (each for requirement in requirements for each in requirement.watched)
+    spoken = {
+        each: word
+        for requirement in requirements
+        for each, word in comparison_names(requirement).items()
+    }
     return legal_names(propositions, C | {signals.guard(name)}, names=spoken)
 
 
@@ -221,5 +238,5 @@ TARGET = Target(
     remark,
     joins=True,
     next_step="`cc -std=c99 -c {}` compiles it",
-    names=lambda rule: _names(f"{module(stem(rule))}_monitor", [rule]),
+    names=lambda requirement: _names(f"{module(stem(requirement))}_monitor", [requirement]),
 )

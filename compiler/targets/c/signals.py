@@ -22,7 +22,7 @@ _SIGNS = {"<": "LT", "<=": "LE", ">": "GT", ">=": "GE", "=": "EQ", "!=": "NE"}
 def files(
     name: str,
     base: str,
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     names: Mapping[str, str],
     reserved: Container[str],
 ) -> tuple[Artifact, ...]:
@@ -31,11 +31,11 @@ def files(
     Args:
         name: of the monitor's files, without their ending.
         base: what the monitor's functions begin with.
-        rules: those of the monitor.
+        requirements: those of the monitor.
         names: the monitor's input of each proposition.
         reserved: what no name may be.
     """
-    found = functions(rules, names, LANGUAGE, reserved)
+    found = functions(requirements, names, LANGUAGE, reserved)
     if found is None:
         return ()
     file = file_name(name)

@@ -29,38 +29,42 @@ _NAMES = ("REQUIREMENTS", "PROPOSITIONS", "VARIABLES", "init", "step", "truths",
 """What a module exports."""
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F312 and F601, as the monitor in Python."""
-    return refusal(rule, "JavaScript")
+    return refusal(requirement, "JavaScript")
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>_monitor.mjs` for each rule, or one file; and what makes truths of samples beside it."""
+    """`<id>_monitor.mjs` for each requirement, or one file; and the truths of samples beside it."""
     if options.one_file:
-        return _files("monitors", rules)
-    return tuple(file for rule in rules for file in _files(f"{module(stem(rule))}_monitor", [rule]))
+        return _files("monitors", requirements)
+    return tuple(
+        file
+        for requirement in requirements
+        for file in _files(f"{module(stem(requirement))}_monitor", [requirement])
+    )
 
 
-def _files(name: str, rules: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
-    monitor = Artifact(PurePosixPath(f"{name}.mjs"), text(*rules))
-    return (monitor, *signals.files(name, rules))
+def _files(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
+    monitor = Artifact(PurePosixPath(f"{name}.mjs"), text(*requirements))
+    return (monitor, *signals.files(name, requirements))
 
 
-def text(*rules: FormalizedRequirement) -> str:
-    """The module of one monitor for all of the rules.
+def text(*requirements: FormalizedRequirement) -> str:
+    """The module of one monitor for all of the requirements.
 
     Args:
-        rules: at least one, each with an id of its own, and all on one clock.
+        requirements: at least one, each with an id of its own, and all on one clock.
     """
-    found = body(*rules)
+    found = body(*requirements)
     return render(
         "js/monitor.mjs.j2",
-        title=", ".join(rule.id for rule in rules),
+        title=", ".join(requirement.id for requirement in requirements),
         version=__version__,
-        rules=[described(rule) for rule in rules],
-        tick=str(rules[0].clock) if rules[0].clock else "not declared",
+        formalized=[described(requirement) for requirement in requirements],
+        tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         body=found.text,
         exports=found.exports,
     )
@@ -78,18 +82,20 @@ class Body:
 
 
 @with_recursion_limit
-def body(*rules: FormalizedRequirement) -> Body:
-    """The code of one monitor for all of the rules; they are as those of `text`."""
-    propositions = tuple(dict.fromkeys(name for rule in rules for name in rule.watched))
-    compared = front(rules, propositions)
+def body(*requirements: FormalizedRequirement) -> Body:
+    """The code of one monitor for all of the requirements; they are as those of `text`."""
+    propositions = tuple(
+        dict.fromkeys(name for requirement in requirements for name in requirement.watched)
+    )
+    compared = front(requirements, propositions)
     inputs = compared.inputs if compared else {}
     names = legal_names((*propositions, *inputs), ())
-    made = program({rule.id: rule.watch for rule in rules})
+    made = program({requirement.id: requirement.watch for requirement in requirements})
     printer = Printer.of(made, names)
     lines = _Front.of(compared, propositions, names) if compared else None
     written = render(
         "js/body.js.j2",
-        rules=[described(rule) for rule in rules],
+        formalized=[described(requirement) for requirement in requirements],
         propositions=propositions,
         variables=[
             {"name": name, "variable": f"v_{names[name]}", "kind": each.kind, "words": each.words}

@@ -15,11 +15,11 @@ from compiler.targets.javascript.constants import Constants, scale, truth
 from fretish.expressions import COMPARE
 
 
-def files(monitor: str, rules: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
+def files(monitor: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
     """The module beside the module `monitor`; none where no bindings are at hand."""
     constants = Constants()
-    names = legal_names((name for rule in rules for name in rule.watched), ())
-    found = functions(rules, names, _language(constants))
+    names = legal_names((name for requirement in requirements for name in requirement.watched), ())
+    found = functions(requirements, names, _language(constants))
     if found is None:
         return ()
     text = render(

@@ -71,24 +71,24 @@ class InputAdapter:
 
 @with_recursion_limit
 def front(
-    rules: Sequence[FormalizedRequirement], propositions: Sequence[str]
+    requirements: Sequence[FormalizedRequirement], propositions: Sequence[str]
 ) -> InputAdapter | None:
     """The variables of monitors, and their comparisons; None where nothing is compared.
 
     What is a number in one place and a truth value in another stays a proposition in both, and so
-    does a comparison that two rules read in different units.
+    does a comparison that two requirements read in different units.
 
     Args:
-        rules: those of one monitor.
+        requirements: those of one monitor.
         propositions: what the monitor watches.
     """
     found: dict[str, Compared] = {}
     opaque: set[str] = set()
-    for rule in rules:
-        for name, compared in _comparisons(rule).items():
+    for requirement in requirements:
+        for name, compared in _comparisons(requirement).items():
             if found.setdefault(name, compared) != compared:
                 opaque.add(name)
-    clashing = set(_clashing(rules, found.values()))
+    clashing = set(_clashing(requirements, found.values()))
     known = {
         name: compared
         for name, compared in found.items()
@@ -102,22 +102,27 @@ def front(
     return InputAdapter(inputs, known) if inputs else None
 
 
-def _comparisons(rule: FormalizedRequirement) -> dict[str, Compared]:
+def _comparisons(requirement: FormalizedRequirement) -> dict[str, Compared]:
     """The comparisons of a sentence that can be compiled, by the names of their propositions."""
     found: dict[str, Compared] = {}
-    for tree in conditions(rule.sentence):
+    for tree in conditions(requirement.sentence):
         for part in e.parts(tree):
             if isinstance(part, e.Comparison):
-                compared = _compared(part, rule)
+                compared = _compared(part, requirement)
                 if compared is not None:
                     found[atom(part)] = compared
     return found
 
 
-def _clashing(rules: Sequence[FormalizedRequirement], found: Iterable[Compared]) -> Iterator[str]:
+def _clashing(
+    requirements: Sequence[FormalizedRequirement], found: Iterable[Compared]
+) -> Iterator[str]:
     """The variables that are of two kinds, or of two units."""
     kinds: dict[str, Input] = {
-        name: Input(TRUTH) for rule in rules for name in rule.propositions if not is_compound(name)
+        name: Input(TRUTH)
+        for requirement in requirements
+        for name in requirement.propositions
+        if not is_compound(name)
     }
     units: dict[str, object] = {}
     for compared in found:
@@ -127,14 +132,14 @@ def _clashing(rules: Sequence[FormalizedRequirement], found: Iterable[Compared])
                 yield name
 
 
-def _compared(tree: e.Comparison, rule: FormalizedRequirement) -> Compared | None:
+def _compared(tree: e.Comparison, requirement: FormalizedRequirement) -> Compared | None:
     """The comparison with its variables; None where it cannot be compiled.
 
     One that is bound by its text to other names is what these say: what they are is not its
     variables.
     """
-    signals = rule.declarations.signals if rule.declarations else {}
-    is_bound = rule.declarations and atom(tree) in rule.declarations.propositions
+    signals = requirement.declarations.signals if requirement.declarations else {}
+    is_bound = requirement.declarations and atom(tree) in requirement.declarations.propositions
     if is_bound and not is_measured(tree, signals):
         return None
     names = tuple(dict.fromkeys(name.id for name in e.names(tree)))

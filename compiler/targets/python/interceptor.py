@@ -1,7 +1,7 @@
 """`--emit interceptor`: the node between the planner and the wheels, as one Python file.
 
 The core is the text of `monitors/interceptor.py`; the options are those of the bindings; below a
-marked line is a thin ROS node around them. All rules share it.
+marked line is a thin ROS node around them. All requirements share it.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ def _short_hold(declared: Declarations, node: Interception) -> Iterator[Diagnost
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
     """`interceptor.py`.
 

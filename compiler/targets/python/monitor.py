@@ -1,8 +1,8 @@
-"""`--emit monitor`: a standalone Python file, straight-line code over the watches of rules.
+"""`--emit monitor`: a standalone Python file, straight-line code over the watches of requirements.
 
 Every temporal sub-formula has one variable, stepped at every tick, and one column over whole
-traces; rules in one file share what they have in common. The text of `monitors/kernel/` is copied
-in, so the file needs the standard library and nothing else.
+traces; requirements in one file share what they have in common. The text of `monitors/kernel/` is
+copied in, so the file needs the standard library and nothing else.
 """
 
 from __future__ import annotations
@@ -39,57 +39,62 @@ from fretish.reading.recursion import with_recursion_limit
 from monitors.source_text import kernel, kernel_of_variables
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F312 and F601: what a monitor in Python cannot be made of."""
-    return refusal(rule, "Python")
+    return refusal(requirement, "Python")
 
 
-def refusal(rule: FormalizedRequirement, language: str) -> Diagnostic | None:
+def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | None:
     """F312: a monitor steps by ticks, so it must be known how long a tick is.
 
     F601: Python reads no more than 200 parentheses within each other, and what it refuses is in no
     other language either; and one run cannot show a probability.
     """
-    if not is_readable(rule):
+    if not is_readable(requirement):
         return not_expressible(
             language,
-            rule,
+            requirement,
             f"more than {_MOST_LEVELS} operators within each other",
             "give parts of the expression names of their own",
         )
-    ahead = next((n for e in conditions(rule.sentence) for n in calls(e) if n in LOOK_AHEAD), None)
+    ahead = next(
+        (n for e in conditions(requirement.sentence) for n in calls(e) if n in LOOK_AHEAD), None
+    )
     if ahead is not None:
         return not_expressible(
-            "a monitor", rule, f"`{ahead}`", "it looks ahead: state it by a timing, or look back"
+            "a monitor",
+            requirement,
+            f"`{ahead}`",
+            "it looks ahead: state it by a timing, or look back",
         )
-    first = next((name for name in rule.watched if _ASKS_FOR_FIRST.search(name)), None)
+    first = next((name for name in requirement.watched if _ASKS_FOR_FIRST.search(name)), None)
     if first is not None:
         return not_expressible(
             "a monitor",
-            rule,
+            requirement,
             f"`FTP` within `{first}`",
             "nothing is known of what is made of it there: state it outside",
         )
-    if rule.pctl is not None:
+    if requirement.pctl is not None:
         return not_expressible(
             "a monitor",
-            rule,
+            requirement,
             "the probability",
             "one run does not tell a probability: `fretc audit` estimates it over many",
         )
-    if assumed_ticks(rule.sentence, rule.clock) is None:
+    if assumed_ticks(requirement.sentence, requirement.clock) is None:
         return None
     return Diagnostic(
         Code.NO_CLOCK,
-        f"no clock says how many ticks the duration of {rule.id} is",
-        rule.sentence.timing_span,
+        f"no clock says how many ticks the duration of {requirement.id} is",
+        requirement.sentence.timing_span,
         help='declare `[clock]` with `tick = "100 ms"` in bindings.toml, or write ticks',
     )
 
 
-def is_readable(rule: FormalizedRequirement) -> bool:
+def is_readable(requirement: FormalizedRequirement) -> bool:
     """Whether Python reads the monitor: it takes no more than 200 parentheses within each other."""
-    return max(map(depth, conditions(rule.sentence))) <= _MOST_LEVELS
+    return max(map(depth, conditions(requirement.sentence))) <= _MOST_LEVELS
 
 
 _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
@@ -97,78 +102,85 @@ _ASKS_FOR_FIRST = re.compile(r'^[^"].*\bFTP\b')
 
 
 @with_recursion_limit
-def remark(rule: FormalizedRequirement) -> Diagnostic | None:
+def remark(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F203: after any prefix of a run, both verdicts are still possible.
 
     This holds for 12 of FRET's 288 templates: each trigger demands a response at some later time,
     on a stretch that ends with the run. Source: Pnueli, Zaks, PSL model checking and run-time
     verification via testers, FM 2006 (monitorability).
     """
-    sentence = rule.sentence
+    sentence = requirement.sentence
     scope = sentence.scope.kind if sentence.scope else None
-    owed = TRAITS[obligation(sentence, rule.ticks or 0).demand.kind]
+    owed = TRAITS[obligation(sentence, requirement.ticks or 0).demand.kind]
     later = Trait.UNMET in owed and Trait.LAST not in owed
     if sentence.condition is None or not later or not s.ends_with_run(scope):
         return None
     return Diagnostic(
         Code.NEVER_DECIDED,
-        f"no run, however long, can violate {rule.id} or confirm it: it sets no bound",
-        sentence.timing_span or rule.requirement.wording,
+        f"no run, however long, can violate {requirement.id} or confirm it: it sets no bound",
+        sentence.timing_span or requirement.entry.wording,
         help="state a bound: `within ...` in place of `eventually`",
         severity=Severity.WARNING,
     )
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """`<id>_monitor.py` for each rule, or one file; they need Python 3.11 and nothing else."""
+    """`<id>_monitor.py` for each requirement, or one file; they need Python 3.11 alone."""
     if options.one_file:
-        return (Artifact(PurePosixPath("monitors.py"), text(*rules)),)
+        return (Artifact(PurePosixPath("monitors.py"), text(*requirements)),)
     return tuple(
-        Artifact(PurePosixPath(f"{module(stem(rule))}_monitor.py"), text(rule)) for rule in rules
+        Artifact(PurePosixPath(f"{module(stem(requirement))}_monitor.py"), text(requirement))
+        for requirement in requirements
     )
 
 
-def text(*rules: FormalizedRequirement) -> str:
-    """The Python source of one monitor for all of the rules.
+def text(*requirements: FormalizedRequirement) -> str:
+    """The Python source of one monitor for all of the requirements.
 
     Of a sentence with a probability it is the monitor of the same sentence without it, and says so.
 
     Args:
-        rules: at least one, each with an id of its own, and all on one clock.
+        requirements: at least one, each with an id of its own, and all on one clock.
     """
-    probabilistic = [rule for rule in rules if rule.sentence.probability]
-    rules = tuple(map(plain, rules))
-    names = tuple(dict.fromkeys(name for rule in rules for name in rule.watched))
-    prefixes = prefixes_of([rule.id for rule in rules])
-    compared = front(rules, names)
+    probabilistic = [
+        requirement for requirement in requirements if requirement.sentence.probability
+    ]
+    requirements = tuple(map(plain, requirements))
+    names = tuple(
+        dict.fromkeys(name for requirement in requirements for name in requirement.watched)
+    )
+    prefixes = prefixes_of([requirement.id for requirement in requirements])
+    compared = front(requirements, names)
     variables = compared.inputs if compared else {}
     parameters = parameters_of(names, prefixes.values(), variables)
-    code = program({rule.id: rule.watch for rule in rules}, parameters, prefixes)
+    code = program(
+        {requirement.id: requirement.watch for requirement in requirements}, parameters, prefixes
+    )
     runtime = kernel_of_variables() if compared else kernel()
     lines = _Lines.of(compared, parameters) if compared else None
     inputs = [_Input(name, parameters[name], _is_negated(name, code)) for name in names]
     return render(
         "monitor/monitor.py.j2",
-        title=", ".join(rule.id for rule in rules),
-        class_name=_class_name(rules[0].id) if len(rules) == 1 else "All",
+        title=", ".join(requirement.id for requirement in requirements),
+        class_name=_class_name(requirements[0].id) if len(requirements) == 1 else "All",
         version=__version__,
-        rules=[described(rule) for rule in rules],
-        probabilistic=[_probability_note(rule) for rule in probabilistic],
-        tick=str(rules[0].clock) if rules[0].clock else "not declared",
+        formalized=[described(requirement) for requirement in requirements],
+        probabilistic=[_probability_note(requirement) for requirement in probabilistic],
+        tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         inputs=inputs,
         row=_tuple([p.name for p in inputs]),
         by_mapping=len(inputs) > MOST_PARAMETERS,
-        inlined=is_inlined(len(rules), len(inputs)),
+        inlined=is_inlined(len(requirements), len(inputs)),
         settled=SIGNALS.index("settled"),
         program=code,
         front=lines,
-        digest=_digest(code, rules, lines),
+        digest=_digest(code, requirements, lines),
         slots=_slots(code),
         requirements=code.requirements,
         marks=MARKS,
-        verdicts="Verdict" if len(rules) == 1 else "tuple[Verdict, ...]",
+        verdicts="Verdict" if len(requirements) == 1 else "tuple[Verdict, ...]",
         imports=runtime.imports,
         kernel=runtime.text,
     )
@@ -179,9 +191,13 @@ def is_inlined(requirements: int, inputs: int) -> bool:
     return requirements == 1 and inputs <= MOST_PARAMETERS
 
 
-def _digest(code: Program, rules: Sequence[FormalizedRequirement], front: _Lines | None) -> str:
+def _digest(
+    code: Program, requirements: Sequence[FormalizedRequirement], front: _Lines | None
+) -> str:
     """SHA-256 of everything that the meaning of what is kept depends on."""
-    identities = [(rule.id, rule.fingerprint, rule.ticks) for rule in rules]
+    identities = [
+        (requirement.id, requirement.fingerprint, requirement.ticks) for requirement in requirements
+    ]
     meaning = (__version__, identities, code, *([front] if front else []))
     return hashlib.sha256(repr(meaning).encode()).hexdigest()
 
@@ -273,22 +289,26 @@ def _is_negated(proposition: str, code: Program) -> bool:
     )
 
 
-def _probability_note(rule: FormalizedRequirement) -> dict[str, str]:
-    odds = rule.sentence.probability
+def _probability_note(requirement: FormalizedRequirement) -> dict[str, str]:
+    odds = requirement.sentence.probability
     assert odds is not None
-    return {"id": rule.id, "odds": f"{odds.op} {odds.digits}", "fingerprint": rule.fingerprint}
-
-
-def described(rule: FormalizedRequirement) -> dict[str, object]:
-    """What the head of a monitor says of a rule."""
     return {
-        "id": rule.id,
-        "sentence": " ".join(rule.requirement.wording.text.split()),
-        "fingerprint": rule.fingerprint,
-        "horizon": rule.watch.horizon,
-        "ft": printing.readable(rule.ft_infinite),
-        "finite": printing.readable(rule.ft_finite),
-        "pt": printing.readable(rule.pt),
+        "id": requirement.id,
+        "odds": f"{odds.op} {odds.digits}",
+        "fingerprint": requirement.fingerprint,
+    }
+
+
+def described(requirement: FormalizedRequirement) -> dict[str, object]:
+    """What the head of a monitor says of a requirement."""
+    return {
+        "id": requirement.id,
+        "sentence": " ".join(requirement.entry.wording.text.split()),
+        "fingerprint": requirement.fingerprint,
+        "horizon": requirement.watch.horizon,
+        "ft": printing.readable(requirement.ft_infinite),
+        "finite": printing.readable(requirement.ft_finite),
+        "pt": printing.readable(requirement.pt),
     }
 
 
@@ -352,12 +372,12 @@ def parameters_of(
     )
 
 
-def _names(rule: FormalizedRequirement) -> Mapping[str, str]:
+def _names(requirement: FormalizedRequirement) -> Mapping[str, str]:
     """Variable or proposition → the parameter of a step."""
-    names = rule.watched
-    compared = front([plain(rule)], names)
+    names = requirement.watched
+    compared = front([plain(requirement)], names)
     variables = compared.inputs if compared else ()
-    return parameters_of(names, prefixes_of([rule.id]).values(), variables)
+    return parameters_of(names, prefixes_of([requirement.id]).values(), variables)
 
 
 def _parameter(name: str) -> str:

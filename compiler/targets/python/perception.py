@@ -23,33 +23,33 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from monitors.source_text import perception as runtime
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F601: what a live node cannot compute, or not as an audit does."""
-    reason = next(_reasons(rule), None)
+    reason = next(_reasons(requirement), None)
     if reason is None:
         return None
     what, fix = reason
     return Diagnostic(
         Code.NOT_EXPRESSIBLE,
-        f"a live node cannot judge {rule.id}: {what}",
-        rule.requirement.wording,
+        f"a live node cannot judge {requirement.id}: {what}",
+        requirement.entry.wording,
         help=fix,
     )
 
 
-def _reasons(rule: FormalizedRequirement) -> Iterator[tuple[str, str]]:
-    declared = rule.declarations
+def _reasons(requirement: FormalizedRequirement) -> Iterator[tuple[str, str]]:
+    declared = requirement.declarations
     if declared is None:
         yield "there are no bindings", "say in bindings.toml what its propositions are"
         return
-    unbound = [name for name in rule.watched if name not in declared.propositions]
+    unbound = [name for name in requirement.watched if name not in declared.propositions]
     if unbound:
         name = unbound[0]
-        yield f"the bindings do not say what `{name}` is", way_out(rule, name, declared)
+        yield f"the bindings do not say what `{name}` is", way_out(requirement, name, declared)
     yield from _of_clock(declared)
     if unbound:
         return
-    found = instant([rule])
+    found = instant([requirement])
     if found is None or found.left_out:
         yield (
             "it looks back by ticks within a proposition",
@@ -84,11 +84,11 @@ def _of_clock(declared: Declarations) -> Iterator[tuple[str, str]]:
         )
 
 
-def text(rules: Sequence[FormalizedRequirement]) -> str:
+def text(requirements: Sequence[FormalizedRequirement]) -> str:
     """The file: `SETTING`, and above it all that it needs of the standard library.
 
     Args:
-        rules: none of which was refused, of one project.
+        requirements: none of which was refused, of one project.
     """
     joined = runtime()
     return render(
@@ -96,14 +96,14 @@ def text(rules: Sequence[FormalizedRequirement]) -> str:
         version=__version__,
         imports=joined.imports,
         core=joined.text,
-        setting=setting(rules),
+        setting=setting(requirements),
     )
 
 
-def setting(rules: Sequence[FormalizedRequirement]) -> Setting:
-    """The table of some rules that were not refused."""
-    found = instant(rules)
-    declared = rules[0].declarations
+def setting(requirements: Sequence[FormalizedRequirement]) -> Setting:
+    """The table of some requirements that were not refused."""
+    found = instant(requirements)
+    declared = requirements[0].declarations
     assert found is not None, "it is refused"
     assert declared is not None, "it is refused"
     assert declared.clock.period is not None, "it is refused"
@@ -114,7 +114,7 @@ def setting(rules: Sequence[FormalizedRequirement]) -> Setting:
         declared.clock.phase,
         declared.clock.patience or 0,
         declared.clock.time is TimeSource.HEADER_STAMP,
-        tuple(f"({rule.id!r}, {topics_of(rule)!r})" for rule in rules),
+        tuple(f"({requirement.id!r}, {topics_of(requirement)!r})" for requirement in requirements),
     )
 
 
@@ -131,9 +131,9 @@ class Setting:
     reads: tuple[str, ...]
 
 
-def topics_of(rule: FormalizedRequirement) -> tuple[str, ...]:
+def topics_of(requirement: FormalizedRequirement) -> tuple[str, ...]:
     """The topics that its propositions read."""
-    found = instant([rule])
+    found = instant([requirement])
     assert found is not None, "it is refused"
     return tuple(dict.fromkeys(policy.signal.path.topic for policy in found.policies))
 

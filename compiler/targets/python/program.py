@@ -49,9 +49,19 @@ class RequirementSignals:
     renewed: bool
 
     @property
+    def possible(self) -> Mapping[str, bool]:
+        """Of each signal, whether it can be true at some tick."""
+        return {name: text != "False" for name, text in self.step.items()}
+
+    @property
+    def is_always_triggered(self) -> bool:
+        """Whether every tick is a trigger."""
+        return self.step["trigger"] == "True"
+
+    @property
     def marks(self) -> tuple[str, ...]:
         """The marks that can change: those whose signal can ever be true."""
-        return tuple(mark for mark in p.MARKS if self.step[p.SOURCES[mark]] != "False")
+        return tuple(mark for mark in p.MARKS if self.possible[p.SOURCES[mark]])
 
 
 @dataclass(frozen=True, slots=True)

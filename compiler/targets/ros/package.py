@@ -59,7 +59,7 @@ class Package:
     """A package with one node, one file of monitors, and perhaps an interceptor."""
 
     name: str
-    rules: tuple[FormalizedRequirement, ...]
+    requirements: tuple[FormalizedRequirement, ...]
     topics: tuple[Topic, ...]
     period: int
     """Nanoseconds of a tick."""
@@ -77,7 +77,7 @@ class Package:
     @property
     def ids(self) -> tuple[str, ...]:
         """Of the requirements."""
-        return tuple(rule.id for rule in self.rules)
+        return tuple(requirement.id for requirement in self.requirements)
 
     @property
     def summary(self) -> str:
@@ -109,35 +109,41 @@ _TYPE = re.compile(r"(?P<package>[a-z]\w*)/(?P<message>[A-Z]\w*)", re.ASCII)
 _TOPIC = re.compile(r"/?[A-Za-z]\w*(?:/[A-Za-z]\w*)*", re.ASCII)
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F312 and F601: what no monitor, no live node, or no subscription can be made of."""
-    return monitor.refuse(rule) or perception.refuse(rule) or next(_unsubscribable(rule), None)
+    return (
+        monitor.refuse(requirement)
+        or perception.refuse(requirement)
+        or next(_unsubscribable(requirement), None)
+    )
 
 
-def _unsubscribable(rule: FormalizedRequirement) -> Iterator[Diagnostic]:
-    declared = rule.declarations.signals.values() if rule.declarations else ()
-    for signal in _signals([rule]):
+def _unsubscribable(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
+    declared = requirement.declarations.signals.values() if requirement.declarations else ()
+    for signal in _signals([requirement]):
         topic, kind = signal.path.topic, _kind(signal)
-        place = signal.span or rule.requirement.wording
+        place = signal.span or requirement.entry.wording
         others = [_kind(each) for each in declared if each.path.topic == topic]
         if _TYPE.fullmatch(kind) is None:
             what = f"is of `{kind}`, which is no type of ROS" if kind else "has no type"
             fix = f'add `type = "sensor_msgs/LaserScan"`, say, to `[signal.{signal.name}]`'
-            yield _refusal(rule, f"`{signal.name}` {what}", place, fix)
+            yield _refusal(requirement, f"`{signal.name}` {what}", place, fix)
         elif any(other not in ("", kind) for other in others):
             what = f"{topic} is of `{kind}`, and of another type for another signal"
-            yield _refusal(rule, what, place, "give all signals the type of their topic")
+            yield _refusal(requirement, what, place, "give all signals the type of their topic")
         elif _TOPIC.fullmatch(topic) is None:
             what = f"`{topic}` is no name of a topic in ROS"
-            yield _refusal(rule, what, place, "letters, digits, `_` and `/` make one: remap it")
+            yield _refusal(
+                requirement, what, place, "letters, digits, `_` and `/` make one: remap it"
+            )
 
 
 def _kind(signal: Signal) -> str:
     return short_type(signal.type or "")
 
 
-def _refusal(rule: FormalizedRequirement, what: str, place: Span, fix: str) -> Diagnostic:
-    message = f"no node of ROS can judge {rule.id}: {what}"
+def _refusal(requirement: FormalizedRequirement, what: str, place: Span, fix: str) -> Diagnostic:
+    message = f"no node of ROS can judge {requirement.id}: {what}"
     return Diagnostic(Code.NOT_EXPRESSIBLE, message, place, help=fix)
 
 
@@ -176,36 +182,36 @@ def remarks(options: Options) -> tuple[Diagnostic, ...]:
 # The description --------------------------------------------------------------------------------
 
 
-def package(rules: Sequence[FormalizedRequirement], options: Options) -> Package:
-    """Of rules that were not refused.
+def package(requirements: Sequence[FormalizedRequirement], options: Options) -> Package:
+    """Of requirements that were not refused.
 
     Raises:
         AssertionError: some were to be refused.
     """
-    declared = options.declarations or rules[0].declarations
+    declared = options.declarations or requirements[0].declarations
     assert declared is not None
     clock = declared.clock
     assert clock.period is not None
-    signals = _signals(rules)
+    signals = _signals(requirements)
     return Package(
-        name(rules, declared.source),
-        tuple(rules),
+        name(requirements, declared.source),
+        tuple(requirements),
         tuple(_topics(signals)),
         clock.period,
         clock.phase,
         clock.patience or 0,
         clock.time,
-        tuple(_parameters(rules, signals, options, clock.period)),
+        tuple(_parameters(requirements, signals, options, clock.period)),
         PurePosixPath(declared.source.name).name,
         options.attribution,
         declared.interceptor,
     )
 
 
-def name(rules: Sequence[FormalizedRequirement], bindings: Source) -> str:
+def name(requirements: Sequence[FormalizedRequirement], bindings: Source) -> str:
     """Legal in ROS 1 and 2, and no word of Python: `r1_monitor`, or by the project's folder."""
-    if len(rules) == 1:
-        own = stem(rules[0])
+    if len(requirements) == 1:
+        own = stem(requirements[0])
     else:
         parts = [part for part in PurePosixPath(bindings.name).parent.parts if part not in _PLAIN]
         own = parts[-1].lower() if parts else "robot"
@@ -217,8 +223,8 @@ _PLAIN = {"requirements", "..", ".", "/"}
 """Folders whose names say nothing of a project."""
 
 
-def _signals(rules: Sequence[FormalizedRequirement]) -> list[Signal]:
-    found = instant(rules)
+def _signals(requirements: Sequence[FormalizedRequirement]) -> list[Signal]:
+    found = instant(requirements)
     return [policy.signal for policy in found.policies] if found else []
 
 
@@ -232,7 +238,10 @@ def _topics(signals: Sequence[Signal]) -> Iterator[Topic]:
 
 
 def _parameters(
-    rules: Sequence[FormalizedRequirement], signals: Sequence[Signal], options: Options, period: int
+    requirements: Sequence[FormalizedRequirement],
+    signals: Sequence[Signal],
+    options: Options,
+    period: int,
 ) -> Iterator[Parameter]:
     ages = [signal.max_age for signal in signals if signal.max_age is not None]
     declared = options.declarations
@@ -254,19 +263,21 @@ def _parameters(
         LONGEST_BEAT,
     )
     yield Parameter(
-        "stop_for", _deciding(rules, options), "the requirements that stop the robot while owed"
+        "stop_for",
+        _deciding(requirements, options),
+        "the requirements that stop the robot while owed",
     )
 
 
-def _deciding(rules: Sequence[FormalizedRequirement], options: Options) -> tuple[str, ...]:
+def _deciding(requirements: Sequence[FormalizedRequirement], options: Options) -> tuple[str, ...]:
     """Those that ask the robot to stand, by `[assume]`; all of them, where nothing says which."""
     assumed = options.declarations.assumed if options.declarations else None
     asking = [
-        rule.id
-        for rule in rules
-        if assumed and assumed.stands in {each.id for each in names(rule.sentence.response)}
+        requirement.id
+        for requirement in requirements
+        if assumed and assumed.stands in {each.id for each in names(requirement.sentence.response)}
     ]
-    return tuple(asking or [rule.id for rule in rules])
+    return tuple(asking or [requirement.id for requirement in requirements])
 
 
 # The texts --------------------------------------------------------------------------------------
@@ -275,21 +286,21 @@ def _deciding(rules: Sequence[FormalizedRequirement], options: Options) -> tuple
 def modules(package: Package) -> Mapping[str, str]:
     """Files that need the standard library only: `monitor.py` as audited, and `perception.py`."""
     return {
-        "monitor.py": monitor.text(*package.rules),
-        "perception.py": perception.text(package.rules),
+        "monitor.py": monitor.text(*package.requirements),
+        "perception.py": perception.text(package.requirements),
     }
 
 
 def tests(package: Package) -> str:
     """Unit tests of both: shortest runs to each verdict, and a node to which nothing has come."""
-    found = {rule.id: words(rule) for rule in package.rules}
+    found = {requirement.id: words(requirement) for requirement in package.requirements}
     return render("ros/test_monitor.py.j2", package=package, words=found, version=__version__)
 
 
 def documents(package: Package, ros: int) -> Mapping[str, str]:
     """LICENSE, README.md and CHANGELOG.rst."""
-    described = [monitor.described(rule) for rule in package.rules]
-    given = {"package": package, "ros": ros, "version": __version__, "rules": described}
+    described = [monitor.described(requirement) for requirement in package.requirements]
+    given = {"package": package, "ros": ros, "version": __version__, "formalized": described}
     return {
         "LICENSE": render("ros/LICENSE.j2", **given),
         "README.md": render("ros/README.md.j2", **given),

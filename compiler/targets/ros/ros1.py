@@ -17,10 +17,10 @@ from compiler.targets.target import DEFAULT, Options, Target
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
     """One folder, which belongs into the `src` of a workspace."""
-    package = shared.package(rules, options)
+    package = shared.package(requirements, options)
     return tuple(
         Artifact(PurePosixPath(package.name, path), text) for path, text in _files(package)
     )

@@ -48,14 +48,14 @@ _TEMPLATES = {
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
     """A folder with the name of the package.
 
     Raises:
-        AssertionError: some rules were to be refused.
+        AssertionError: some requirements were to be refused.
     """
-    package = shared.package(rules, options)
+    package = shared.package(requirements, options)
     folder = PurePosixPath(package.name)
     return tuple(Artifact(folder / path, text) for path, text in _files(package).items())
 

@@ -46,20 +46,20 @@ _TEMPLATES = {
 }
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """F312 and F601: what no monitor in C, and no node of ROS, can be made of."""
-    return shared.refuse(rule) or monitor.refuse(rule)
+    return shared.refuse(requirement) or monitor.refuse(requirement)
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
     """A folder with the name of the package.
 
     Raises:
-        AssertionError: some rules were to be refused.
+        AssertionError: some requirements were to be refused.
     """
-    whole = shared.package(rules, options)
+    whole = shared.package(requirements, options)
     package = replace(whole, name=f"{whole.name}_cpp", interception=None)
     values = _values(package) | {"whole": whole}
     files = {
@@ -70,16 +70,16 @@ def emit(
     files |= {name: documents[name] for name in ("LICENSE", "CHANGELOG.rst")}
     files[f"config/{package.name}.yaml"] = render("ros2/config.yaml.j2", **values)
     files[f"launch/{package.name}.launch.py"] = render("ros2/launch.py.j2", **values)
-    for artifact in monitor.emit(rules, Options(one_file=True)):
+    for artifact in monitor.emit(requirements, Options(one_file=True)):
         files[f"src/{artifact.path}"] = artifact.text
     folder = PurePosixPath(package.name)
     return tuple(Artifact(folder / path, text) for path, text in files.items())
 
 
 def _values(package: Package) -> dict[str, Any]:
-    found = instant(package.rules)
+    found = instant(package.requirements)
     assert found is not None, "it is refused"
-    names = joined(package.rules)
+    names = joined(package.requirements)
     places = {policy.signal.name: place for place, policy in enumerate(found.policies)}
     topics = [topic.name for topic in package.topics]
     signals = [
@@ -121,17 +121,17 @@ def _values(package: Package) -> dict[str, Any]:
         "inputs": [(member, order[name]) for name, member in names.inputs.items()],
         "requirements": [
             {
-                "id": rule.id,
+                "id": requirement.id,
                 "member": member,
-                "topics": [topics.index(name) for name in perception.topics_of(rule)],
-                "described": described(rule),
+                "topics": [topics.index(name) for name in perception.topics_of(requirement)],
+                "described": described(requirement),
             }
-            for rule, member in zip(package.rules, names.outcomes, strict=True)
+            for requirement, member in zip(package.requirements, names.outcomes, strict=True)
         ],
         "words": [
             (place, word.name, [_ticks(each, order) for each in word.ticks])
-            for place, rule in enumerate(package.rules)
-            for word in words(rule)
+            for place, requirement in enumerate(package.requirements)
+            for word in words(requirement)
         ],
         "parameters": [
             (each, _literal(each.value), wrap(each.text, 80, drop_whitespace=False))

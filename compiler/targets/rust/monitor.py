@@ -29,36 +29,46 @@ from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.reading.recursion import with_recursion_limit
 
 
-def refuse(rule: FormalizedRequirement) -> Diagnostic | None:
+def refuse(requirement: FormalizedRequirement) -> Diagnostic | None:
     """As a monitor in Python; and F601 for bounds beyond what a controller can keep."""
-    return refusal(rule, "Rust") or too_large(rule, "Rust")
+    return refusal(requirement, "Rust") or too_large(requirement, "Rust")
 
 
 def emit(
-    rules: Sequence[FormalizedRequirement], options: Options = DEFAULT
+    requirements: Sequence[FormalizedRequirement], options: Options = DEFAULT
 ) -> tuple[Artifact, ...]:
-    """A crate for each rule, or one for all, and a crate beside it that makes truths of samples."""
+    """A crate for each requirement, or one for all; and one that makes truths of samples."""
     if options.one_file:
-        return _crate("monitors", rules)
-    return tuple(file for rule in rules for file in _crate(f"{module(stem(rule))}_monitor", [rule]))
+        return _crate("monitors", requirements)
+    return tuple(
+        file
+        for requirement in requirements
+        for file in _crate(f"{module(stem(requirement))}_monitor", [requirement])
+    )
 
 
 @with_recursion_limit
-def _crate(name: str, rules: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
-    """The files of a crate with one monitor for all of the rules."""
+def _crate(name: str, requirements: Sequence[FormalizedRequirement]) -> tuple[Artifact, ...]:
+    """The files of a crate with one monitor for all of the requirements."""
     name = name if name[0].isalpha() else f"r{name}"
-    propositions = tuple(dict.fromkeys(each for rule in rules for each in rule.watched))
-    meanings = {each: text for rule in rules for each, text in in_words(rule).items()}
-    names = _names(rules)
-    prefixes = prefixes_of([rule.id for rule in rules])
+    propositions = tuple(
+        dict.fromkeys(each for requirement in requirements for each in requirement.watched)
+    )
+    meanings = {
+        each: text for requirement in requirements for each, text in in_words(requirement).items()
+    }
+    names = _names(requirements)
+    prefixes = prefixes_of([requirement.id for requirement in requirements])
     members = legal_names(prefixes, RUST, names=prefixes)
-    made = rail(program({rule.id: rule.watch for rule in rules}), members)
+    made = rail(
+        program({requirement.id: requirement.watch for requirement in requirements}), members
+    )
     printer = Printer.of(made, names)
     library = render(
         "rust/lib.rs.j2",
-        title=", ".join(rule.id for rule in rules),
-        rules=[described(rule) for rule in rules],
-        tick=str(rules[0].clock) if rules[0].clock else "not declared",
+        title=", ".join(requirement.id for requirement in requirements),
+        formalized=[described(requirement) for requirement in requirements],
+        tick=str(requirements[0].clock) if requirements[0].clock else "not declared",
         version=__version__,
         inputs=[{"name": names[each], "text": meanings.get(each, each)} for each in propositions],
         literals=[*printer.literals()],
@@ -66,19 +76,23 @@ def _crate(name: str, rules: Sequence[FormalizedRequirement]) -> tuple[Artifact,
         stages=[{"comment": each.comment, "lines": [*printer.lines(each)]} for each in made.stages],
         readings=[_reading(each, printer) for each in made.readings],
     )
-    found = {members[rule.id]: words(rule) for rule in rules}
+    found = {members[requirement.id]: words(requirement) for requirement in requirements}
     tests = render("rust/words.rs.j2", crate=name, names=names, words=found)
     manifest = render("rust/Cargo.toml.j2", crate=name, monitor=None)
     files = {f"{name}/Cargo.toml": manifest, f"{name}/src/lib.rs": library}
     files |= {f"{name}/tests/words.rs": tests} if any(found.values()) else {}
-    files |= signals.files(name, rules, names, RUST)
+    files |= signals.files(name, requirements, names, RUST)
     return tuple(Artifact(PurePosixPath(path), text) for path, text in files.items())
 
 
-def _names(rules: Sequence[FormalizedRequirement]) -> Mapping[str, str]:
+def _names(requirements: Sequence[FormalizedRequirement]) -> Mapping[str, str]:
     """Proposition → the field of the inputs."""
-    spoken = {each: word for rule in rules for each, word in comparison_names(rule).items()}
-    propositions = (each for rule in rules for each in rule.watched)
+    spoken = {
+        each: word
+        for requirement in requirements
+        for each, word in comparison_names(requirement).items()
+    }
+    propositions = (each for requirement in requirements for each in requirement.watched)
     return legal_names(propositions, RUST, names=spoken)
 
 
@@ -99,5 +113,5 @@ TARGET = Target(
     remark,
     joins=True,
     next_step="`cargo test --manifest-path {}` builds it and runs its tests",
-    names=lambda rule: _names([rule]),
+    names=lambda requirement: _names([requirement]),
 )

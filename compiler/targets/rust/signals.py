@@ -19,7 +19,7 @@ _SIGNS = {"<": "lt", "<=": "le", ">": "gt", ">=": "ge", "=": "eq", "!=": "ne"}
 
 def files(
     monitor: str,
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     names: Mapping[str, str],
     reserved: Container[str],
 ) -> dict[str, str]:
@@ -27,11 +27,11 @@ def files(
 
     Args:
         monitor: the name of the crate.
-        rules: those of the monitor.
+        requirements: those of the monitor.
         names: the monitor's input of each proposition.
         reserved: what no name may be.
     """
-    found = functions(rules, names, _LANGUAGE, reserved)
+    found = functions(requirements, names, _LANGUAGE, reserved)
     if found is None:
         return {}
     bound = {each.name for each in found.propositions}

@@ -8,8 +8,7 @@ of the input space, and `reachable` says which truth patterns the system can bri
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from itertools import count
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 from compiler.logic.decision_diagrams import Function
@@ -17,7 +16,7 @@ from fretish.bindings.declarations import Role
 
 if TYPE_CHECKING:
     from fretc.analysis.arena.budget import Budget
-    from fretc.analysis.arena.counters import Counter
+    from fretc.analysis.arena.memory import Counter
 
 Value = bool | int | float | str
 """Of a variable at one tick: a truth value, a number, a word of an enumerated signal."""
@@ -64,7 +63,7 @@ class Alphabet(Protocol):
 
     @property
     def possible(self) -> Function:
-        """Which letters there can be, whoever sets them. What follows from these is certain."""
+        """Which letters there can be, for any setter. What follows from these is certain."""
 
     @property
     def certain(self) -> Function:
@@ -113,16 +112,3 @@ class Alphabet(Protocol):
             letter: a value of each of inputs and outputs, legal and reachable, and of the bits of
                 `memory` before the tick.
         """
-
-
-class UnsupportedError(Exception):
-    """Something that the analysis has no model of; the message says what, in words."""
-
-
-Numbers = Iterator[int]
-"""Variables that nothing has yet, in their order: whoever needs one takes the next."""
-
-
-def numbers(start: int = 0) -> Numbers:
-    """All of them, from one on."""
-    return count(start)

@@ -14,10 +14,11 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.obligation import Kind, Obligation
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Alphabet, Numbers, UnsupportedError
+from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.memory import (
     LONGEST_DELAY,
     Bit,
+    Counter,
     Memory,
     Past,
     constant,
@@ -28,55 +29,25 @@ from fretc.analysis.arena.memory import (
     some,
     successor,
 )
+from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretish.reading.recursion import with_recursion_limit
 from fretish.syntax import ConditionKind, ScopeKind
 
 
-@dataclass(frozen=True, slots=True)
-class Counter:
-    """One requirement. Its state has all bits false before the first tick."""
-
-    id: str
-    bits: tuple[Bit, ...]
-    steps: tuple[Function, ...]
-    """Of each bit its value after a tick, over the bits before it and the letter of the tick."""
-    safe: Function
-    """Whether a tick breaks nothing; once it does, nothing repairs it, and steps mean nothing."""
-    fair: Function | None
-    """Over bits: an endless run keeps the requirement by such states again and again; None: it has
-    no other duty than to be safe."""
-    words: tuple[tuple[Bit, ...], ...]
-    """The bits of each of its counts, the least first."""
-    enforced: Function
-    """Whether a tick lies in an interval of the scope."""
-    triggered: Function
-    """Whether a demand begins at a tick."""
-
-    @property
-    def longest(self) -> int:
-        """Bits of its largest count."""
-        return max(map(len, self.words), default=0)
-
-    @property
-    def idle(self) -> Function:
-        """Over bits: nothing is counted, so that nothing is owed by a deadline."""
-        return bdd.point({bit.now: False for word in self.words for bit in word})
-
-
 @with_recursion_limit
 def counter(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     alphabet: Alphabet,
     fresh: Numbers,
     shared: dict[Function, Bit],
     *,
     as_fret: bool = False,
 ) -> Counter:
-    """The counter of a rule.
+    """The counter of a requirement.
 
     Args:
-        rule: what is formalized.
-        alphabet: of all rules.
+        requirement: what is formalized.
+        alphabet: of all requirements.
         fresh: variables for its bits.
         shared: bits that keep the value of the tick before, of all counters, by that value.
         as_fret: whether nothing may be owed at the end of any tick, as where FRET's past form
@@ -85,9 +56,9 @@ def counter(
     Raises:
         UnsupportedError: it says something that has no counter.
     """
-    if rule.sentence.probability is not None:
+    if requirement.sentence.probability is not None:
         raise UnsupportedError("it states a probability")
-    demanded = rule.demanded
+    demanded = requirement.demanded
     memory = Memory(fresh, shared)
     past = Past(alphabet.atom, memory)
     tick = _Tick(demanded, memory, past.value)
@@ -99,7 +70,7 @@ def counter(
     bits = memory.needed(roots)
     steps = tuple(memory.steps[bit] for bit in bits)
     return Counter(
-        rule.id, bits, steps, safe, fair, tuple(memory.words), tick.enforced, tick.triggered
+        requirement.id, bits, steps, safe, fair, tuple(memory.words), tick.enforced, tick.triggered
     )
 
 

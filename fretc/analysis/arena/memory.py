@@ -14,7 +14,7 @@ from typing import assert_never
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Numbers, UnsupportedError, numbers
+from fretc.analysis.arena.variables import Numbers, UnsupportedError, numbers
 
 Word = Sequence[Function]
 """The bits of a whole number from 0 on, the least first."""
@@ -250,3 +250,34 @@ def _folded(
     for function in functions:  # type: ignore[attr-defined]
         found = join(found, function)
     return found
+
+
+@dataclass(frozen=True, slots=True)
+class Counter:
+    """One requirement. Its state has all bits false before the first tick."""
+
+    id: str
+    bits: tuple[Bit, ...]
+    steps: tuple[Function, ...]
+    """Of each bit its value after a tick, over the bits before it and the letter of the tick."""
+    safe: Function
+    """Whether a tick breaks nothing; once it does, nothing repairs it, and steps mean nothing."""
+    fair: Function | None
+    """Over bits: an endless run keeps the requirement by such states again and again; None: it has
+    no other duty than to be safe."""
+    words: tuple[tuple[Bit, ...], ...]
+    """The bits of each of its counts, the least first."""
+    enforced: Function
+    """Whether a tick lies in an interval of the scope."""
+    triggered: Function
+    """Whether a demand begins at a tick."""
+
+    @property
+    def longest(self) -> int:
+        """Bits of its largest count."""
+        return max(map(len, self.words), default=0)
+
+    @property
+    def idle(self) -> Function:
+        """Over bits: nothing is counted, so that nothing is owed by a deadline."""
+        return bdd.point({bit.now: False for word in self.words for bit in word})

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Alphabet, Numbers, UnsupportedError
-from fretc.analysis.arena.counters import Counter, counter
-from fretc.analysis.arena.memory import Bit
+from fretc.analysis.arena.alphabet import Alphabet
+from fretc.analysis.arena.counters import counter
+from fretc.analysis.arena.memory import Bit, Counter
+from fretc.analysis.arena.variables import Numbers, UnsupportedError
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,14 +52,14 @@ class Fixed:
 
 
 def arena(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumptions: Sequence[FormalizedRequirement],
     alphabet: Alphabet,
     fresh: Numbers,
     *,
     as_fret: bool = False,
 ) -> Arena:
-    """The arena of some rules.
+    """The arena of some requirements.
 
     Raises:
         UnsupportedError: an assumption has no counter.
@@ -66,37 +67,45 @@ def arena(
     found: dict[str, Counter] = {}
     beyond: dict[str, str] = {}
     shared: dict[Function, Bit] = {}
-    known = {id(rule) for rule in assumptions}
-    for rule in near_each_other([*rules, *assumptions]):
+    known = {id(requirement) for requirement in assumptions}
+    for requirement in near_each_other([*requirements, *assumptions]):
         try:
-            made = counter(rule, alphabet, fresh, shared, as_fret=as_fret and id(rule) not in known)
+            made = counter(
+                requirement,
+                alphabet,
+                fresh,
+                shared,
+                as_fret=as_fret and id(requirement) not in known,
+            )
         except UnsupportedError as error:
-            if id(rule) in known:
-                raise UnsupportedError(f"of the assumption {rule.id}: {error}") from None
-            beyond[rule.id] = str(error)
+            if id(requirement) in known:
+                raise UnsupportedError(f"of the assumption {requirement.id}: {error}") from None
+            beyond[requirement.id] = str(error)
         else:
-            found[rule.id] = made
-    of_rules = tuple(found[rule.id] for rule in rules if rule.id in found)
+            found[requirement.id] = made
+    of_rules = tuple(
+        found[requirement.id] for requirement in requirements if requirement.id in found
+    )
     of_assumptions = tuple(found[each.id] for each in assumptions)
     return Arena(Fixed(alphabet), of_rules, of_assumptions, beyond)
 
 
-def near_each_other(rules: Sequence[FormalizedRequirement]) -> list[FormalizedRequirement]:
+def near_each_other(requirements: Sequence[FormalizedRequirement]) -> list[FormalizedRequirement]:
     """Those that count come first, each after those with which it shares the most variables.
 
     The others add few bits, or none, and would tear atoms away from the counters that read them.
     """
-    rest = list(rules)
+    rest = list(requirements)
     ordered: list[FormalizedRequirement] = []
     placed: set[str] = set()
     while rest:
         last = set(ordered[-1].variables) if ordered else set()
         best = max(
             rest,
-            key=lambda rule: (
-                bool(rule.ticks),
-                len(last.intersection(rule.variables)),
-                len(placed.intersection(rule.variables)),
+            key=lambda requirement: (
+                bool(requirement.ticks),
+                len(last.intersection(requirement.variables)),
+                len(placed.intersection(requirement.variables)),
             ),
         )
         rest.remove(best)

@@ -18,9 +18,10 @@ from compiler.formalization.resolution import candidates
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from compiler.logic.orders import Exclusion, exclusions
-from fretc.analysis.arena.alphabet import Numbers, Tick, UnsupportedError
+from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretish import expressions as e
 from fretish.bindings.declarations import Role
 from fretish.bindings.types import Kind
@@ -31,7 +32,7 @@ class Propositions:
     """An `Alphabet` in which each atom is a bit.
 
     Args:
-        rules: whose atoms it has.
+        requirements: whose atoms it has.
         roles: of their variables.
         fresh: variables for its bits.
         elsewhere: atoms that another alphabet has.
@@ -40,7 +41,7 @@ class Propositions:
 
     def __init__(
         self,
-        rules: Sequence[FormalizedRequirement],
+        requirements: Sequence[FormalizedRequirement],
         roles: Roles,
         fresh: Numbers,
         elsewhere: frozenset[str] = frozenset(),
@@ -49,14 +50,18 @@ class Propositions:
         self._fresh = fresh
         self._elsewhere, self._refused = elsewhere, refused or {}
         self._roles = roles
-        self._parts = dict(chain.from_iterable(candidates(rule.sentence) for rule in rules))
-        self._read = {name: _read(name, part, rules) for name, part in self._parts.items()}
+        self._parts = dict(
+            chain.from_iterable(candidates(requirement.sentence) for requirement in requirements)
+        )
+        self._read = {name: _read(name, part, requirements) for name, part in self._parts.items()}
         self._numbers: dict[str, int] = {}
         self.doubts: dict[Role, str] = {}
         self._doubted: dict[Role, set[str]] = {Role.INPUT: set(), Role.OUTPUT: set()}
-        self._compared = dict(chain.from_iterable(comparisons(rule).items() for rule in rules))
-        self._excluded = _exclusions(self._compared, rules)
-        for role, reason in self._doubtful(rules):
+        self._compared = dict(
+            chain.from_iterable(comparisons(requirement).items() for requirement in requirements)
+        )
+        self._excluded = _exclusions(self._compared, requirements)
+        for role, reason in self._doubtful(requirements):
             self.doubts.setdefault(role, reason)
 
     def doubtful(self, role: Role) -> frozenset[str]:
@@ -152,13 +157,19 @@ class Propositions:
         """Each atom by the name that formulas have for it."""
         return {name: letter[number] for name, number in self._numbers.items() if number in letter}
 
-    def _doubtful(self, rules: Sequence[FormalizedRequirement]) -> Iterator[tuple[Role, str]]:
+    def _doubtful(
+        self, requirements: Sequence[FormalizedRequirement]
+    ) -> Iterator[tuple[Role, str]]:
         """Variables that several atoms read in ways that order alone does not tell apart."""
         readers: defaultdict[str, list[str]] = defaultdict(list)
         for name, read in self._read.items():
             for each in read:
                 readers[each].append(name)
-        glossary = {name: each for rule in rules for name, each in rule.glossary.items()}
+        glossary = {
+            name: each
+            for requirement in requirements
+            for name, each in requirement.glossary.items()
+        }
         for name, atoms in readers.items():
             if self._elsewhere.issuperset(atoms):
                 continue
@@ -186,10 +197,12 @@ class Propositions:
 _ABSOLUTE = ("abs", "absreal", "absint")
 
 
-def _read(name: str, part: e.Expression, rules: Iterable[FormalizedRequirement]) -> frozenset[str]:
+def _read(
+    name: str, part: e.Expression, requirements: Iterable[FormalizedRequirement]
+) -> frozenset[str]:
     """The signals or variables that decide an atom."""
-    for rule in rules:
-        declared = rule.declarations
+    for requirement in requirements:
+        declared = requirement.declarations
         bound = declared.propositions.get(name) if declared else None
         if bound is not None:
             return frozenset(bound.signals)
@@ -206,13 +219,15 @@ def _is_plain(part: e.Comparison | None, *, whole: bool) -> bool:
 
 
 def _exclusions(
-    compared: Mapping[str, e.Comparison], rules: Sequence[FormalizedRequirement]
+    compared: Mapping[str, e.Comparison], requirements: Sequence[FormalizedRequirement]
 ) -> tuple[Exclusion, ...]:
     """Patterns of comparisons that no values have."""
     signals = {
         name: each
-        for rule in rules
-        for name, each in (rule.declarations.signals if rule.declarations else {}).items()
+        for requirement in requirements
+        for name, each in (
+            requirement.declarations.signals if requirement.declarations else {}
+        ).items()
     }
     scales = {name: signal.scale for name, signal in signals.items()}
     words = {name: signal.values for name, signal in signals.items() if signal.values}

@@ -19,7 +19,7 @@ Roles = Mapping[str, Role]
 CHOSEN = (Role.INPUT, Role.OUTPUT)
 
 
-def roles(rules: Sequence[FormalizedRequirement]) -> Roles | tuple[Diagnostic, ...]:
+def roles(requirements: Sequence[FormalizedRequirement]) -> Roles | tuple[Diagnostic, ...]:
     """The role of each variable; or what is wrong with each that has none, or has two.
 
     F354 stands where a variable without a role is read first. F907 is of one that is an input of
@@ -27,36 +27,38 @@ def roles(rules: Sequence[FormalizedRequirement]) -> Roles | tuple[Diagnostic, .
     """
     found: dict[str, tuple[Role, str]] = {}
     wrong: dict[str, Diagnostic] = {}
-    for rule in rules:
-        for name in rule.variables:
-            own, component = role(rule, name), rule.sentence.component
+    for requirement in requirements:
+        for name in requirement.variables:
+            own, component = role(requirement, name), requirement.sentence.component
             first, whose = found.get(name, (own, component))
             if own is None:
-                wrong.setdefault(name, _no_role(rule, name, rules))
+                wrong.setdefault(name, _no_role(requirement, name, requirements))
             elif own is not first:
-                wrong.setdefault(name, _two_roles(rule, name, f"{first} of `{whose}`", own))
+                wrong.setdefault(name, _two_roles(requirement, name, f"{first} of `{whose}`", own))
             else:
                 found[name] = own, whose
     return tuple(wrong.values()) or {name: own for name, (own, _) in found.items()}
 
 
-def _two_roles(rule: FormalizedRequirement, name: str, first: str, second: Role) -> Diagnostic:
+def _two_roles(
+    requirement: FormalizedRequirement, name: str, first: str, second: Role
+) -> Diagnostic:
     """F907."""
-    component = rule.sentence.component
+    component = requirement.sentence.component
     return Diagnostic(
         Code.BAD_USAGE,
         f"`{name}` is an {first}, and an {second} of `{component}`: these are two systems",
-        place(rule, name),
+        place(requirement, name),
         help=f"ask about one of them: `--component {component}`",
     )
 
 
-def role(rule: FormalizedRequirement, name: str) -> Role | None:
+def role(requirement: FormalizedRequirement, name: str) -> Role | None:
     """The role that is declared; that of its signals, where a proposition has none of its own."""
-    variable = rule.glossary.get(name)
+    variable = requirement.glossary.get(name)
     if variable is not None and variable.role in CHOSEN:
         return Role(variable.role)
-    return _common(rule.declarations, name) if rule.declarations else None
+    return _common(requirement.declarations, name) if requirement.declarations else None
 
 
 def _common(declarations: Declarations, name: str) -> Role | None:
@@ -70,17 +72,17 @@ def _common(declarations: Declarations, name: str) -> Role | None:
 
 
 def _no_role(
-    rule: FormalizedRequirement, name: str, rules: Iterable[FormalizedRequirement]
+    requirement: FormalizedRequirement, name: str, requirements: Iterable[FormalizedRequirement]
 ) -> Diagnostic:
     """F354."""
-    declared, table = rule.declarations, "variable"
+    declared, table = requirement.declarations, "variable"
     if declared is not None:
         table = "proposition" if name in declared.propositions else table
         table = "signal" if name in declared.signals else table
-    answered = any(name in _answers(each) for each in rules)
+    answered = any(name in _answers(each) for each in requirements)
     likely = Role.OUTPUT if answered else Role.INPUT
     why = "stands in a response" if answered else "stands in no response"
-    variable = rule.glossary.get(name)
+    variable = requirement.glossary.get(name)
     unread = str(variable.fret.get("assignment", "")) if variable is not None else ""
     if unread:
         shown = " ".join(unread.split())[:_SHOWN]
@@ -93,7 +95,7 @@ def _no_role(
     return Diagnostic(
         Code.NO_ROLE,
         message,
-        place(rule, name),
+        place(requirement, name),
         help=f'say `role = "input"` (the environment) or `role = "output"` (the system) in '
         f"`[{table}.{as_key(name)}]` of bindings.toml; `{name}` {why}",
         paste=f"[{table}.{as_key(name)}]\n{line}",
@@ -104,5 +106,5 @@ _SHOWN = 60
 """Characters of an assignment that a message shows."""
 
 
-def _answers(rule: FormalizedRequirement) -> frozenset[str]:
-    return frozenset(name.id for name in e.names(rule.sentence.response))
+def _answers(requirement: FormalizedRequirement) -> frozenset[str]:
+    return frozenset(name.id for name in e.names(requirement.sentence.response))

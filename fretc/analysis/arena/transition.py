@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.counters import Counter
-from fretc.analysis.arena.memory import Bit
+from fretc.analysis.arena.memory import Bit, Counter
 
 State = Mapping[int, bool]
 """A value of each bit."""

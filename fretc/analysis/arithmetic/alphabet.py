@@ -10,12 +10,12 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Term
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Numbers, Tick, UnsupportedError
+from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter
-from fretc.analysis.arena.memory import Memory
+from fretc.analysis.arena.memory import Counter, Memory
 from fretc.analysis.arena.propositions import Propositions
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.course import NumberCourse
 from fretc.analysis.arithmetic.durations import Duration, Held, held
@@ -29,7 +29,7 @@ class Cells:
     """An `Alphabet`: comparisons by groups, all other atoms as `Propositions` has them.
 
     Args:
-        rules: whose atoms it has.
+        requirements: whose atoms it has.
         roles: of their variables.
         fresh: variables for its bits.
         favoured: who chooses what is not known: numbers of the tick before, as far as nothing is
@@ -44,7 +44,7 @@ class Cells:
 
     def __init__(
         self,
-        rules: Sequence[FormalizedRequirement],
+        requirements: Sequence[FormalizedRequirement],
         roles: Roles,
         fresh: Numbers,
         favoured: Role,
@@ -54,7 +54,7 @@ class Cells:
         of_moments: bool = False,
     ) -> None:
         self._favoured = favoured
-        self._atoms = Atoms(rules, of_moments=of_moments)
+        self._atoms = Atoms(requirements, of_moments=of_moments)
         self._pairs = remembered(self._atoms, steps)
         self._fresh = fresh
         self._kept = Memory(fresh, {})
@@ -85,7 +85,7 @@ class Cells:
             parts = self._atoms.lasting[name].atoms
             refused[name] = next(refused[each] for each in parts if each in refused)
         elsewhere = frozenset([*self._of, *self._lasting])
-        self._plain = Propositions(rules, roles, fresh, elsewhere, refused)
+        self._plain = Propositions(requirements, roles, fresh, elsewhere, refused)
 
     def atom(self, name: str) -> Function:
         """When an atom is true; over what is remembered, too, where it depends on that."""
@@ -224,7 +224,7 @@ class Cells:
         return frozenset(found)
 
     def memory(self) -> Counter | None:
-        """What is remembered of earlier ticks: whoever chooses numbers of these keeps to it."""
+        """What is remembered of earlier ticks: the player who chooses their numbers keeps to it."""
         pairs = [each for each in self._pairs if each.now in self._of and each.then in self._of]
         agrees = self._agreement(pairs) if pairs else bdd.true()
         bits = self._kept.needed([agrees, *(each.is_so for each in self._lasted.values())])

@@ -10,7 +10,8 @@ import z3
 
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Before, NoTermError, Term, Terms, read_by
-from fretc.analysis.arena.alphabet import Tick, UnsupportedError
+from fretc.analysis.arena.alphabet import Tick
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.arithmetic.durations import Lasting, parted
 from fretc.analysis.arithmetic.readings import Reading, readings
 from fretc.analysis.arithmetic.steps import AtomOfTick, Moment, Steps, linked, tick, unknown
@@ -24,7 +25,7 @@ class Atom:
     reads: frozenset[str]
     """Variables: of signals at one step, or of whether they are known there."""
     names: tuple[str, ...] = ()
-    """Those of the sentence: whoever chooses them chooses the variables."""
+    """Those of the sentence: the player who chooses them chooses the variables."""
 
     @property
     def formula(self) -> Term:
@@ -33,16 +34,18 @@ class Atom:
 
 
 class Atoms:
-    """The atoms of some rules that are linear, by the names that formulas give them."""
+    """The atoms of some requirements that are linear, by the names that formulas give them."""
 
-    def __init__(self, rules: Sequence[FormalizedRequirement], *, of_moments: bool = False) -> None:
+    def __init__(
+        self, requirements: Sequence[FormalizedRequirement], *, of_moments: bool = False
+    ) -> None:
         """The atoms.
 
         Args:
-            rules: whose they are.
+            requirements: whose they are.
             of_moments: whether those alone are read that are of one sample, and known.
         """
-        self._terms = Terms(rules)
+        self._terms = Terms(requirements)
         self.found: dict[str, Atom] = {}
         self.refused: dict[str, str] = {}
         """Why another comparison has no formula here."""
@@ -53,7 +56,7 @@ class Atoms:
         self._flags: set[str] = set()
         self._parts: set[str] = set()
         moments: dict[str, Moment] = {}
-        for name, reading in readings(rules):
+        for name, reading in readings(requirements):
             if of_moments and not reading.is_of_moment:
                 continue
             if name not in moments and name not in self.refused and name not in self.lasting:

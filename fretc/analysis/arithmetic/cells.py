@@ -15,7 +15,7 @@ from fractions import Fraction
 import z3
 
 from compiler.formalization.numbers.terms import Term, read_by
-from fretc.analysis.arena.alphabet import UnsupportedError
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.arithmetic.projection import Limit, projected
 from fretc.analysis.arithmetic.projection import model as next_model
 

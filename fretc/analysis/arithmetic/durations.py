@@ -14,7 +14,6 @@ from itertools import product
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.memory import (
     Memory,
     constant,
@@ -24,6 +23,7 @@ from fretc.analysis.arena.memory import (
     some,
     successor,
 )
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.arithmetic.readings import Reading
 from fretish import expressions as e
 from fretish.bindings.declarations import Aggregate

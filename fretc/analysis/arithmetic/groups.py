@@ -10,8 +10,9 @@ import z3
 from compiler.formalization.numbers.terms import Term
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Numbers, Tick, UnsupportedError
+from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import Numbers, UnsupportedError
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.arithmetic.cells import (
     Cell,

@@ -33,7 +33,7 @@ def remembered(atoms: Atoms, steps: int) -> tuple[Remembered, ...]:
     """What is remembered; atoms that it lacks are added.
 
     Args:
-        atoms: of some rules.
+        atoms: of some requirements.
         steps: from how many ticks before a bound it is remembered whether it is within reach.
     """
     found: list[Remembered] = []

@@ -19,8 +19,8 @@ from fractions import Fraction
 import z3
 
 from compiler.formalization.numbers.terms import Term
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget
+from fretc.analysis.arena.variables import UnsupportedError
 
 SECONDS = 10.0
 """Of a processor, for a group of comparisons."""

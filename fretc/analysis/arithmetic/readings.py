@@ -19,7 +19,7 @@ class Reading:
 
     expression: e.Expression
     names: tuple[str, ...]
-    """Those of the sentence: whoever chooses them chooses the signals."""
+    """Those of the sentence: the player who chooses them chooses the signals."""
     aggregate: Aggregate = Aggregate.LAST
     on_unknown: bool | None = None
     """What it is where its signals are unknown; None: unknown, too."""
@@ -33,13 +33,13 @@ class Reading:
         return self.aggregate is Aggregate.LAST and self.on_unknown is None and not lasts
 
 
-def readings(rules: Sequence[FormalizedRequirement]) -> Iterator[tuple[str, Reading]]:
+def readings(requirements: Sequence[FormalizedRequirement]) -> Iterator[tuple[str, Reading]]:
     """Of each atom that compares numbers or words, by the name that formulas give it."""
-    for rule in rules:
-        compared, declared = comparisons(rule), rule.declarations
+    for requirement in requirements:
+        compared, declared = comparisons(requirement), requirement.declarations
         for name, comparison in compared.items():
             yield name, Reading(comparison, _names(comparison))
-        for name, part in candidates(rule.sentence):
+        for name, part in candidates(requirement.sentence):
             bound = declared.propositions.get(name) if declared is not None else None
             if declared is None or bound is None or name in compared:
                 continue

@@ -32,7 +32,7 @@ class Moment:
     aggregate: Aggregate
     on_unknown: bool | None
     names: tuple[str, ...]
-    """Those of the sentence: whoever chooses them chooses the signals."""
+    """Those of the sentence: the player who chooses them chooses the signals."""
 
     @property
     def is_of_all_steps(self) -> bool:

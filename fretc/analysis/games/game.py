@@ -16,7 +16,7 @@ from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Counter
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.runs import Runs
 from fretc.analysis.games.squaring import IterativeSquaring, Relation, identity

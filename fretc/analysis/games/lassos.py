@@ -19,11 +19,11 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.formalization.numbers.terms import Term, read_by
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import numbers
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Counter
 from fretc.analysis.arena.product import arena
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import numbers
 from fretc.analysis.arithmetic.alphabet import Cells
 from fretc.analysis.arithmetic.atoms import Atoms
 from fretc.analysis.games.replay import ROUNDS, kept
@@ -54,21 +54,25 @@ class Impossible:
 
 
 def lasso(
-    rules: Sequence[FormalizedRequirement], roles: Roles, budget: Budget, *, as_fret: bool = False
+    requirements: Sequence[FormalizedRequirement],
+    roles: Roles,
+    budget: Budget,
+    *,
+    as_fret: bool = False,
 ) -> Lasso | Impossible | None:
     """A run that keeps all requirements for ever, or that there is none; None: not known.
 
     Args:
-        rules: the requirements; each has a counter, and letters that are certain.
+        requirements: the requirements; each has a counter, and letters that are certain.
         roles: of their variables; none is an input.
         budget: for the search.
         as_fret: whether nothing may be owed at the end of any tick.
     """
     fresh = numbers()
-    cells = Cells(rules, roles, fresh, Role.OUTPUT, budget)
+    cells = Cells(requirements, roles, fresh, Role.OUTPUT, budget)
     if not cells.numbers.is_of_moments:
         return None
-    counters = arena(rules, (), cells, fresh, as_fret=as_fret).counters
+    counters = arena(requirements, (), cells, fresh, as_fret=as_fret).counters
     waiting = {each.id for each in counters if each.fair is not None}
     search = _Search(cells, counters)
     for length in range(1, LONGEST + 1):
@@ -77,7 +81,7 @@ def lasso(
         found = search.next()
         if isinstance(found, Lasso):
             letters, tail = _letters(cells, found), length - found.loop
-            is_kept = kept(rules, cells, letters, tail, waiting, as_fret=as_fret)
+            is_kept = kept(requirements, cells, letters, tail, waiting, as_fret=as_fret)
             return found if is_kept else None
         if found is not None:
             return found

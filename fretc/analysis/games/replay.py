@@ -51,7 +51,7 @@ def remembering(alphabet: Alphabet, runs: Iterable[Run]) -> Iterator[Run]:
 
 
 def broken(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     alphabet: Alphabet,
     play: GameTrace,
     *,
@@ -60,19 +60,21 @@ def broken(
     """The requirements that the play breaks at its last tick, or never meets in its loop.
 
     Args:
-        rules: those of a conflict.
+        requirements: those of a conflict.
         alphabet: of the letters.
         play: up to the first breach, or an endless one.
         as_fret: whether nothing may be owed at the end of any tick.
     """
     runs = play.repeated(ROUNDS)
     return tuple(
-        rule.id for rule in rules if _is_broken(rule, alphabet, runs, play.loop, as_fret=as_fret)
+        requirement.id
+        for requirement in requirements
+        if _is_broken(requirement, alphabet, runs, play.loop, as_fret=as_fret)
     )
 
 
 def _is_broken(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     alphabet: Alphabet,
     runs: Sequence[Run],
     loop: int | None,
@@ -80,7 +82,7 @@ def _is_broken(
     as_fret: bool,
 ) -> bool:
     ticks = sum(count for _, count in runs)
-    breach, fails = _watched((rule.watch.breach, rule.watch.fails), alphabet, runs)
+    breach, fails = _watched((requirement.watch.breach, requirement.watch.fails), alphabet, runs)
     last = 1 << ticks - 1
     if loop is None:
         return bool((breach | (fails if as_fret else 0)) & last)
@@ -89,7 +91,7 @@ def _is_broken(
 
 
 def kept(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     alphabet: Alphabet,
     letters: Sequence[Letter],
     tail: int,
@@ -100,7 +102,7 @@ def kept(
     """Whether a run breaks none of the requirements, and leaves none unmet in its last ticks.
 
     Args:
-        rules: all that are to be kept.
+        requirements: all that are to be kept.
         alphabet: of the letters.
         letters: with the loop of the run, several times.
         tail: how many ticks the loop has.
@@ -109,10 +111,10 @@ def kept(
         as_fret: whether nothing may be owed at the end of any tick.
     """
     end = ((1 << tail) - 1) << len(letters) - tail
-    for rule in rules:
-        signals = (rule.watch.breach, rule.watch.doom, rule.watch.fails)
+    for requirement in requirements:
+        signals = (requirement.watch.breach, requirement.watch.doom, requirement.watch.fails)
         breach, doom, fails = _watched(signals, alphabet, [(letter, 1) for letter in letters])
-        is_open = rule.id in waiting and fails & end == end
+        is_open = requirement.id in waiting and fails & end == end
         if breach or (fails if as_fret else doom or is_open):
             return False
     return True
@@ -128,17 +130,17 @@ def _watched(
 
 
 def first_breaches(
-    rules: Sequence[FormalizedRequirement], known: Mapping[str, int], ticks: int
+    requirements: Sequence[FormalizedRequirement], known: Mapping[str, int], ticks: int
 ) -> dict[str, int | None]:
-    """For each rule the tick at which it is broken; None: it is not.
+    """For each requirement the tick at which it is broken; None: it is not.
 
     Args:
-        rules: of which all atoms are known.
+        requirements: of which all atoms are known.
         known: each atom over time.
         ticks: the length of the run.
     """
     found: dict[str, int | None] = {}
-    for rule in rules:
-        breach = evaluate(rule.watch.breach, known, ticks)
-        found[rule.id] = (breach & -breach).bit_length() - 1 if breach else None
+    for requirement in requirements:
+        breach = evaluate(requirement.watch.breach, known, ticks)
+        found[requirement.id] = (breach & -breach).bit_length() - 1 if breach else None
     return found

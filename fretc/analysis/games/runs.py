@@ -1,4 +1,4 @@
-"""Runs that keep requirements, whoever chooses what: reachability, and what can last for ever.
+"""Runs that keep requirements, for any choices: reachability, and what can last for ever.
 
 Source: Emerson, Lei, Efficient model checking in fragments of the propositional mu-calculus, LICS
 1986 (runs that are fair).
@@ -12,7 +12,7 @@ from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.alphabet import Alphabet
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter
+from fretc.analysis.arena.memory import Counter
 from fretc.analysis.arena.transition import Transition
 from fretc.analysis.games.squaring import IterativeSquaring, Relation
 

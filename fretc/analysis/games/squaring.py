@@ -17,8 +17,7 @@ from itertools import pairwise
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter
-from fretc.analysis.arena.memory import Bit
+from fretc.analysis.arena.memory import Bit, Counter
 from fretc.analysis.arena.transition import State
 
 MOST_NODES = 10_000

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import Numbers
 from fretc.analysis.arena.budget import Budget
+from fretc.analysis.arena.variables import Numbers
 from fretc.analysis.games.cores import Members
 from fretc.analysis.games.game import Game
 

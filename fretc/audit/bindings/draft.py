@@ -190,47 +190,53 @@ def missing_propositions(project: Project) -> tuple[MissingProposition, ...]:
     declared = project.declarations
     defined = declared.propositions if declared and not declared.mistakes else {}
     users: dict[str, list[FormalizedRequirement]] = {}
-    for rule in project.rules:
-        if rule.requirement.status == "retired":
+    for requirement in project.formalized:
+        if requirement.entry.status == "retired":
             continue
-        for name in rule.watched:
-            if name not in defined and not _unread(rule, name, declared):
-                users.setdefault(name, []).append(rule)
-    return tuple(_missing_proposition(name, rules) for name, rules in users.items())
+        for name in requirement.watched:
+            if name not in defined and not _unread(requirement, name, declared):
+                users.setdefault(name, []).append(requirement)
+    return tuple(_missing_proposition(name, requirements) for name, requirements in users.items())
 
 
 def missing_signals(project: Project) -> tuple[MissingSignal, ...]:
     """The signals that comparisons of the requirements lack."""
     users: dict[str, dict[str, None]] = {}
-    for rule in project.rules:
-        if rule.requirement.status == "retired":
+    for requirement in project.formalized:
+        if requirement.entry.status == "retired":
             continue
-        for name in rule.watched:
-            for signal in _unread(rule, name, project.declarations):
-                users.setdefault(signal, {})[rule.id] = None
+        for name in requirement.watched:
+            for signal in _unread(requirement, name, project.declarations):
+                users.setdefault(signal, {})[requirement.id] = None
     return tuple(MissingSignal(name, tuple(ids)) for name, ids in users.items())
 
 
 def _unread(
-    rule: FormalizedRequirement, name: str, declared: Declarations | None
+    requirement: FormalizedRequirement, name: str, declared: Declarations | None
 ) -> tuple[str, ...]:
     """The signals that one of its comparisons lacks; none where it is bound itself."""
     if declared is not None and name in declared.propositions:
         return ()
-    return binding_agreement.missing_signals(rule, name, declared.signals if declared else {})
+    return binding_agreement.missing_signals(
+        requirement, name, declared.signals if declared else {}
+    )
 
 
 def durations(project: Project) -> tuple[int, ...]:
     """Those of the requirements, in nanoseconds; ticks are none."""
-    found = [s.duration(rule.sentence.timing) for rule in project.rules]
+    found = [s.duration(requirement.sentence.timing) for requirement in project.formalized]
     return tuple(d.amount * NANOSECONDS[d.unit] for d in found if d and d.unit in NANOSECONDS)
 
 
-def _missing_proposition(name: str, rules: Sequence[FormalizedRequirement]) -> MissingProposition:
-    roles = {_role(name, rule.sentence) for rule in rules}
+def _missing_proposition(
+    name: str, requirements: Sequence[FormalizedRequirement]
+) -> MissingProposition:
+    roles = {_role(name, requirement.sentence) for requirement in requirements}
     role = roles.pop() if len(roles) == 1 else Role.INTERNAL
     aggregate = "any" if role is Role.INPUT else "last"
-    return MissingProposition(name, tuple(rule.id for rule in rules), str(role), aggregate)
+    return MissingProposition(
+        name, tuple(requirement.id for requirement in requirements), str(role), aggregate
+    )
 
 
 def _role(name: str, sentence: s.Sentence) -> Role:

@@ -1,7 +1,7 @@
 """What a verdict rests on beside its log, as fingerprints of canonical meaning.
 
 This is the one notion of change. Evidence records the basis of each of its results, a lock that of
-each review, and whoever asks later what has changed compares with the basis of now.
+each review, and a later comparison uses the basis of now.
 
 Fingerprints are of canonical meaning (`fretish.bindings.canonical`), and only what a requirement
 reads is part of its basis.
@@ -16,7 +16,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python import monitor
 from fretish.bindings.canonical import bound, clock, digest, parameter
 from fretish.bindings.declarations import Declarations
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 SENTENCE, PARAMS, CLOCK, TOPICS = "sentence", "params", "clock", "topics"
 BINDINGS, MONITOR, FRETC = "bindings", "monitor", "fretc"
@@ -38,8 +38,8 @@ Basis = Mapping[str, str]
 
 
 def basis(
-    requirement: Requirement,
-    rule: FormalizedRequirement | None,
+    entry: RequirementEntry,
+    requirement: FormalizedRequirement | None,
     declarations: Declarations | None,
     topics: Iterable[str],
     monitor_sha256: str | None = None,
@@ -47,31 +47,35 @@ def basis(
     """What a verdict on a requirement would rest on now.
 
     Args:
-        requirement: as written.
-        rule: None where it cannot be formalized: its wording stands for its sentence.
+        entry: as written.
+        requirement: None where it cannot be formalized: its wording stands for its sentence.
         declarations: None where there are no bindings; what they say is then an empty text.
         topics: which an audit of the project reads; its ticks begin with their messages.
-        monitor_sha256: of the monitor of the rule, where it is known.
+        monitor_sha256: of the monitor of the requirement, where it is known.
     """
-    wording = " ".join(requirement.wording.text.split())
+    wording = " ".join(entry.wording.text.split())
     return {
-        SENTENCE: rule.fingerprint if rule else sha256(wording),
-        PARAMS: digest({name: parameter(text) for name, text in requirement.params.items()}),
+        SENTENCE: requirement.fingerprint if requirement else sha256(wording),
+        PARAMS: digest({name: parameter(text) for name, text in entry.params.items()}),
         CLOCK: digest(clock(declarations.clock)) if declarations else "",
         TOPICS: digest(sorted(set(topics))) if declarations else "",
-        BINDINGS: of_bindings(rule, declarations),
-        MONITOR: monitor_sha256 or _of_monitor(rule),
+        BINDINGS: of_bindings(requirement, declarations),
+        MONITOR: monitor_sha256 or _of_monitor(requirement),
     }
 
 
-def _of_monitor(rule: FormalizedRequirement | None) -> str:
-    """Of an empty text where there is no rule, or its monitor would be too deep for Python."""
-    return sha256(monitor.text(rule) if rule and monitor.is_readable(rule) else "")
+def _of_monitor(requirement: FormalizedRequirement | None) -> str:
+    """Of an empty text if nothing is formalized, or its monitor would be too deep for Python."""
+    return sha256(
+        monitor.text(requirement) if requirement and monitor.is_readable(requirement) else ""
+    )
 
 
-def of_bindings(rule: FormalizedRequirement | None, declarations: Declarations | None) -> str:
+def of_bindings(
+    requirement: FormalizedRequirement | None, declarations: Declarations | None
+) -> str:
     """What a verdict would rest on of the bindings; empty where there is none."""
-    return digest(bound(declarations, rule.watched)) if declarations and rule else ""
+    return digest(bound(declarations, requirement.watched)) if declarations and requirement else ""
 
 
 def outdated(recorded: Mapping[str, object], now: Basis) -> tuple[str, ...]:

@@ -48,7 +48,7 @@ SCHEMA: Final = "fretc-evidence-1"
 Verdict = Literal["satisfied", "violated", "inconclusive", "vacuous", "no data"]
 LabelName = Annotated[str, Meta(min_length=1, max_length=50)]
 LabelText = Annotated[str, Meta(min_length=1, max_length=200)]
-"""Texts of a stranger's log: whoever shows one escapes it."""
+"""Texts of an untrusted log: they are escaped where they are shown."""
 StateWord = Literal["idle", "open", "violated", "unknown"]
 Comparison = Literal["true", "false", "crossed"]
 Part = Annotated[

@@ -184,7 +184,7 @@ def unread(run: str, requirement: str, diagnostic: Diagnostic, hashes: Mapping[s
 def unjudged(
     run: str, requirement: str, reason: str, hashes: Mapping[str, str], health: Health
 ) -> Result:
-    """The result of a run and a requirement that could not be held against it."""
+    """The result of a run and a requirement that could not be compared with it."""
     return Result(
         run=run,
         requirement=requirement,

@@ -40,13 +40,15 @@ class Chance:
 
 
 @with_recursion_limit
-def chance(rule: FormalizedRequirement) -> Chance | None:
+def chance(requirement: FormalizedRequirement) -> Chance | None:
     """None where the sentence gives no probability."""
-    odds = rule.sentence.probability
+    odds = requirement.sentence.probability
     if odds is None:
         return None
     return Chance(
-        odds.op, odds.digits, obligation(rule.sentence, rule.ticks or 0, predicates.Past())
+        odds.op,
+        odds.digits,
+        obligation(requirement.sentence, requirement.ticks or 0, predicates.Past()),
     )
 
 

@@ -70,13 +70,13 @@ class _Event:
 
 
 def sidecars(
-    results: Sequence[Result], rules: Sequence[FormalizedRequirement], folder: Path
+    results: Sequence[Result], requirements: Sequence[FormalizedRequirement], folder: Path
 ) -> dict[Path, bytes]:
     """A file for each run that could be read; the same results give the same bytes.
 
     Args:
         results: each of a run and a requirement, in declared units.
-        rules: all requirements of the results.
+        requirements: all requirements of the results.
         folder: where the files go.
     """
     runs: dict[str, list[Result]] = {}
@@ -84,17 +84,17 @@ def sidecars(
         if result.start_ns is not None:
             runs.setdefault(result.run, []).append(result)
     names = _names(list(runs))
-    return {folder / names[run]: sidecar(of_run, rules) for run, of_run in runs.items()}
+    return {folder / names[run]: sidecar(of_run, requirements) for run, of_run in runs.items()}
 
 
-def sidecar(results: Sequence[Result], rules: Sequence[FormalizedRequirement]) -> bytes:
+def sidecar(results: Sequence[Result], requirements: Sequence[FormalizedRequirement]) -> bytes:
     """The log of one run: what happened, in order of time.
 
     Args:
         results: of that run, one for each requirement, in declared units.
-        rules: all requirements of the results.
+        requirements: all requirements of the results.
     """
-    by_id = {rule.id: rule for rule in rules}
+    by_id = {requirement.id: requirement for requirement in requirements}
     data = BytesIO()
     writer = Writer(data)
     writer.start(library=f"fretc {__version__}")
@@ -102,8 +102,8 @@ def sidecar(results: Sequence[Result], rules: Sequence[FormalizedRequirement]) -
     state = writer.register_schema("fretc.State", SchemaEncoding.JSONSchema, _STATE.encode())
     channels = {VERDICTS: writer.register_channel(VERDICTS, MessageEncoding.JSON, log)}
     for result in results:
-        topic, rule = state_topic(result.requirement), by_id[result.requirement]
-        about = {"sentence": wording(rule.requirement)}
+        topic, requirement = state_topic(result.requirement), by_id[result.requirement]
+        about = {"sentence": wording(requirement.entry)}
         channels[topic] = writer.register_channel(topic, MessageEncoding.JSON, state, about)
     events = [event for result in results for event in _events(result, by_id)]
     counts: Counter[str] = Counter()
@@ -122,10 +122,10 @@ def state_topic(id: str) -> str:
     return f"{topic}/state" if topic == VERDICTS else topic
 
 
-def _events(result: Result, rules: Mapping[str, FormalizedRequirement]) -> Iterator[_Event]:
+def _events(result: Result, requirements: Mapping[str, FormalizedRequirement]) -> Iterator[_Event]:
     """The events of one requirement; those of one time stand in the order of cause and effect."""
     id = result.requirement
-    place = rules[id].requirement.wording
+    place = requirements[id].entry.wording
 
     def event(ns: int, level: int, message: str) -> _Event:
         where = {"name": id, "file": place.source.name, "line": place.line}

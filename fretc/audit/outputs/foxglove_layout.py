@@ -29,13 +29,13 @@ _MOST_PLOTTED = 8
 
 
 def layout_file(
-    results: Sequence[Result], rules: Sequence[FormalizedRequirement], folder: Path
+    results: Sequence[Result], requirements: Sequence[FormalizedRequirement], folder: Path
 ) -> dict[Path, bytes]:
     """The file; nothing where no run could be read.
 
     Args:
         results: each of a run and a requirement.
-        rules: all requirements of the results.
+        requirements: all requirements of the results.
         folder: where the annotations go.
     """
     read = [result for result in results if result.start_ns is not None]
@@ -43,33 +43,33 @@ def layout_file(
     if not ids:
         return {}
     worst = {id: min(severity(r.verdict) for r in read if r.requirement == id) for id in ids}
-    by_id = {rule.id: rule for rule in rules}
+    by_id = {requirement.id: requirement for requirement in requirements}
     chosen = [by_id[id] for id in sorted(ids, key=lambda id: worst[id]) if id in by_id]
     return {folder / LAYOUT: f"{to_json(layout(chosen))}\n".encode()}
 
 
-def layout(rules: Sequence[FormalizedRequirement]) -> dict[str, Any]:
+def layout(requirements: Sequence[FormalizedRequirement]) -> dict[str, Any]:
     """The layout for some requirements, in their order."""
     panels: dict[str, Any] = {
-        "StateTransitions!all": {"paths": list(map(_states, rules)), "isSynced": True},
+        "StateTransitions!all": {"paths": list(map(_states, requirements)), "isSynced": True},
         "RosOut!verdicts": {"topicToRender": VERDICTS, "minLogLevel": 1, "searchTerms": []},
     }
     tabs = []
-    for number, rule in enumerate(rules, 1):
+    for number, requirement in enumerate(requirements, 1):
         states, plot = f"StateTransitions!{number}", f"Plot!{number}"
-        panels[states] = {"paths": [_states(rule)], "isSynced": True}
+        panels[states] = {"paths": [_states(requirement)], "isSynced": True}
         whole: Any = states
-        plotted = _signals(rule)
+        plotted = _signals(requirement)
         if plotted:
             panels[plot] = {
-                "title": rule.id,
+                "title": requirement.id,
                 "paths": list(map(_line, plotted)),
                 "xAxisVal": "timestamp",
                 "isSynced": True,
                 "showLegend": True,
             }
             whole = _split("column", states, plot, 25)
-        tabs.append({"title": rule.id, "layout": whole})
+        tabs.append({"title": requirement.id, "layout": whole})
     panels["Tab!requirements"] = {"activeTabIdx": 0, "tabs": tabs}
     left = _split("column", "StateTransitions!all", "RosOut!verdicts", 60)
     return {
@@ -85,21 +85,25 @@ def _split(direction: str, first: Any, second: Any, share: int) -> dict[str, Any
     return {"direction": direction, "first": first, "second": second, "splitPercentage": share}
 
 
-def _states(rule: FormalizedRequirement) -> dict[str, Any]:
+def _states(requirement: FormalizedRequirement) -> dict[str, Any]:
     """The line of states of a requirement."""
-    title = f"{rule.requirement.title} ({rule.id})" if rule.requirement.title else rule.id
-    path = f"{_topic(state_topic(rule.id))}.state"
+    title = (
+        f"{requirement.entry.title} ({requirement.id})"
+        if requirement.entry.title
+        else requirement.id
+    )
+    path = f"{_topic(state_topic(requirement.id))}.state"
     return {"value": path, "label": title, "timestampMethod": "receiveTime"}
 
 
-def _signals(rule: FormalizedRequirement) -> list[Signal]:
+def _signals(requirement: FormalizedRequirement) -> list[Signal]:
     """The numbers that the requirement reads: no words, and no arrays."""
-    declared = rule.declarations
+    declared = requirement.declarations
     if declared is None:
         return []
     names = dict.fromkeys(
         signal
-        for name in rule.watched
+        for name in requirement.watched
         if name in declared.propositions
         for signal in declared.propositions[name].signals
     )

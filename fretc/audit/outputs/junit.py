@@ -20,7 +20,7 @@ from fretc.audit.outputs.violated_values import reason, values
 from fretish.bindings.amounts import seconds
 from fretish.diagnostics.rendering import visible
 from fretish.diagnostics.source import Span
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 _NOT_XML = re.compile("[^\t\n\r\u0020-~\u00a0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
@@ -29,7 +29,7 @@ _GITHUB = {Level.ERROR: "error", Level.WARNING: "warning", Level.NONE: "notice"}
 def junit(
     results: Iterable[Result],
     estimates: Sequence[Estimated] = (),
-    requirements: Sequence[Requirement] = (),
+    requirements: Sequence[RequirementEntry] = (),
 ) -> str:
     """One test suite for each run, one test case for each requirement.
 
@@ -109,7 +109,7 @@ def valid(text: str) -> str:
 
 def github(
     results: Iterable[Result],
-    requirements: Sequence[Requirement],
+    requirements: Sequence[RequirementEntry],
     estimates: Sequence[Estimated] = (),
 ) -> str:
     """A line for each result, at the sentence of its requirement.

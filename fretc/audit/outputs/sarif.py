@@ -30,7 +30,7 @@ from fretc.audit.outputs.violated_values import reason
 from fretc.logs.storage.log_names import path_of
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Span
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.meaning import meaning
 from monitors import kernel
 
@@ -90,7 +90,7 @@ def sarif(
     rules: Sequence[FormalizedRequirement],
     diagnostics: Sequence[Diagnostic] = (),
     estimates: Sequence[AllRuns] = (),
-    failed: Sequence[Requirement] = (),
+    failed: Sequence[RequirementEntry] = (),
 ) -> str:
     """One SARIF run; the same inputs give the same bytes.
 
@@ -104,7 +104,7 @@ def sarif(
     found = [one for one in results if one.level is not Level.NONE]
     of_all = [one for one in estimates if one.level is not Level.NONE]
     ids = {one.result.requirement for one in found} | {one.requirement for one in of_all}
-    named = {r.id: r for r in (*(rule.requirement for rule in rules), *failed)}
+    named = {r.id: r for r in (*(rule.entry for rule in rules), *failed)}
     occurring = [requirement for id, requirement in named.items() if id in ids]
     by_id = {rule.id: rule for rule in rules}
     files = _files(found, occurring)
@@ -133,11 +133,11 @@ class _Places:
 
     rules: Mapping[str, int]
     files: Mapping[str, int]
-    requirements: Sequence[Requirement]
+    requirements: Sequence[RequirementEntry]
 
 
 def _driver(
-    used: Sequence[Requirement],
+    used: Sequence[RequirementEntry],
     rules: Mapping[str, FormalizedRequirement],
     diagnostics: Sequence[Diagnostic],
 ) -> dict[str, Any]:
@@ -154,7 +154,7 @@ def _driver(
     }
 
 
-def _rule(requirement: Requirement, rule: FormalizedRequirement | None) -> dict[str, Any]:
+def _rule(requirement: RequirementEntry, rule: FormalizedRequirement | None) -> dict[str, Any]:
     """A requirement; without a rule nothing says what it means."""
     sentence = wording(requirement)
     words = meaning(rule.written, rule.ticks, rule.clock) if rule else ""
@@ -172,7 +172,9 @@ def _rule(requirement: Requirement, rule: FormalizedRequirement | None) -> dict[
     }
 
 
-def _files(results: Sequence[OneRun], used: Sequence[Requirement]) -> dict[str, dict[str, Any]]:
+def _files(
+    results: Sequence[OneRun], used: Sequence[RequirementEntry]
+) -> dict[str, dict[str, Any]]:
     """Each file by its name: the logs, and where the sentences are."""
     files: dict[str, dict[str, Any]] = {}
     for one in results:

@@ -17,7 +17,7 @@ from fretish.diagnostics.signs import Sign
 from monitors import kernel
 
 NOT_JUDGED = "not judged"
-"""Of a requirement that no run can be held against: no data, and not for want of a log."""
+"""Of a requirement that no run can be compared with: no data, and not for want of a log."""
 COUNTED = "counted over all runs"
 """Of a run that alone decides nothing: its triggers are counted with those of all others."""
 _SEVERITY = {
@@ -95,7 +95,7 @@ def word_of(result: Judged, refused: Collection[str] = ()) -> str:
 
     Args:
         result: of a run and a requirement.
-        refused: the ids of requirements that could not be held against any run.
+        refused: the ids of requirements that could not be compared with any run.
     """
     if result.requirement in refused:
         return NOT_JUDGED
@@ -135,7 +135,7 @@ class Marks:
         Args:
             briefs: of all results, in their order.
             estimates: what all runs say of requirements with a probability.
-            refused: the ids of requirements that could not be held against any run.
+            refused: the ids of requirements that could not be compared with any run.
         """
         answers = {one.requirement: one.answer for one in estimates}
         names: list[str] = []

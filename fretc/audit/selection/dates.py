@@ -64,7 +64,7 @@ def _recorded(log: str) -> int | None:
     """The start of the recording in nanoseconds since 1970, where the log states a date."""
     try:
         start = _start_of_folder(log) if is_folder(log) else _start_of_file(log)
-    except OSError:  # whoever reads the log tells what is wrong with it
+    except OSError:  # the reader of the log reports what is wrong with it
         return None
     return start if start is not None and start >= _FIRST_DATE else None
 

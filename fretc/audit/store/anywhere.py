@@ -8,15 +8,8 @@ from dataclasses import replace
 from fretc.audit.evidence import reader as files
 from fretc.audit.evidence.briefs import EvidenceSource
 from fretc.audit.evidence.reader import EvidenceFile
+from fretc.audit.store.errors import StoreError
 from fretish.diagnostics.diagnostic import Diagnostic, Severity
-
-
-class StoreError(Exception):
-    """A table of a store is not what it must be."""
-
-    def __init__(self, diagnostic: Diagnostic) -> None:
-        super().__init__(diagnostic.message)
-        self.diagnostic = diagnostic
 
 
 def read(path: str) -> EvidenceFile | Diagnostic:

@@ -1,4 +1,4 @@
-"""Tables as files: the same table gives the same bytes, and no stranger's file costs too much."""
+"""Tables as files: the same table gives the same bytes, and no untrusted file costs too much."""
 
 from __future__ import annotations
 

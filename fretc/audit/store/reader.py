@@ -1,4 +1,4 @@
-"""A store as it is read: part by part, each table held against the manifest.
+"""A store as it is read: part by part, each table compared with the manifest.
 
 Nothing in it is trusted: a table that does not fit the manifest, or that holds what no evidence
 does, is F516, never half a report.
@@ -31,7 +31,7 @@ from fretc.audit.evidence.schema import (
 )
 from fretc.audit.measurements.tallies import Tally
 from fretc.audit.store import agreement, files, tables
-from fretc.audit.store.anywhere import StoreError
+from fretc.audit.store.errors import StoreError
 from fretc.audit.store.manifest import FILE, REGISTER, UNFINISHED, Manifest, Part, Table, place
 from fretc.audit.store.register import Entry, entries, types
 from fretc.audit.store.tables import EVENTS, EXACT, RESULTS, RUNS, TABLES, TableName

@@ -133,7 +133,7 @@ def _checked(path: Path, data: bytes, key: bytes) -> bytes:
 
 
 def _reading(declarations: Declarations, wanted: Sequence[str], integrity: Integrity) -> str:
-    """SHA-256 of all that a recording depends on beside its log, to the letter, but for places."""
+    """SHA-256 of all that a recording depends on beside its log, exactly, but for places."""
     signals = declarations.signals
     labels = {name: [repr(each) for each in some] for name, some in declarations.labels.items()}
     read = [repr(signals[name]) for name in wanted]

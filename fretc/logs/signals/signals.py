@@ -74,7 +74,7 @@ class Sparse:
 def sample(signal: Signal, message: object, *, single: bool = False) -> float:
     """The signal's value in one message.
 
-    Elements are told apart first: NaN, +inf, -inf, a finite number for which `valid` is not
+    Elements are distinguished first: NaN, +inf, -inf, a finite number for which `valid` is not
     true, and a valid number. `signal.invalid` then says for each of the first four: it is
     dropped; it is far (+inf); it is near (-inf, and for `outline` a clearance of 0); or it makes
     the whole sample unknown. `valid` is read in the unit of the field. Beside 32-bit floats its

@@ -43,7 +43,7 @@ class Folder:
     compressed: str
     """`file` or `message`: how its files are packed; nothing where they are not."""
     custom: Mapping[str, str] = field(default_factory=dict)
-    """`custom_data`: what whoever recorded it says of the run."""
+    """`custom_data`: what the recorder says of the run."""
 
     def lost(self, i: int, before: int | None, after: int | None) -> Gap | None:
         """The time that file `i` has covered, as far as it is known.

@@ -134,7 +134,8 @@ def _nothing() -> None:
 def _mark(status: os.stat_result) -> tuple[int, ...]:
     """The attributes that a write changes, or another file of that name.
 
-    Whoever may write to a file can set `st_mtime` back, but `st_ctime` only by the machine's clock.
+    Anyone who may write to a file can set `st_mtime` back, but `st_ctime` only by the machine's
+    clock.
     """
     times = status.st_mtime_ns, status.st_ctime_ns
     return (status.st_dev, status.st_ino, status.st_size, *times)

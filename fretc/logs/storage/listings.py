@@ -56,7 +56,7 @@ def changed(url: str) -> int | None:
     try:
         system, path = _opened(url)
         moment = system.modified(path)
-    except Exception:  # each protocol has its own; whoever reads the file tells what is wrong
+    except Exception:  # each protocol has its own; the reader of the file reports it
         return None
     if not isinstance(moment, datetime):
         return None

@@ -14,7 +14,7 @@ from fretc.logs.storage.log_names import is_url
 class Places:
     """The places that may be opened.
 
-    Files below the present folder and below folders that the user names, `https`, and URLs below
+    Files below the current folder and below folders that the user names, `https`, and URLs below
     one that the user names.
     """
 

@@ -42,7 +42,7 @@ async def _any(**arguments: Any) -> Any:
 def _client(scheme: str, **arguments: Any) -> Any:
     """A session; what is unpacked on the way could be of any size, so nothing is.
 
-    Whoever sends a byte now and then is never silent: so an answer has an end in all, too.
+    A server that sends a byte now and then is never silent: so the whole answer has a limit, too.
     """
     import aiohttp
 

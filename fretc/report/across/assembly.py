@@ -46,7 +46,7 @@ def across(details: Details, worst: Sequence[str], pictured: int = PICTURED) -> 
         worst: the anchors of the requirements, the worst first.
         pictured: how many of these have pictures of their own.
     """
-    active = [a for a in details.assessments.values() if a.requirement.status != "retired"]
+    active = [a for a in details.assessments.values() if a.entry.status != "retired"]
     most = max(_FEWEST, min(_MOST, _ROWS // max(1, len(active))))
     marks = max(10 * _FEWEST, _MARKS // max(1, len(active)))
     in_force = {assessment.anchor for assessment in active}
@@ -213,7 +213,9 @@ def _numbers(
         for audit, each in zip(assessment.audits, of, strict=True)
         if not audit.is_stale
     ]
-    allowed = seconds_allowed(assessment.rule) if is_answered(assessment.rule) else None
+    allowed = (
+        seconds_allowed(assessment.requirement) if is_answered(assessment.requirement) else None
+    )
     return current, allowed, most, len(of) - len(current)
 
 

@@ -53,7 +53,7 @@ class Form:
 def _html(subject: Subject) -> str:
     from fretc.report.page.html import html
 
-    return html(subject.report, subject.details, subject.project.rules, subject.inset)
+    return html(subject.report, subject.details, subject.project.formalized, subject.inset)
 
 
 def _json(subject: Subject) -> Iterable[str]:
@@ -79,7 +79,9 @@ def _sarif(subject: Subject) -> str:
 
     project = subject.project
     diagnostics = [*project.diagnostics, *subject.diagnostics]
-    return sarif(subject.report, subject.details, project.rules, diagnostics, project.without_rule)
+    return sarif(
+        subject.report, subject.details, project.formalized, diagnostics, project.without_rule
+    )
 
 
 def _markdown(subject: Subject) -> str:

@@ -1,7 +1,7 @@
 """`--junit`: a test case for each requirement and run, for a CI server; a suite for each run.
 
 A first suite, named after the project, has what no single run says: requirements that no run was
-held against, probabilities, counterexamples, and what was reviewed and is claimed no more.
+compared with, probabilities, counterexamples, and what was reviewed and is claimed no more.
 
 Source: the JUnit schema of the Jenkins xUnit plugin, https://github.com/jenkinsci/xunit-plugin.
 """

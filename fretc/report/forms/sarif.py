@@ -10,27 +10,29 @@ from fretc.audit.outputs import sarif as results
 from fretc.report.model.views import Report
 from fretc.report.sections.details import Details
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 
 def sarif(
     report: Report,
     details: Details,
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     diagnostics: Sequence[Diagnostic],
-    failed: Sequence[Requirement] = (),
+    failed: Sequence[RequirementEntry] = (),
 ) -> str:
     """One SARIF run.
 
     Args:
         report: what it says.
         details: the evidence behind it.
-        rules: all requirements of the project.
+        requirements: all requirements of the project.
         diagnostics: what there is to say of requirements and evidence.
         failed: requirements of the project without a rule.
     """
     all_runs = list(_all_runs(report))
-    return results.sarif(list(_single_runs(report, details)), rules, diagnostics, all_runs, failed)
+    return results.sarif(
+        list(_single_runs(report, details)), requirements, diagnostics, all_runs, failed
+    )
 
 
 def _single_runs(report: Report, details: Details) -> Iterator[results.OneRun]:

@@ -34,7 +34,7 @@ from fretc.report.traceability.lock import Lock, ReviewedRequirement, standings
 from fretc.report.traceability.waivers import Waiver
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Diagnostic
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 UNBOUND, NOT_GENERATED = "unbound", "not generated"
 EXERCISED_PASS, EXERCISED_FAIL = "exercised, pass", "exercised, fail"
@@ -50,11 +50,11 @@ COVERAGE = (
 class Assessment:
     """One requirement and all that its verdict rests on."""
 
-    requirement: Requirement
+    entry: RequirementEntry
     anchor: str
-    rule: FormalizedRequirement | None
+    requirement: FormalizedRequirement | None
     diagnostic: Diagnostic | None
-    """Why there is no rule; None where there is one."""
+    """Why there is no requirement; None where there is one."""
     audits: tuple[SingleAudit, ...]
     """One for each run, without regard to the review."""
     products: tuple[Product, ...]
@@ -68,7 +68,7 @@ class Assessment:
     @property
     def id(self) -> str:
         """The requirement's id."""
-        return self.requirement.id
+        return self.entry.id
 
     @cached_property
     def reviewed_audits(self) -> tuple[SingleAudit, ...]:
@@ -84,10 +84,10 @@ class Assessment:
     @cached_property
     def unwaived(self) -> str:
         """The verdict without regard to a waiver: the worst of the runs, or why there is none."""
-        if self.requirement.status == RETIRED:
+        if self.entry.status == RETIRED:
             return RETIRED
         words = [word for word, _ in self._verdicts] or [NOT_EXERCISED]
-        unformalized = [] if self.rule is not None else [UNFORMALIZED]
+        unformalized = [] if self.requirement is not None else [UNFORMALIZED]
         return min([*words, *unformalized], key=severity)
 
     @cached_property
@@ -127,7 +127,9 @@ class Assessment:
         if self.probability is None:
             return runs
         answer = (self.probability.estimation.answer, self.probability.suspicions)
-        has_probability = self.rule is not None and self.rule.sentence.probability is not None
+        has_probability = (
+            self.requirement is not None and self.requirement.sentence.probability is not None
+        )
         return [answer] if has_probability else [*runs, answer]
 
     @property
@@ -142,7 +144,7 @@ class Assessment:
             return SUSPECT
         if not self.is_bound:
             return UNBOUND
-        if self.rule is None or monitor.refuse(plain(self.rule)) is not None:
+        if self.requirement is None or monitor.refuse(plain(self.requirement)) is not None:
             return NOT_GENERATED
         if verdict in SHOWN:
             return EXERCISED_PASS
@@ -178,37 +180,37 @@ def assessments(
         proofs: the results of verification.
         analyzed: whether all can be kept together; None: nobody has asked.
     """
-    rules = {id(rule.requirement): rule for rule in project.rules}
+    requirements = {id(requirement.entry): requirement for requirement in project.formalized}
     diagnostics = {id(each.requirement): each.diagnostic for each in project.failed}
     results = briefs.by_requirement if briefs else {}
-    products_of = {id: products(rule) for id, rule in rules.items()}
+    products_of = {id: products(requirement) for id, requirement in requirements.items()}
     basis_of = bases(project, monitors=monitors(products_of))
     all_chains = chains(project, briefs, products_of, proofs, basis_of, analyzed)
     standing_of_each = standings(all_chains, lock)
     audited_by = briefs.source.fretc if briefs else ""
     anchors: list[str] = []
     assessed: list[Assessment] = []
-    for requirement, standing in zip(project.requirements, standing_of_each, strict=True):
-        anchors.append(_anchor(requirement.id, anchors))
-        rule = rules.get(id(requirement))
-        basis = basis_of[id(requirement)]
-        suspicions = AboutResults(basis, audited_by, formalized=rule is not None)
+    for entry, standing in zip(project.requirements, standing_of_each, strict=True):
+        anchors.append(_anchor(entry.id, anchors))
+        requirement = requirements.get(id(entry))
+        basis = basis_of[id(entry)]
+        suspicions = AboutResults(basis, audited_by, formalized=requirement is not None)
         audits = tuple(
             SingleAudit(result, suspicions.of(result), place)
-            for place, result in results.get(requirement.id, ())
+            for place, result in results.get(entry.id, ())
         )
         assessed.append(
             Assessment(
-                requirement,
+                entry,
                 anchors[-1],
-                rule,
-                diagnostics.get(id(requirement)),
+                requirement,
+                diagnostics.get(id(entry)),
                 audits,
-                products_of.get(id(requirement), ()),
+                products_of.get(id(entry), ()),
                 standing,
-                waivers.get(requirement.id),
-                rule is not None and _is_bound(rule, project.declarations),
-                _probability(requirement.id, rule, briefs, audits),
+                waivers.get(entry.id),
+                requirement is not None and _is_bound(requirement, project.declarations),
+                _probability(entry.id, requirement, briefs, audits),
             )
         )
     return tuple(assessed)
@@ -216,7 +218,7 @@ def assessments(
 
 def _probability(
     id: str,
-    rule: FormalizedRequirement | None,
+    requirement: FormalizedRequirement | None,
     briefs: Briefs | None,
     audits: Sequence[SingleAudit],
 ) -> ProbabilityAudit | None:
@@ -225,18 +227,18 @@ def _probability(
     if estimation is None:
         return None
     stale = [reason for audit in audits for reason in audit.suspicions]
-    if rule is None or rule.sentence.probability is None:
+    if requirement is None or requirement.sentence.probability is None:
         reasons = dict.fromkeys((*stale, "the sentence gives no probability now"))
         return ProbabilityAudit(estimation, tuple(reasons))
     results = [audit.result for audit in audits]
     runs = [(each.content, each.intact, each.trials or NO_TRIALS) for each in results]
-    doubts = about_estimation(estimation, rule.sentence.probability, runs)
+    doubts = about_estimation(estimation, requirement.sentence.probability, runs)
     return ProbabilityAudit(estimation, tuple(dict.fromkeys((*stale, *doubts))))
 
 
-def _is_bound(rule: FormalizedRequirement, declarations: Declarations | None) -> bool:
+def _is_bound(requirement: FormalizedRequirement, declarations: Declarations | None) -> bool:
     propositions = declarations.propositions if declarations else {}
-    return all(name in propositions for name in rule.watched)
+    return all(name in propositions for name in requirement.watched)
 
 
 def _anchor(id: str, taken: Sequence[str]) -> str:

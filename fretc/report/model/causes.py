@@ -49,18 +49,18 @@ class Cause:
 # The sentence ----------------------------------------------------------------------------------
 
 
-def falsity(violation: Violation, rule: FormalizedRequirement | None) -> str:
+def falsity(violation: Violation, requirement: FormalizedRequirement | None) -> str:
     """`` `stopped` was false from 3.2 s to 4.1 s, it had to be true by 3.4 s``.
 
     Empty where the timing or the scope of the sentence does not say that.
     """
-    if rule is None or _is_indirect(rule):
+    if requirement is None or _is_indirect(requirement):
         return ""
-    missing = expression(rule.written.response)
+    missing = expression(requirement.written.response)
     first, last = violation.first.seconds, violation.last.seconds
-    match rule.sentence.timing:
+    match requirement.sentence.timing:
         case s.Within():
-            horizon = rule.ticks or 0
+            horizon = requirement.ticks or 0
             trigger, deadline = violation.trigger, violation.deadline
             if trigger is None or deadline is None or deadline.tick > violation.first_tick:
                 return ""
@@ -75,12 +75,12 @@ def falsity(violation: Violation, rule: FormalizedRequirement | None) -> str:
         case s.Next() | s.Finally() | s.Eventually() | s.After() | s.Until() | s.Before():
             return ""
         case _:
-            assert_never(rule.sentence.timing)
+            assert_never(requirement.sentence.timing)
 
 
-def _is_indirect(rule: FormalizedRequirement) -> bool:
+def _is_indirect(requirement: FormalizedRequirement) -> bool:
     """Whether a broken tick does not say what the response was: a negated scope, a chance."""
-    sentence = rule.sentence
+    sentence = requirement.sentence
     negated = sentence.scope is not None and sentence.scope.kind.negates
     return negated or sentence.probability is not None
 
@@ -95,22 +95,22 @@ def _when(first: float, last: float) -> str:
 
 
 def causes(
-    violation: Violation, result: Result, rule: FormalizedRequirement | None
+    violation: Violation, result: Result, requirement: FormalizedRequirement | None
 ) -> tuple[Cause, ...]:
     """Why the response was not what it had to be; nothing where the evidence leaves that open.
 
     Args:
         violation: of a result.
         result: of the run, in declared units.
-        rule: that the result was judged by; None: it is not known.
+        requirement: that the result was judged by; None: it is not known.
     """
-    if rule is None or rule.declarations is None or _is_indirect(rule):
+    if requirement is None or requirement.declarations is None or _is_indirect(requirement):
         return ()
-    wanted = _wanted(rule.sentence.timing)
+    wanted = _wanted(requirement.sentence.timing)
     if wanted is None:
         return ()
-    at = _Tick(violation, result, rule.declarations)
-    found = _against(rule.sentence.response, wanted=wanted, at=at)
+    at = _Tick(violation, result, requirement.declarations)
+    found = _against(requirement.sentence.response, wanted=wanted, at=at)
     return tuple(dict.fromkeys(found or ()))
 
 

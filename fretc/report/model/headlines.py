@@ -62,7 +62,7 @@ def _reasons(assessment: Assessment) -> tuple[str, ...]:
 
 
 def _named(assessments: Sequence[Assessment], one: str = "is", many: str = "are") -> str:
-    names = [assessment.requirement.name for assessment in assessments]
+    names = [assessment.entry.name for assessment in assessments]
     return f"{phrases.some(names)} {one if len(names) == 1 else many}"
 
 

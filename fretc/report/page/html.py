@@ -46,7 +46,7 @@ class Inset:
 def html(
     report: Report,
     details: Details,
-    rules: Sequence[FormalizedRequirement] = (),
+    requirements: Sequence[FormalizedRequirement] = (),
     inset: Inset | None = None,
 ) -> str:
     """The whole file.
@@ -54,7 +54,7 @@ def html(
     Args:
         report: all parts.
         details: the evidence behind its rows.
-        rules: formalized requirements; the page draws what they mean.
+        requirements: formalized requirements; the page draws what they mean.
         inset: the page of `fretc play`; None: the report has none.
     """
     choice = selection(report, details)
@@ -69,7 +69,7 @@ def html(
         pictures=visible_texts(_pictures(choice)),
         histograms=visible_texts(_histograms(choice, details)),
         scales=visible_texts(_scales(page)),
-        diagrams=_diagrams(page, rules),
+        diagrams=_diagrams(page, requirements),
         matrix=visible_texts(asdict(matrix)),
         rows=_rows(matrix),
         argument=visible_texts(_argument(report)),
@@ -183,14 +183,20 @@ def _rows(matrix: Picture) -> dict[str, str]:
     return {line.row.anchor: line.id for line in lines}
 
 
-def _diagrams(page: Report, rules: Sequence[FormalizedRequirement]) -> Mapping[str, dict[str, Any]]:
+def _diagrams(
+    page: Report, requirements: Sequence[FormalizedRequirement]
+) -> Mapping[str, dict[str, Any]]:
     """A drawing of what each sentence means, by its anchor; it escapes its own texts."""
-    rules_by_key = {(rule.id, rule.fingerprint): rule for rule in rules}
+    rules_by_key = {
+        (requirement.id, requirement.fingerprint): requirement for requirement in requirements
+    }
     diagrams = {}
     for view in page.requirements:
-        rule = rules_by_key.get((view.id, view.fingerprint))
-        if view.diagram and rule is not None:
-            diagrams[view.anchor] = asdict(diagram_drawing(diagram(rule), f"means-{view.anchor}"))
+        requirement = rules_by_key.get((view.id, view.fingerprint))
+        if view.diagram and requirement is not None:
+            diagrams[view.anchor] = asdict(
+                diagram_drawing(diagram(requirement), f"means-{view.anchor}")
+            )
     return diagrams
 
 

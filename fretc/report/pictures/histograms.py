@@ -44,7 +44,7 @@ def exercise(assessment: Assessment) -> str:
     triggers = sum(result.triggers for result in results)
     answers = sum(result.answers for result in results)
     waiting = sum(result.open for result in results)
-    unanswered = sum(map(_unanswered, results)) if is_answered(assessment.rule) else 0
+    unanswered = sum(map(_unanswered, results)) if is_answered(assessment.requirement) else 0
     asked = sum(bool(result.triggers) for result in results)
     suspect = len(assessment.audits) - len(results)
     parts = [
@@ -75,7 +75,7 @@ def histograms(
     results = _current_results(assessment)
     places = [audit.place for audit in assessment.audits if not audit.is_stale]
     late = [latency for place in places for latency in latencies[place]]
-    latency_histogram = [_latency(late, results, assessment.rule)] if len(late) > 1 else []
+    latency_histogram = [_latency(late, results, assessment.requirement)] if len(late) > 1 else []
     margins = _margins(thresholds[place] for place in places) if len(results) > 1 else iter(())
     return (*latency_histogram, *islice(margins, _MARGINS))
 
@@ -87,9 +87,9 @@ def _current_results(assessment: Assessment) -> list[Brief]:
 # Latency ---------------------------------------------------------------------------------------
 
 
-def is_answered(rule: FormalizedRequirement | None) -> bool:
+def is_answered(requirement: FormalizedRequirement | None) -> bool:
     """Whether each trigger waits for an answer, so that one without is missing."""
-    return rule is not None and rule.watch.answer is not None
+    return requirement is not None and requirement.watch.answer is not None
 
 
 def _unanswered(result: Brief) -> int:
@@ -98,12 +98,12 @@ def _unanswered(result: Brief) -> int:
 
 
 def _latency(
-    late: Sequence[float], runs: Sequence[Brief], rule: FormalizedRequirement | None
+    late: Sequence[float], runs: Sequence[Brief], requirement: FormalizedRequirement | None
 ) -> Histogram:
-    bound = seconds_allowed(rule)
+    bound = seconds_allowed(requirement)
     bins = _bins(late, [0.0, *([bound] if bound is not None else [])], _below)
     label = f"bound {phrases.exact_duration(bound)}" if bound is not None else ""
-    unanswered = sum(map(_unanswered, runs)) if is_answered(rule) else 0
+    unanswered = sum(map(_unanswered, runs)) if is_answered(requirement) else 0
     waiting = sum(result.open for result in runs)
     beyond = sum(value > bound + 1e-9 for value in late) if bound is not None else 0
     limit = (
@@ -136,13 +136,13 @@ def _without(unanswered: int, waiting: int) -> str:
     return f" Without an answer: {triggers}." if triggers else ""
 
 
-def seconds_allowed(rule: FormalizedRequirement | None) -> float | None:
+def seconds_allowed(requirement: FormalizedRequirement | None) -> float | None:
     """What `within` allows, where a tick is a time."""
-    if rule is None or syntax.deadline(rule.sentence.timing) is None:
+    if requirement is None or syntax.deadline(requirement.sentence.timing) is None:
         return None
-    if rule.clock is None or rule.clock.period is None or rule.ticks is None:
+    if requirement.clock is None or requirement.clock.period is None or requirement.ticks is None:
         return None
-    return rule.ticks * rule.clock.period / 1e9
+    return requirement.ticks * requirement.clock.period / 1e9
 
 
 # Margin ----------------------------------------------------------------------------------------

@@ -35,7 +35,7 @@ def timelines(
     result: Result,
     tick: float,
     ages: Mapping[str, float] = MappingProxyType({}),
-    rule: FormalizedRequirement | None = None,
+    requirement: FormalizedRequirement | None = None,
 ) -> tuple[Timeline, ...]:
     """A timeline for each of the first violations; without violations, one for the whole run.
 
@@ -43,7 +43,7 @@ def timelines(
         result: one run, one requirement.
         tick: seconds of a tick; an average where the clock ticks by message.
         ages: age limit of each signal in seconds; a signal without one has no limit.
-        rule: that the result was judged by; None: it is not known.
+        requirement: that the result was judged by; None: it is not known.
     """
     if not result.ticks:
         return ()
@@ -52,7 +52,12 @@ def timelines(
         return (events.timeline("The whole run", Stretch(0.0, result.ticks * tick)),)
     return tuple(
         _explained(
-            events.timeline(f"Violation {number}", stretch), violation, result, tick, ages, rule
+            events.timeline(f"Violation {number}", stretch),
+            violation,
+            result,
+            tick,
+            ages,
+            requirement,
         )
         for number, violation in enumerate(result.violations[:DRAWN], 1)
         for stretch in [_around(violation, tick)]
@@ -65,13 +70,13 @@ def _explained(
     result: Result,
     tick: float,
     ages: Mapping[str, float],
-    rule: FormalizedRequirement | None,
+    requirement: FormalizedRequirement | None,
 ) -> Timeline:
     """The timeline with signals, trigger, deadline, the violating stretch, and the cause."""
     drawings = panels(violation, result, ages, plain.start, plain.end)
     lanes = word_lanes(violation, ages, plain.start, plain.end)
     broken = _violated(violation, tick)
-    why = cause(violation, result, ages, rule)
+    why = cause(violation, result, ages, requirement)
     sentences = [
         why,
         plain.text,
@@ -100,15 +105,15 @@ def cause(
     violation: Violation,
     result: Result,
     ages: Mapping[str, float],
-    rule: FormalizedRequirement | None = None,
+    requirement: FormalizedRequirement | None = None,
 ) -> str:
     """The cause of a violation: the response that did not come, and why it did not.
 
     Where the evidence leaves that open, the signals then.
     """
-    what = falsity(violation, rule) or _missing(violation)
+    what = falsity(violation, requirement) or _missing(violation)
     at = seconds(violation.first.seconds)
-    found = causes(violation, result, rule)
+    found = causes(violation, result, requirement)
     if found:
         return f"{what}: at {at} {in_words(found)}."
     values = [

@@ -47,7 +47,7 @@ def matrix(
     sections: Sequence[RequirementView],
 ) -> tuple[Row, ...]:
     """A row for each hazard and requirement below it; then the requirements below none."""
-    parents = {assessment.id: assessment.requirement.parents for assessment in assessments}
+    parents = {assessment.id: assessment.entry.parents for assessment in assessments}
     chains = [_chains(assessment.id, parents, project) for assessment in assessments]
     pairs = list(zip(assessments, sections, chains, strict=True))
     rows = [
@@ -131,7 +131,7 @@ def orphans(project: Project, assessments: Sequence[Assessment], briefs: Briefs 
     return Orphans(
         hazards=tuple(_uncovered(project, assessments)),
         requirements=(
-            *(f"{each.id} names no parent" for each in assessments if not each.requirement.parents),
+            *(f"{each.id} names no parent" for each in assessments if not each.entry.parents),
             *_rootless(project),
         ),
         parents=tuple(_undeclared(project, assessments)),
@@ -153,11 +153,11 @@ def _rootless(project: Project) -> Iterable[str]:
 
 
 def _uncovered(project: Project, assessments: Sequence[Assessment]) -> Iterable[str]:
-    parents = {assessment.id: assessment.requirement.parents for assessment in assessments}
+    parents = {assessment.id: assessment.entry.parents for assessment in assessments}
     covered: dict[str, set[str]] = {}
     for assessment in assessments:
         for above in _chains(assessment.id, parents, project):
-            covered.setdefault(above, set()).add(assessment.requirement.status)
+            covered.setdefault(above, set()).add(assessment.entry.status)
     for id in sorted(project.hazards, key=natural):
         hazard = project.hazards[id]
         if id not in covered:
@@ -169,7 +169,7 @@ def _uncovered(project: Project, assessments: Sequence[Assessment]) -> Iterable[
 def _undeclared(project: Project, assessments: Sequence[Assessment]) -> Iterable[str]:
     declared = {*project.hazards, *project.parents, *(assessment.id for assessment in assessments)}
     for assessment in assessments:
-        for parent in assessment.requirement.parents:
+        for parent in assessment.entry.parents:
             if parent not in declared:
                 yield f"{assessment.id} names {parent}, which is not declared"
 

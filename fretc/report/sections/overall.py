@@ -125,7 +125,7 @@ def _held_in_runs(active: Sequence[Assessment], good: Sequence[Assessment], runs
     if len(active) == 1:
         where = _where(len(active[0].audits))
         held = f"held in {where}" if good else f"was not shown to hold in {where}"
-        name = active[0].requirement.name
+        name = active[0].entry.name
         return f"The one requirement, {name}, {held if where else 'was not audited'}."
     everywhere = all(len(one.audits) == runs for one in good)
     where = _where(runs) if everywhere else "each run in which they were audited"
@@ -147,12 +147,12 @@ def _waived(active: Sequence[Assessment]) -> str:
     if not waived:
         return ""
     verb = "is" if len(waived) == 1 else "are"
-    names = phrases.some([f"{one.requirement.name}: {one.unwaived_mark.text}" for one in waived])
+    names = phrases.some([f"{one.entry.name}: {one.unwaived_mark.text}" for one in waived])
     return f"{phrases.times(len(waived), 'requirement')} {verb} waived, and not shown: {names}."
 
 
 def _unsigned(sections: Sequence[RequirementView]) -> str:
-    """A waiver lets a requirement pass, whoever has written it."""
+    """A waiver lets a requirement pass, no matter who has written it."""
     waived = [view for view in sections if view.waiver and view.mark.word == WAIVED]
     names = [view.name for view in waived if view.waiver and not view.waiver.signature.is_good]
     return f"Nobody is known to have signed the waiver of {phrases.some(names)}." if names else ""

@@ -23,8 +23,7 @@ def planned(assessment: Assessment, proofs: Sequence[ProofView]) -> tuple[Planne
         proofs: about it, and about parts that all requirements share.
     """
     return tuple(
-        _planned(assessment, method, proofs)
-        for method in dict.fromkeys(assessment.requirement.verify)
+        _planned(assessment, method, proofs) for method in dict.fromkeys(assessment.entry.verify)
     )
 
 
@@ -68,8 +67,8 @@ def _at_hand(assessment: Assessment, method: str) -> str:
     target = TARGETS.get(method)
     if target is None:
         return ""
-    if assessment.rule is None:
+    if assessment.requirement is None:
         return f", and none can be: the requirement is {UNFORMALIZED}"
-    if target.refuse(assessment.rule) is not None:
+    if target.refuse(assessment.requirement) is not None:
         return f", and none can be: {method} cannot express the requirement"
     return "; the file for it can be made, and whether it was checked is not recorded"

@@ -25,7 +25,7 @@ SHARED = ("interceptor", "agent")
 def proof_views(
     proofs: Iterable[Proof],
     products: Iterable[Product],
-    rule: FormalizedRequirement | None = None,
+    requirement: FormalizedRequirement | None = None,
     joint: Collection[str] = (),
 ) -> tuple[ProofView, ...]:
     """The view of each proof.
@@ -33,17 +33,20 @@ def proof_views(
     Args:
         proofs: about one requirement, or about shared parts.
         products: what the targets make now; a proof about another text is suspect.
-        rule: the requirement; None where it cannot be read, and of shared parts.
+        requirement: the requirement; None where it cannot be read, and of shared parts.
         joint: SHA-256 of the monitors of several requirements that are made now.
     """
     now = {product.file: product.sha256 for product in products if product.sha256}
-    return tuple(_view(proof, now, rule, joint) for proof in proofs)
+    return tuple(_view(proof, now, requirement, joint) for proof in proofs)
 
 
 def _view(
-    proof: Proof, now: Mapping[str, str], rule: FormalizedRequirement | None, joint: Collection[str]
+    proof: Proof,
+    now: Mapping[str, str],
+    requirement: FormalizedRequirement | None,
+    joint: Collection[str],
 ) -> ProofView:
-    suspicions = tuple(_suspicions(proof, now, rule, joint))
+    suspicions = tuple(_suspicions(proof, now, requirement, joint))
     return ProofView(
         requirement=proof.requirement,
         layer=str(proof.layer),
@@ -58,7 +61,10 @@ def _view(
 
 
 def _suspicions(
-    proof: Proof, now: Mapping[str, str], rule: FormalizedRequirement | None, joint: Collection[str]
+    proof: Proof,
+    now: Mapping[str, str],
+    requirement: FormalizedRequirement | None,
+    joint: Collection[str],
 ) -> Iterator[str]:
     """Why a proof is about other texts than those of now; only texts that fretc makes count."""
     for name, examined in proof.artefacts.items():
@@ -66,17 +72,18 @@ def _suspicions(
             what = "is not what it was" if name == ASSUMED else "is not made like that any more"
             yield f"{name} {what}"
     is_joint = any(examined in joint for examined in proof.artefacts.values())
-    if proof.layer in OF_MONITOR and not (is_joint or _is_of_monitor(proof, now, rule)):
+    if proof.layer in OF_MONITOR and not (is_joint or _is_of_monitor(proof, now, requirement)):
         yield "it is about another monitor than the one that is made now"
 
 
 def _is_of_monitor(
-    proof: Proof, now: Mapping[str, str], rule: FormalizedRequirement | None
+    proof: Proof, now: Mapping[str, str], requirement: FormalizedRequirement | None
 ) -> bool:
     """Whether the monitor that is made now was examined, in any language."""
     monitors = {hash_ for name, hash_ in now.items() if name.endswith("_monitor.py")}
     return any(
-        examined in monitors or (rule is not None and examined == compiled_monitor(rule, name))
+        examined in monitors
+        or (requirement is not None and examined == compiled_monitor(requirement, name))
         for name, examined in proof.artefacts.items()
     )
 

@@ -142,10 +142,10 @@ def _emission(files: Sequence[str], emits: str) -> str:
 
 def _of_bindings(project: Project) -> str:
     """SHA-256 as in the evidence: of the bindings that requirements in force read."""
-    rules = {id(rule.requirement): rule for rule in project.rules}
+    requirements = {id(requirement.entry): requirement for requirement in project.formalized}
     inforce = [each for each in project.requirements if each.status != "retired"]
     return of_all(
-        {each.id: of_bindings(rules.get(id(each)), project.declarations) for each in inforce}
+        {each.id: of_bindings(requirements.get(id(each)), project.declarations) for each in inforce}
     )
 
 

@@ -71,33 +71,35 @@ def section(
         book: who signed what.
         situations: that runs have shown; None where no run has been audited.
     """
-    requirement, rule = assessment.requirement, assessment.rule
+    entry, requirement = assessment.entry, assessment.requirement
     products = (*assessment.products, *shared_products)
     own = (proof for proof in proofs if proof.requirement == assessment.id)
-    own_proofs = proof_views(own, products, rule, joint)
+    own_proofs = proof_views(own, products, requirement, joint)
     shared_proofs = proof_views((p for p in proofs if p.requirement in SHARED), shared_products)
     clock = project.declarations.clock if project.declarations else None
     return RequirementView(
         id=assessment.id,
         anchor=assessment.anchor,
-        title=requirement.title,
+        title=entry.title,
         mark=assessment.mark,
         suspicions=assessment.suspicions,
-        status=requirement.status,
-        source=f"{phrases.place(requirement.wording.source.name)}:{requirement.wording.line}",
-        text=requirement.text,
-        sentence=wording(requirement),
-        canonical=sentence(rule.written) if rule else "",
-        fingerprint=rule.fingerprint if rule else "",
-        meaning=meaning(rule.written, rule.ticks, rule.clock) if rule else "",
+        status=entry.status,
+        source=f"{phrases.place(entry.wording.source.name)}:{entry.wording.line}",
+        text=entry.text,
+        sentence=wording(entry),
+        canonical=sentence(requirement.written) if requirement else "",
+        fingerprint=requirement.fingerprint if requirement else "",
+        meaning=meaning(requirement.written, requirement.ticks, requirement.clock)
+        if requirement
+        else "",
         error=remark(assessment.diagnostic) if assessment.diagnostic else None,
-        diagram=words(diagram(rule)) if rule else "",
-        formulas=_formulas(rule) if rule else (),
-        propositions=_propositions(rule, project.declarations) if rule else (),
+        diagram=words(diagram(requirement)) if requirement else "",
+        formulas=_formulas(requirement) if requirement else (),
+        propositions=_propositions(requirement, project.declarations) if requirement else (),
         clock=_clock(clock),
-        parents=tuple(_parent(parent, project, anchors) for parent in requirement.parents),
-        rationale=requirement.rationale,
-        params=dict(requirement.params),
+        parents=tuple(_parent(parent, project, anchors) for parent in entry.parents),
+        rationale=entry.rationale,
+        params=dict(entry.params),
         planned=planned(assessment, (*own_proofs, *shared_proofs)),
         artefacts=assessment.products,
         probability=_probability(assessment),
@@ -106,7 +108,7 @@ def section(
         histograms=(),
         results=result_rows(assessment, runs),
         reasons=reasons(assessment, runs, audited=audited),
-        limit=_limit(rule),
+        limit=_limit(requirement),
         coverage=assessment.coverage,
         situations=situations,
         review=review(assessment, book),
@@ -114,9 +116,13 @@ def section(
     )
 
 
-def _limit(rule: FormalizedRequirement | None) -> str:
+def _limit(requirement: FormalizedRequirement | None) -> str:
     """Why no run can violate it; many runs decide about a probability, so it has no limit."""
-    return "" if rule is None or rule.sentence.probability is not None else limit(rule)
+    return (
+        ""
+        if requirement is None or requirement.sentence.probability is not None
+        else limit(requirement)
+    )
 
 
 def _probability(assessment: Assessment) -> ProbabilityView | None:
@@ -153,15 +159,17 @@ def remark(diagnostic: Diagnostic) -> Remark:
     )
 
 
-def _formulas(rule: FormalizedRequirement) -> tuple[Formula, ...]:
+def _formulas(requirement: FormalizedRequirement) -> tuple[Formula, ...]:
     return (
-        Formula("Future time", "infinite traces", printing.readable(rule.ft_infinite)),
+        Formula("Future time", "infinite traces", printing.readable(requirement.ft_infinite)),
         Formula(
             "Future time, finite",
             "finite traces, read at the first tick; LAST holds at the last one",
-            printing.readable(rule.ft_finite),
+            printing.readable(requirement.ft_finite),
         ),
-        Formula("Past time", "finite traces, read at the last tick", printing.readable(rule.pt)),
+        Formula(
+            "Past time", "finite traces, read at the last tick", printing.readable(requirement.pt)
+        ),
     )
 
 
@@ -190,9 +198,9 @@ def _parent(id: str, project: Project, anchors: Mapping[str, str]) -> Parent:
 
 
 def _propositions(
-    rule: FormalizedRequirement, declared: Declarations | None
+    requirement: FormalizedRequirement, declared: Declarations | None
 ) -> tuple[PropositionView, ...]:
-    return tuple(_proposition(name, declared) for name in rule.propositions)
+    return tuple(_proposition(name, declared) for name in requirement.propositions)
 
 
 def _proposition(name: str, declared: Declarations | None) -> PropositionView:

@@ -90,7 +90,7 @@ def result_view(
     """
     # A stale result was judged by other bindings: the clock and the ages of now are not its own.
     is_stale = assessment.audits[row.number - 1].is_stale
-    bindings, rule = (None, None) if is_stale else (declared, assessment.rule)
+    bindings, requirement = (None, None) if is_stale else (declared, assessment.requirement)
     tick, ages = _tick(result, bindings.clock if bindings else None), _ages(bindings)
     return ResultView(
         anchor=row.anchor,
@@ -102,13 +102,15 @@ def result_view(
         reason=row.reason,
         triggers=row.triggers,
         exercised=_exercised(result),
-        latency=_latency(result, assessment.rule),
+        latency=_latency(result, assessment.requirement),
         thresholds=tuple(map(_threshold, result.thresholds)),
-        violations=tuple(_violation(v, result, ages, rule) for v in result.violations[:LISTED]),
+        violations=tuple(
+            _violation(v, result, ages, requirement) for v in result.violations[:LISTED]
+        ),
         violations_total=len(result.violations),
         open=_open(result),
         unknown=_unknown(result),
-        timelines=timelines(result, tick, ages, rule),
+        timelines=timelines(result, tick, ages, requirement),
     )
 
 
@@ -152,11 +154,11 @@ def _stretches(moments: Iterable[Moment]) -> list[list[Moment]]:
 # Latency ---------------------------------------------------------------------------------------
 
 
-def _latency(result: Result, rule: FormalizedRequirement | None) -> Latency | None:
+def _latency(result: Result, requirement: FormalizedRequirement | None) -> Latency | None:
     if not result.latencies:
         return None
     longest = max(result.latencies)
-    bounds = [bound for bound in [seconds_allowed(rule)] if bound is not None]
+    bounds = [bound for bound in [seconds_allowed(requirement)] if bound is not None]
     at_once = sum(latency <= 0 for latency in result.latencies)
     answers = phrases.times(len(result.latencies), "trigger")
     unknown = len(result.uncertain - {moment.tick for moment in result.open})
@@ -170,27 +172,27 @@ def _latency(result: Result, rule: FormalizedRequirement | None) -> Latency | No
         median=phrases.duration(median(result.latencies), bounds),
         longest=f"{phrases.duration(longest, bounds)}{after}",
         longest_s=longest,
-        is_bounded=is_bounded(rule),
-        bound=_bound(rule),
+        is_bounded=is_bounded(requirement),
+        bound=_bound(requirement),
         waits=_waits(result),
         median_s=round(median(result.latencies), 9),
     )
 
 
-def is_bounded(rule: FormalizedRequirement | None) -> bool:
+def is_bounded(requirement: FormalizedRequirement | None) -> bool:
     """Whether the sentence allows an answer only for some time, as far as is known."""
-    return rule is None or not syntax.is_eventual(rule.sentence.timing)
+    return requirement is None or not syntax.is_eventual(requirement.sentence.timing)
 
 
-def _bound(rule: FormalizedRequirement | None) -> str:
+def _bound(requirement: FormalizedRequirement | None) -> str:
     """The time that the sentence allows for the response, in words."""
-    if rule is None:
+    if requirement is None:
         return ""
-    if syntax.deadline(rule.sentence.timing):
-        return f"The sentence allows {span(rule.ticks or 0, rule.clock)}."
-    if not syntax.is_eventual(rule.sentence.timing):
+    if syntax.deadline(requirement.sentence.timing):
+        return f"The sentence allows {span(requirement.ticks or 0, requirement.clock)}."
+    if not syntax.is_eventual(requirement.sentence.timing):
         return ""
-    word = syntax.timing_key(rule.sentence)
+    word = syntax.timing_key(requirement.sentence)
     how = "gives no timing, which means `eventually`" if word == "null" else f"says `{word}`"
     return (
         f"No bound was required: the sentence {how}, so a response satisfies it however late it "
@@ -223,7 +225,7 @@ def _violation(
     violation: Violation,
     result: Result,
     ages: Mapping[str, float],
-    rule: FormalizedRequirement | None,
+    requirement: FormalizedRequirement | None,
 ) -> ViolationView:
     first, last, trigger = violation.first, violation.last, violation.trigger
     ticks = f"{first.tick}" if first.tick == last.tick else f"{first.tick} to {last.tick}"
@@ -237,7 +239,7 @@ def _violation(
         values=tuple(
             (name, reading(name, violation, result, ages)) for name in sorted(violation.values)
         ),
-        causes=tuple(dict.fromkeys(each.text for each in causes(violation, result, rule))),
+        causes=tuple(dict.fromkeys(each.text for each in causes(violation, result, requirement))),
     )
 
 
@@ -318,7 +320,7 @@ def reasons(
         left += len(audits)
         worst = sorted(audits, key=lambda audit: audit.mark.severity)[:_NAMED]
         lines += [(audit.mark.severity, _run_reason(audit, runs)) for audit in worst]
-        if not assessment.audits and assessment.rule is not None:
+        if not assessment.audits and assessment.requirement is not None:
             why = "the audit did not cover it" if audited else "no run has been audited"
             lines.append((severity(NOT_EXERCISED), why))
     texts = [text for _, text in sorted(lines, key=lambda line: line[0])]
@@ -327,7 +329,7 @@ def reasons(
 
 
 def _unformalized(assessment: Assessment) -> Iterator[str]:
-    if assessment.diagnostic is not None and assessment.rule is None:
+    if assessment.diagnostic is not None and assessment.requirement is None:
         yield f"{assessment.diagnostic.code.number}: {assessment.diagnostic.message}"
 
 

@@ -157,7 +157,7 @@ def _change(assessment: Assessment, difference: Difference) -> Change:
     other = (OTHER_TEXTS,) if difference.has_other_texts else ()
     return Change(
         requirement=assessment.id,
-        title=assessment.requirement.title,
+        title=assessment.entry.title,
         anchor=assessment.anchor,
         state=difference.state,
         by=_by(difference.review) if difference.review else "",

@@ -44,10 +44,12 @@ def set_analysis(known: AnalyzedSet, project: Project, anchors: Mapping[str, str
         project: as it is now.
         anchors: of the requirement of each id.
     """
-    rules = [rule for rule in project.rules if rule.requirement.status != RETIRED]
-    assumed, mistakes = assumptions(rules, project.declarations)
+    requirements = [
+        requirement for requirement in project.formalized if requirement.entry.status != RETIRED
+    ]
+    assumed, mistakes = assumptions(requirements, project.declarations)
     old = [
-        *suspicions(known.document, rules, assumed),
+        *suspicions(known.document, requirements, assumed),
         *(f"an assumption has a mistake: {each.message}" for each in mistakes if each.is_error),
     ]
     analysis = known.document.analysis

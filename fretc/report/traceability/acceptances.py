@@ -54,7 +54,7 @@ def warnings(
 
 
 def as_diagnostic(finding: Finding) -> Diagnostic:
-    """A finding of the evidence as it was; its line is told by the evidence."""
+    """A finding of the evidence as it was; its line is reported by the evidence."""
     return Diagnostic(
         _CODES.get(finding.code, Code.BAD_EVIDENCE),
         finding.message,

@@ -45,18 +45,22 @@ def answers(analyzed: AnalyzedSet | None, project: Project) -> Mapping[str, Answ
     if analyzed is None:
         return {}
     document = analyzed.document
-    rules = [rule for rule in project.rules if rule.requirement.status != "retired"]
-    assumed, _ = assumptions(rules, project.declarations)
-    old = _differences(document.requirements, members(rules))
+    requirements = [
+        requirement for requirement in project.formalized if requirement.entry.status != "retired"
+    ]
+    assumed, _ = assumptions(requirements, project.declarations)
+    old = _differences(document.requirements, members(requirements))
     promises = _differences(document.assumptions, members(assumed))
-    now = _components(rules, assumed, document.requirements)
+    now = _components(requirements, assumed, document.requirements)
     found: dict[str, Answer] = {}
-    for rule in rules:
-        if rule.id in document.requirements:
-            then = _component(document.analysis, rule.id)
-            mates = {rule.id, *then, *now[rule.id]}
+    for requirement in requirements:
+        if requirement.id in document.requirements:
+            then = _component(document.analysis, requirement.id)
+            mates = {requirement.id, *then, *now[requirement.id]}
             differing = (*(id for id in old if id in mates), *promises)
-            found[rule.id] = _answer(document.analysis, rule.id, differing, document.as_fret)
+            found[requirement.id] = _answer(
+                document.analysis, requirement.id, differing, document.as_fret
+            )
     return found
 
 
@@ -82,20 +86,25 @@ def _component(analysis: Analysis, id: str) -> tuple[str, ...]:
 
 
 def _components(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     assumed: Sequence[FormalizedRequirement],
     analyzed: Mapping[str, Member],
 ) -> Mapping[str, tuple[str, ...]]:
     """The requirements of each one's component now; all, where the roles are not known."""
-    systems = {rule.sentence.component for rule in rules if rule.id in analyzed}
-    own = [rule for rule in rules if rule.sentence.component in systems]
-    for some in (rules, own):  # an input of one system may be an output of another one
+    systems = {
+        requirement.sentence.component for requirement in requirements if requirement.id in analyzed
+    }
+    own = [requirement for requirement in requirements if requirement.sentence.component in systems]
+    for some in (requirements, own):  # an input of one system may be an output of another one
         chosen = roles([*some, *assumed])
         if not isinstance(chosen, tuple):
             groups = [[each.id for each in group] for group in by_outputs(some, assumed, chosen)]
             found = {id: tuple(ids) for ids in groups for id in ids}
-            return {rule.id: found.get(rule.id, ()) for rule in rules}
-    return dict.fromkeys((rule.id for rule in rules), tuple(rule.id for rule in rules))
+            return {requirement.id: found.get(requirement.id, ()) for requirement in requirements}
+    return dict.fromkeys(
+        (requirement.id for requirement in requirements),
+        tuple(requirement.id for requirement in requirements),
+    )
 
 
 def _differences(then: Mapping[str, Member], now: Mapping[str, Member]) -> tuple[str, ...]:

@@ -29,17 +29,17 @@ class Product:
 _ALWAYS = ("monitor", "ltl", "ajpf", "json")
 
 
-def products(rule: FormalizedRequirement | None) -> tuple[Product, ...]:
+def products(requirement: FormalizedRequirement | None) -> tuple[Product, ...]:
     """A product for each file of the requirement, and for each target that refuses it.
 
     Other targets than `_ALWAYS` count only where `verify` of the requirement names them: all of
     them may take longer than the rest of the report.
     """
-    if rule is None:
+    if requirement is None:
         return ()
-    planned = [name for name in rule.requirement.verify if name in TARGETS]
+    planned = [name for name in requirement.entry.verify if name in TARGETS]
     names = [name for name in dict.fromkeys((*_ALWAYS, *planned)) if TARGETS[name].per_rule]
-    return tuple(product for name in names for product in _of_target(TARGETS[name], rule))
+    return tuple(product for name in names for product in _of_target(TARGETS[name], requirement))
 
 
 def monitors(products_of: Mapping[int, Sequence[Product]]) -> Mapping[int, str]:
@@ -56,16 +56,16 @@ _LANGUAGES = {"_monitor.c": "c", "lib.rs": "rust", "_monitor.mjs": "js"}
 """How the names of monitors in other languages than Python end, and their target."""
 
 
-def compiled_monitor(rule: FormalizedRequirement, file: str) -> str:
+def compiled_monitor(requirement: FormalizedRequirement, file: str) -> str:
     """SHA-256 of the monitor of the requirement alone that would be in such a file; or nothing.
 
     Args:
-        rule: the requirement.
+        requirement: the requirement.
         file: its name.
     """
     for end, target in _LANGUAGES.items():
         if file.endswith(end):
-            made = _of_target(TARGETS[target], rule)
+            made = _of_target(TARGETS[target], requirement)
             return next((one.sha256 for one in made if PurePath(one.file).name == file), "")
     return ""
 
@@ -75,15 +75,15 @@ _JOINT = {"monitors.py": "monitor", "monitors.c": "c", "lib.rs": "rust", "monito
 
 
 def joint_monitors(
-    rules: Sequence[FormalizedRequirement], proofs: Iterable[Proof]
+    requirements: Sequence[FormalizedRequirement], proofs: Iterable[Proof]
 ) -> frozenset[str]:
-    """SHA-256 of each file with one monitor for several of the rules, as it is made now.
+    """SHA-256 of each file with one monitor for several of the requirements, as it is made now.
 
-    It is made of all of them, and of those that the proofs about one text are of: whoever names
+    It is made of all of them, and of those that the proofs about one text are of: anyone who names
     some requirements gets a file of these.
 
     Args:
-        rules: all of a project, in its order; those that a target refuses are in no file.
+        requirements: all of a project, in its order; those that a target refuses are in no file.
         proofs: about such files, among others.
     """
     groups: dict[tuple[str, str], list[str]] = {}
@@ -91,33 +91,36 @@ def joint_monitors(
         for file, examined in proof.artefacts.items():
             if file in _JOINT:
                 groups.setdefault((file, examined), []).append(proof.requirement)
-    by_id = {rule.id: rule for rule in reversed(rules)}
+    by_id = {requirement.id: requirement for requirement in reversed(requirements)}
     found = set[str]()
     for (file, _), ids in groups.items():
         named = [by_id[id] for id in dict.fromkeys(ids) if id in by_id]
-        in_order = [rule for rule in rules if rule in named]
-        orders = {tuple(rule.id for rule in some): some for some in (rules, in_order, named)}
+        in_order = [requirement for requirement in requirements if requirement in named]
+        orders = {
+            tuple(requirement.id for requirement in some): some
+            for some in (requirements, in_order, named)
+        }
         found.update(_of_joint(file, some) for some in orders.values())
     return frozenset(found - {""})
 
 
-def _of_joint(file: str, rules: Sequence[FormalizedRequirement]) -> str:
-    """SHA-256 of a file with one monitor for the rules; empty where the target refuses all."""
+def _of_joint(file: str, requirements: Sequence[FormalizedRequirement]) -> str:
+    """SHA-256 of one monitor for all requirements; empty where the target refuses all."""
     target = TARGETS[_JOINT[file]]
-    accepted = [each for each in rules if target.refuse(each) is None]
+    accepted = [each for each in requirements if target.refuse(each) is None]
     made = target.emit(accepted, Options(one_file=True)) if accepted else ()
     return next((sha256(each.text) for each in made if each.path.name == file), "")
 
 
-def _of_target(target: Target, rule: FormalizedRequirement) -> tuple[Product, ...]:
-    refusal = target.refuse(rule)
+def _of_target(target: Target, requirement: FormalizedRequirement) -> tuple[Product, ...]:
+    refusal = target.refuse(requirement)
     if refusal is not None:
         fix = f"; {refusal.help}" if refusal.help else ""
         text = f"{refusal.code.number} {refusal.message}{fix}"
         return (Product(target.name, "", "", text),)
     return tuple(
         Product(target.name, str(artifact.path), sha256(artifact.text), "")
-        for artifact in target.emit([rule])
+        for artifact in target.emit([requirement])
     )
 
 

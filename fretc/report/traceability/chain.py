@@ -31,7 +31,7 @@ from fretc.report.traceability.artefacts import Product, monitors, shared_produc
 from fretc.report.traceability.artefacts import products as products_of
 from fretc.report.traceability.texts import ReviewedTexts
 from fretish.bindings.canonical import described, digest
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 HAZARD, PARENT, STATUS, PLAN = "hazard", "parent", "status", "plan"
 TEXT, WORDS, FORMULAS, ARTEFACT = "text", "words", "formulas", "artefact"
@@ -145,27 +145,27 @@ def chains(
     """The chain of each requirement, in the order of the project.
 
     Args:
-        project: with or without errors; a requirement without a rule has a chain that ends early.
+        project: with or without errors; the chain of what is not formalized ends early.
         briefs: of the evidence; None where no run has been audited.
         artefacts: the products of each requirement, by its `id()`; None: `products` makes them.
         proofs: the results of verification.
         known: what a verdict on each requirement rests on now; None: `bases` makes it.
         analyzed: whether all can be kept together; None: nobody has asked.
     """
-    rules = {id(rule.requirement): rule for rule in project.rules}
+    requirements = {id(requirement.entry): requirement for requirement in project.formalized}
     results = briefs.by_requirement if briefs else {}
     if artefacts is None:
-        artefacts = {requirement: products_of(rule) for requirement, rule in rules.items()}
+        artefacts = {entry: products_of(requirement) for entry, requirement in requirements.items()}
     common = _common(project, briefs, artefacts, proofs, known, analyzed)
     return tuple(
-        _ChainBuilder(common, requirement).build(
-            requirement,
-            rules.get(id(requirement)),
-            artefacts.get(id(requirement), ()),
-            [each for _, each in results.get(requirement.id, ())],
-            [proof for proof in proofs if proof.requirement == requirement.id],
+        _ChainBuilder(common, entry).build(
+            entry,
+            requirements.get(id(entry)),
+            artefacts.get(id(entry), ()),
+            [each for _, each in results.get(entry.id, ())],
+            [proof for proof in proofs if proof.requirement == entry.id],
         )
-        for requirement in project.requirements
+        for entry in project.requirements
     )
 
 
@@ -174,7 +174,7 @@ class _Common:
     """What all chains of a project share."""
 
     project: Project
-    texts: Mapping[str, Requirement]
+    texts: Mapping[str, RequirementEntry]
     bases: Mapping[int, Basis]
     audited_by: str
     """The version of fretc that wrote the evidence."""
@@ -225,7 +225,7 @@ def _by_requirement(
 class _ChainBuilder:
     """Collects nodes and links of one requirement."""
 
-    def __init__(self, common: _Common, requirement: Requirement) -> None:
+    def __init__(self, common: _Common, requirement: RequirementEntry) -> None:
         self._common, self._project, self._id = common, common.project, requirement.id
         self._basis = common.bases[id(requirement)]
         self._prints: dict[Node, str] = {}
@@ -238,46 +238,48 @@ class _ChainBuilder:
 
     def build(
         self,
-        requirement: Requirement,
-        rule: FormalizedRequirement | None,
+        entry: RequirementEntry,
+        requirement: FormalizedRequirement | None,
         artefacts: Iterable[Product],
         results: Sequence[Brief],
         proofs: Sequence[Proof],
     ) -> Chain:
-        self._add_parents(requirement, {requirement.id})
-        self._add_status_and_plans(requirement)
-        self._accepted(requirement, rule)
-        sentence = Node(basis.SENTENCE, requirement.id)
+        self._add_parents(entry, {entry.id})
+        self._add_status_and_plans(entry)
+        self._accepted(entry, requirement)
+        sentence = Node(basis.SENTENCE, entry.id)
         self._add(sentence, self._basis[basis.SENTENCE])
-        self._link(Node(TEXT, requirement.id), sentence)
-        nodes = self._add_artefacts(rule, sentence, artefacts) if rule is not None else {}
+        self._link(Node(TEXT, entry.id), sentence)
+        nodes = (
+            self._add_artefacts(requirement, sentence, artefacts) if requirement is not None else {}
+        )
         sources = self._add_sources(nodes.get("monitor"), audited=bool(results))
         of_verdicts = self._sources_of_verdicts(sources) if results else ()
-        answer = self._common.answers.get(requirement.id)
-        if rule is not None:
-            self._add_proofs(rule, proofs)
+        answer = self._common.answers.get(entry.id)
+        if requirement is not None:
+            self._add_proofs(requirement, proofs)
         if answer is not None:
             self._add_answer(answer)
-        review = Node(REVIEW, requirement.id)
+        review = Node(REVIEW, entry.id)
         followed = {*of_verdicts, *(link.source for link in self._links)}
         for node in [node for node in self._prints if node not in followed]:
             self._link(node, review)
         return Chain(
-            requirement.id,
+            entry.id,
             self._prints,
             tuple(sorted(self._links)),
             results,
             of_verdicts,
             self._differences(results, sources),
             self._outdated_proofs,
-            self._texts(requirement, rule, proofs, answer, audited=bool(results)),
+            self._texts(entry, requirement, proofs, answer, audited=bool(results)),
             answer,
         )
 
     def _texts(
         self,
-        requirement: Requirement,
-        rule: FormalizedRequirement | None,
+        entry: RequirementEntry,
+        requirement: FormalizedRequirement | None,
         proofs: Sequence[Proof],
         answer: Answer | None,
         *,
@@ -286,45 +288,45 @@ class _ChainBuilder:
         """What the fingerprints are taken of."""
         declarations, written = self._project.declarations, self._common.written
         return ReviewedTexts(
-            sentence=requirement.wording.text,
-            canonical=texts.canonical_text(rule),
-            title=requirement.title,
-            text=requirement.text,
-            rationale=requirement.rationale,
-            status=requirement.status,
-            parents=requirement.parents,
-            verify=requirement.verify,
-            params=dict(requirement.params),
+            sentence=entry.wording.text,
+            canonical=texts.canonical_text(requirement),
+            title=entry.title,
+            text=entry.text,
+            rationale=entry.rationale,
+            status=entry.status,
+            parents=entry.parents,
+            verify=entry.verify,
+            params=dict(entry.params),
             accept=self._accept,
             hazards=self._hazards,
             elsewhere=self._elsewhere,
             above=self._above,
-            bindings=texts.bindings(rule, declarations, written) if declarations else None,
+            bindings=texts.bindings(requirement, declarations, written) if declarations else None,
             topics=tuple(sorted(self._common.topics)) if audited and declarations else None,
             proofs={_claim(each): (each.result, *each.assumptions) for each in proofs}
-            if rule
+            if requirement
             else {},
             loop=texts.loop(written) if proofs and declarations else {},
             analysis=answer.texts if answer else (),
-            fretc=__version__ if rule else "",
+            fretc=__version__ if requirement else "",
         )
 
-    def _add_status_and_plans(self, requirement: Requirement) -> None:
+    def _add_status_and_plans(self, requirement: RequirementEntry) -> None:
         """Add status and planned methods: a review depends on them, and no verdict does."""
         self._add(in_force(self._id), print_of_status(requirement.status))
         for method in requirement.verify:
             self._add(Node(PLAN, f"{self._id} {method}"), digest(method))
 
-    def _accepted(self, requirement: Requirement, rule: FormalizedRequirement | None) -> None:
+    def _accepted(self, entry: RequirementEntry, requirement: FormalizedRequirement | None) -> None:
         """The warnings that a reviewer accepts with it: no verdict depends on them."""
-        topics = _topics(rule, self._project)
+        topics = _topics(requirement, self._project)
         known = self._common.acceptances
-        for each in (*known.get(id(requirement), ()), *known.get(None, ())):
+        for each in (*known.get(id(entry), ()), *known.get(None, ())):
             if each.about != TOPIC or each.subject in ("", *topics):
                 self._accept[each.name] = each.reason
                 self._add(Node(ACCEPTANCE, each.name), print_of_words(each.reason))
 
-    def _add_parents(self, requirement: Requirement, visited: set[str]) -> None:
+    def _add_parents(self, requirement: RequirementEntry, visited: set[str]) -> None:
         """Add the hazards and requirements that it traces to, all the way up."""
         text = Node(TEXT, requirement.id)
         self._add(text, print_of_header(texts.above(requirement)))
@@ -346,17 +348,17 @@ class _ChainBuilder:
                 self._link(Node(TEXT, parent), text)
 
     def _add_artefacts(
-        self, rule: FormalizedRequirement, sentence: Node, artefacts: Iterable[Product]
+        self, requirement: FormalizedRequirement, sentence: Node, artefacts: Iterable[Product]
     ) -> Mapping[str, Node]:
         """Add formulas, words and artefacts; gives the artefact of each target."""
-        formulas, words = Node(FORMULAS, rule.id), Node(WORDS, rule.id)
+        formulas, words = Node(FORMULAS, requirement.id), Node(WORDS, requirement.id)
         clock, fretc = self._add_clock(), Node(basis.FRETC, _VERSION)
-        self._add(formulas, _formulas(rule))
+        self._add(formulas, _formulas(requirement))
         self._add(fretc, digest(__version__))
         self._link(sentence, formulas)
-        if rule.ticks is not None:
+        if requirement.ticks is not None:
             self._link(clock, formulas)
-        meanings = described(self._project.declarations, rule.watched)
+        meanings = described(self._project.declarations, requirement.watched)
         if meanings:
             self._add(words, digest(meanings))
         nodes = {}
@@ -412,13 +414,13 @@ class _ChainBuilder:
             if kinds
         }
 
-    def _add_proofs(self, rule: FormalizedRequirement, proofs: Sequence[Proof]) -> None:
+    def _add_proofs(self, requirement: FormalizedRequirement, proofs: Sequence[Proof]) -> None:
         """Add each proof, with the texts and assumptions that it is about."""
         now = self._common.shared
         for proof in proofs:
-            node = Node(PROOF, f"{rule.id} {_claim(proof)}")
+            node = Node(PROOF, f"{requirement.id} {_claim(proof)}")
             self._add(node, print_of_proof(proof.result, proof.assumptions))
-            self._link(Node(FORMULAS, rule.id), node)
+            self._link(Node(FORMULAS, requirement.id), node)
             for name, fingerprint in proof.artefacts.items():
                 source = Node(SHARED, name) if name in now else Node(ARTEFACT, name)
                 if name in now:
@@ -473,11 +475,11 @@ def _print_of_log(result: Brief) -> str:
     return result.log or result.fingerprints.log_summary or ""
 
 
-def _topics(rule: FormalizedRequirement | None, project: Project) -> set[str]:
+def _topics(requirement: FormalizedRequirement | None, project: Project) -> set[str]:
     """Which the propositions of a requirement are read from."""
-    if rule is None or project.declarations is None:
+    if requirement is None or project.declarations is None:
         return set()
-    read = project.declarations.reading(rule.watched)
+    read = project.declarations.reading(requirement.watched)
     return {signal.path.topic for signal in read.signals.values()}
 
 
@@ -506,8 +508,8 @@ def _claim(proof: Proof) -> str:
     return f"{proof.layer}: {proof.claim}"
 
 
-def _formulas(rule: FormalizedRequirement) -> str:
-    formulas = [rule.ft_infinite, rule.ft_finite, rule.pt]
+def _formulas(requirement: FormalizedRequirement) -> str:
+    formulas = [requirement.ft_infinite, requirement.ft_finite, requirement.pt]
     return digest([printing.readable(formula) for formula in formulas])
 
 

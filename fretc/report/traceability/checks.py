@@ -33,14 +33,22 @@ def checks(project: Project, standings: Sequence[ReviewedRequirement]) -> tuple[
     """All warnings, in the order of the project.
 
     Args:
-        project: with or without errors; no rule that a mistake reaches is looked at.
+        project: with or without errors; no requirement that a mistake reaches is looked at.
         standings: requirements beside their reviews.
     """
-    rules = [rule for rule in project.sound.rules if rule.requirement.status != "retired"]
+    requirements = [
+        requirement
+        for requirement in project.sound.formalized
+        if requirement.entry.status != "retired"
+    ]
     diagnostics = [
         d
-        for rule in rules
-        for d in (*_own_triggers(rule, project), *_never_so(rule), *_planned(rule))
+        for requirement in requirements
+        for d in (
+            *_own_triggers(requirement, project),
+            *_never_so(requirement),
+            *_planned(requirement),
+        )
     ]
     options = Options(declarations=project.declarations)
     interceptor = TARGETS["interceptor"].remarks(options)
@@ -52,13 +60,13 @@ def checks(project: Project, standings: Sequence[ReviewedRequirement]) -> tuple[
 # Vacuity ---------------------------------------------------------------------------------------
 
 
-def _own_triggers(rule: FormalizedRequirement, project: Project) -> Iterator[Diagnostic]:
+def _own_triggers(requirement: FormalizedRequirement, project: Project) -> Iterator[Diagnostic]:
     """F209: the condition waits for what the component itself commands.
 
     Where the component is what the sentence is about, its commands are answers: a property that
     is triggered by them holds of a component that never acts.
     """
-    condition = rule.sentence.condition
+    condition = requirement.sentence.condition
     declared = project.declarations
     if condition is None or declared is None:
         return
@@ -68,28 +76,30 @@ def _own_triggers(rule: FormalizedRequirement, project: Project) -> Iterator[Dia
             continue
         yield Diagnostic(
             Code.OWN_TRIGGER,
-            f"{rule.id} is triggered by `{name}`, which {rule.sentence.component} itself commands: "
+            f"{requirement.id} is triggered by `{name}`, which {requirement.sentence.component} "
+            "itself commands: "
             "it holds where nothing is ever commanded",
-            _place(rule, name),
+            _place(requirement, name),
             help="trigger it by what the sensors see, or say `role` and `kind` of the proposition",
             severity=Severity.WARNING,
         )
 
 
-def _place(rule: FormalizedRequirement, name: str) -> Span:
-    assert rule.sentence.condition is not None
-    places = (n.span for n in names(rule.sentence.condition.expression) if n.id == name)
-    return next(places, None) or rule.requirement.wording
+def _place(requirement: FormalizedRequirement, name: str) -> Span:
+    assert requirement.sentence.condition is not None
+    places = (n.span for n in names(requirement.sentence.condition.expression) if n.id == name)
+    return next(places, None) or requirement.entry.wording
 
 
-def _never_so(rule: FormalizedRequirement) -> Iterator[Diagnostic]:
+def _never_so(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
     """F210 for each part of the sentence that no numbers make true, or none false."""
-    for part, value in constant_parts(rule):
+    for part, value in constant_parts(requirement):
         yield Diagnostic(
             Code.NEVER_SO,
-            f"`{printed(part)}` of {rule.id} is {'always' if value else 'never'} true, whatever is "
+            f"`{printed(part)}` of {requirement.id} is {'always' if value else 'never'} true, "
+            "whatever is "
             "measured",
-            next((name.span for name in names(part)), None) or rule.requirement.wording,
+            next((name.span for name in names(part)), None) or requirement.entry.wording,
             help="look at the numbers, and at the direction of each comparison",
             severity=Severity.WARNING,
         )
@@ -98,36 +108,37 @@ def _never_so(rule: FormalizedRequirement) -> Iterator[Diagnostic]:
 # Planned methods -------------------------------------------------------------------------------
 
 
-def _planned(rule: FormalizedRequirement) -> Iterator[Diagnostic]:
+def _planned(requirement: FormalizedRequirement) -> Iterator[Diagnostic]:
     """F525: a planned method that can give no result; and what a target has to remark."""
-    for method in rule.requirement.verify:
+    for method in requirement.entry.verify:
         target = TARGETS.get("monitor" if method == "audit" else method)
         if target is None:
-            yield from _misspelt(rule, method)
+            yield from _misspelt(requirement, method)
             continue
-        refused = target.refuse(rule)
+        refused = target.refuse(requirement)
         if refused is not None:
             yield Diagnostic(
                 Code.UNREACHABLE_PLAN,
-                f"{rule.id} plans `{method}`, and there can be no result: {refused.message}",
-                rule.requirement.place("verify"),
+                f"{requirement.id} plans `{method}`, and there can be no result: {refused.message}",
+                requirement.entry.place("verify"),
                 help=refused.help,
                 severity=Severity.WARNING,
             )
             continue
-        remark = target.remark(rule)
+        remark = target.remark(requirement)
         if remark is not None:
             yield remark
 
 
-def _misspelt(rule: FormalizedRequirement, method: str) -> Iterator[Diagnostic]:
+def _misspelt(requirement: FormalizedRequirement, method: str) -> Iterator[Diagnostic]:
     """F528: nearly the name of a method whose results fretc knows; any other name is one's own."""
     near = suggestion(method, _METHODS, cutoff=0.75)
     if method not in _METHODS and near is not None:
         yield Diagnostic(
             Code.MISSPELT_METHOD,
-            f"{rule.id} plans `{method}`, which is no method that fretc knows: it stays open",
-            rule.requirement.place("verify"),
+            f"{requirement.id} plans `{method}`, which is no method that fretc knows: it stays "
+            "open",
+            requirement.entry.place("verify"),
             help=f"did you mean `{near}`?",
             severity=Severity.WARNING,
         )

@@ -170,9 +170,9 @@ def contradictions(standing: ReviewedRequirement, project: Project) -> tuple[str
     then = standing.review.texts if standing.review else None
     now = standing.chain.texts
     fields: dict[tuple[str, bool], list[str]] = {}
-    for rule in project.rules:
-        if rule.id == id and rule.declarations is not None:
-            for field, words in drifted(rule, rule.declarations):
+    for requirement in project.formalized:
+        if requirement.id == id and requirement.declarations is not None:
+            for field, words in drifted(requirement, requirement.declarations):
                 same = then is not None and getattr(then, field) == getattr(now, field)
                 fields.setdefault((words, same), []).append(_FIELDS[field])
     found = [_statement(names, words, same) for (words, same), names in fields.items()]

@@ -39,7 +39,7 @@ from fretc.report.traceability.texts import read as read_texts
 from fretish.bindings.canonical import digest
 from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.reading.natural_order import natural
 from fretish.reading.toml_text import Tables
 from fretish.reading.toml_text import read as read_tables
@@ -460,7 +460,7 @@ class WithdrawnRequirement:
 
 
 def withdrawn_requirements(
-    requirements: Iterable[Requirement], chains: Iterable[Chain], lock: Lock | None
+    requirements: Iterable[RequirementEntry], chains: Iterable[Chain], lock: Lock | None
 ) -> tuple[WithdrawnRequirement, ...]:
     """The requirements of the lock that are removed, renamed, split or retired."""
     if lock is None:

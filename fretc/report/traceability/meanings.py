@@ -46,7 +46,7 @@ from fretish.bindings import canonical
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.printer import expression
 from fretish.reading.recursion import with_recursion_limit
 
@@ -284,7 +284,7 @@ def _declarations(bindings: Bindings) -> Declarations | None:
 def agree(id: str, texts: ReviewedTexts, prints: Mapping[Node, str]) -> bool:
     """Whether the texts of a review are those that its fingerprints were taken of.
 
-    A lock may be a stranger's. What its fingerprints do not vouch for is never shown as what was
+    A lock may be untrusted. What its fingerprints do not vouch for is never shown as what was
     accepted; the seal of a review, and so its signature, covers both.
     """
     own = dict(_fingerprints(id, texts))
@@ -334,17 +334,19 @@ def _of_meaning(id: str, texts: ReviewedTexts) -> Iterator[tuple[Node, str]]:
     """Of the sentence, its numbers, the clock and the bindings, read again."""
     declarations = _declarations(texts.bindings) if texts.bindings is not None else None
     wording = Source("fretc.lock", texts.sentence).span()
-    rule = formalize(Requirement(id, wording), declarations)[0] if texts.canonical else None
-    sentence = rule.fingerprint if rule else sha256(_line(texts.sentence))
-    is_canonical = canonical_text(rule) == texts.canonical
+    requirement = (
+        formalize(RequirementEntry(id, wording), declarations)[0] if texts.canonical else None
+    )
+    sentence = requirement.fingerprint if requirement else sha256(_line(texts.sentence))
+    is_canonical = canonical_text(requirement) == texts.canonical
     yield Node(basis.SENTENCE, id), sentence if is_canonical else ""
     params = {name: canonical.parameter(text) for name, text in texts.params.items()}
     yield Node(basis.PARAMS, id), _of(params)
     clock = _of(canonical.clock(declarations.clock)) if declarations else ""
     yield Node(basis.CLOCK, "clock"), clock
-    known = rule.declarations or declarations if rule else None
-    bound = _of(canonical.bound(known, rule.watched)) if rule and known else ""
+    known = requirement.declarations or declarations if requirement else None
+    bound = _of(canonical.bound(known, requirement.watched)) if requirement and known else ""
     yield Node(basis.BINDINGS, id), bound
-    words = canonical.described(known, rule.watched) if rule else {}
+    words = canonical.described(known, requirement.watched) if requirement else {}
     if words:
         yield Node(WORDS, id), _of(words)

@@ -15,7 +15,7 @@ from compiler.project.hazards import Hazard
 from compiler.project.parents import Parent
 from fretish.bindings.declarations import Declarations
 from fretish.diagnostics.diagnostic import Code, Diagnostic
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.printer import canonical
 from fretish.reading.toml_text import read as read_tables
 
@@ -102,7 +102,7 @@ def as_table(texts: ReviewedTexts) -> Table:
     return table
 
 
-def above(requirement: Requirement) -> ParentRequirement:
+def above(requirement: RequirementEntry) -> ParentRequirement:
     """A requirement above another one."""
     texts = (requirement.title, requirement.text, requirement.rationale)
     return ParentRequirement(*texts, requirement.parents)
@@ -123,9 +123,9 @@ def elsewhere(parent: Parent) -> ExternalParent:
     return ExternalParent(parent.title, parent.text)
 
 
-def canonical_text(rule: FormalizedRequirement | None) -> str:
+def canonical_text(requirement: FormalizedRequirement | None) -> str:
     """The canonical wording of a sentence."""
-    return canonical(rule.written) if rule else ""
+    return canonical(requirement.written) if requirement else ""
 
 
 def written_tables(declarations: Declarations | None) -> Mapping[str, Any]:
@@ -137,23 +137,23 @@ def written_tables(declarations: Declarations | None) -> Mapping[str, Any]:
 
 
 def bindings(
-    rule: FormalizedRequirement | None, project: Declarations, written: Mapping[str, Any]
+    requirement: FormalizedRequirement | None, project: Declarations, written: Mapping[str, Any]
 ) -> Bindings:
     """The tables that a requirement reads.
 
     Args:
-        rule: None where it cannot be formalized: then it reads the clock alone.
+        requirement: None where it cannot be formalized: then it reads the clock alone.
         project: the bindings of the project.
         written: their text, from `written_tables`.
     """
     clock = dict(written.get("clock", {}))
-    if rule is None:
+    if requirement is None:
         return Bindings(clock)
-    known = rule.declarations or project
-    named = tuple(dict.fromkeys((*rule.watched, *rule.propositions)))
+    known = requirement.declarations or project
+    named = tuple(dict.fromkeys((*requirement.watched, *requirement.propositions)))
     own = [name for name in named if name in known.propositions]
     read = {signal for name in own for signal in known.propositions[name].signals}
-    names = {*rule.variables, *rule.definitions}
+    names = {*requirement.variables, *requirement.definitions}
     return Bindings(
         clock,
         _chosen(written, "signal", read & known.signals.keys()),

@@ -11,9 +11,9 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.evaluation import evaluate
 from compiler.logic.formula import Formula
 from compiler.targets.python import monitor as emitted
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.budget import Budget, OutOfTimeError
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.analysis.components import about, by_variables
 from fretc.testing.conformance.driving import Driver, Start
 from fretc.testing.conformance.findings import SCHEMA, Conformance, Failure, Outcome, Situated
@@ -36,7 +36,7 @@ class ConformanceRun:
 
     def __init__(
         self,
-        rules: Sequence[FormalizedRequirement],
+        requirements: Sequence[FormalizedRequirement],
         assumptions: Sequence[FormalizedRequirement],
         roles: Roles,
         seconds: float,
@@ -44,7 +44,7 @@ class ConformanceRun:
         """Before the first run.
 
         Args:
-            rules: the requirements.
+            requirements: the requirements.
             assumptions: what the tester keeps.
             roles: of all their variables.
             seconds: of a processor, for the strategy towards each situation.
@@ -53,9 +53,13 @@ class ConformanceRun:
             UnsupportedError: the program cannot be given inputs.
             OutOfTimeError: the assumptions take too long.
         """
-        refused = {rule.id: emitted.refuse(rule) for rule in rules}
+        refused = {requirement.id: emitted.refuse(requirement) for requirement in requirements}
         self._not_judged = {id: why.message for id, why in refused.items() if why is not None}
-        self._rules = {rule.id: rule for rule in rules if rule.id not in self._not_judged}
+        self._rules = {
+            requirement.id: requirement
+            for requirement in requirements
+            if requirement.id not in self._not_judged
+        }
         self._seconds = seconds
         judged = [*self._rules.values()]
         if not judged:
@@ -86,8 +90,8 @@ class ConformanceRun:
         try:
             for field in self._fields:
                 for aim in field.aims:
-                    if aim.rule.id not in self._failures and aim not in self._outcomes:
-                        progress(f"{aim.rule.id}: {aim.situation.words}; {aim.polarity}")
+                    if aim.requirement.id not in self._failures and aim not in self._outcomes:
+                        progress(f"{aim.requirement.id}: {aim.situation.words}; {aim.polarity}")
                         self._go_for(aim, field, driver)
             self._roam(driver, progress)
             self._is_whole = True
@@ -103,7 +107,7 @@ class ConformanceRun:
             run = None
             for choose in self._choices(aim):
                 run = self._try(aim, field, plan, choose, driver)
-                if aim in self._outcomes or aim.rule.id in self._failures:
+                if aim in self._outcomes or aim.requirement.id in self._failures:
                     return
         except OutOfTimeError as error:
             self._outcomes[aim] = Outcome.NOT_SEARCHED, str(error)
@@ -159,15 +163,15 @@ class ConformanceRun:
                     self._outcomes[other] = Outcome.REACHED, ""
 
     def _failure(
-        self, aim: TargetState | None, rule: FormalizedRequirement, run: Run, driver: Driver
+        self, aim: TargetState | None, requirement: FormalizedRequirement, run: Run, driver: Driver
     ) -> Failure:
-        shrinking = Shrinking(rule.id, self.oracle.inputs, driver.again, run)
+        shrinking = Shrinking(requirement.id, self.oracle.inputs, driver.again, run)
         again = shrinking.again()
         best = shrinking.shrink() if again else run
         return Failure(
-            requirement=rule.id,
-            sentence=printed(rule.written),
-            because=reason(rule, best),
+            requirement=requirement.id,
+            sentence=printed(requirement.written),
+            because=reason(requirement, best),
             rows=tuple(_repeats(best.rows)),
             situation="" if aim is None else aim.situation.key,
             ticks=len(run.rows),
@@ -197,7 +201,7 @@ class ConformanceRun:
                 if aim.polarity is Polarity.KEPT and aim in self._outcomes:
                     outcome, why = self._outcomes[aim]
                     place = aim.situation
-                    yield Situated(aim.rule.id, place.key, place.words, outcome, why)
+                    yield Situated(aim.requirement.id, place.key, place.words, outcome, why)
             for what, why in field.beyond.items():
                 id, _, words = what.partition(": ")
                 yield Situated(id, "all", words or "all", Outcome.NOT_SEARCHED, why)
@@ -205,7 +209,7 @@ class ConformanceRun:
 
 def _shows(run: Run, aim: TargetState, shown: Formula) -> bool:
     """Whether a run that keeps a requirement shows a situation of it."""
-    if aim.polarity is not Polarity.KEPT or aim.rule.id in run.broken or not run.is_known:
+    if aim.polarity is not Polarity.KEPT or aim.requirement.id in run.broken or not run.is_known:
         return False
     return bool(run.rows and evaluate(shown, run.columns(), len(run.rows)))
 

@@ -7,8 +7,8 @@ from random import Random
 
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.transition import State
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.testing.conformance.oracle import Oracle, Run, Tick, Truths
 from fretc.testing.conformance.program import Program
 from fretc.testing.conformance.requirement_groups import Plan, RequirementGroup

@@ -9,8 +9,8 @@ from typing import Any
 from compiler.explanation.reasons import why
 from compiler.formalization.formalized import FormalizedRequirement
 from compiler.targets.python.monitor import text
-from fretc.analysis.arena.alphabet import UnsupportedError
 from fretc.analysis.arena.roles import Roles
+from fretc.analysis.arena.variables import UnsupportedError
 from fretc.testing.exports.tables import Cell
 from fretc.testing.words import Word, letters
 from fretish.bindings.declarations import Role
@@ -30,7 +30,7 @@ class Oracle:
 
     def __init__(
         self,
-        rules: Sequence[FormalizedRequirement],
+        requirements: Sequence[FormalizedRequirement],
         assumptions: Sequence[FormalizedRequirement],
         roles: Roles,
     ) -> None:
@@ -39,7 +39,7 @@ class Oracle:
         Raises:
             UnsupportedError: a column belongs neither to the inputs nor to the outputs.
         """
-        self._rules = [*rules, *assumptions]
+        self._rules = [*requirements, *assumptions]
         self._assumed = {each.id for each in assumptions}
         self._monitor = load("monitors.py", text(*self._rules))
         self._truths: Callable[..., Sequence[bool | None]] | None
@@ -77,18 +77,20 @@ class Oracle:
     def broken(self) -> tuple[str, ...]:
         """The requirements that are violated; none of them where an assumption is."""
         said = zip(self._rules, self._monitor.verdicts(), strict=True)
-        found = tuple(rule.id for rule, verdict in said if verdict == VIOLATED)
+        found = tuple(requirement.id for requirement, verdict in said if verdict == VIOLATED)
         return () if self._assumed.intersection(found) else found
 
     def is_over(self) -> bool:
         """Whether an assumption is violated: nothing that follows counts."""
         said = zip(self._rules, self._monitor.verdicts(), strict=True)
-        return any(verdict == VIOLATED and rule.id in self._assumed for rule, verdict in said)
+        return any(
+            verdict == VIOLATED and requirement.id in self._assumed for requirement, verdict in said
+        )
 
     def triggered(self) -> frozenset[str]:
         """The requirements of which a demand has begun."""
         marks = zip(self._rules, self._monitor.must.marks(), strict=True)
-        return frozenset(rule.id for rule, mark in marks if mark.last >= 0)
+        return frozenset(requirement.id for requirement, mark in marks if mark.last >= 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,9 +117,9 @@ class Run:
         return all(truth is not None for truths in self.truths for truth in truths.values())
 
 
-def reason(rule: FormalizedRequirement, run: Run) -> str:
-    """Why the run violates the rule, in words."""
+def reason(requirement: FormalizedRequirement, run: Run) -> str:
+    """Why the run violates the requirement, in words."""
     if not run.is_known:
         return "whatever the unknown values are"
     word = Word((), run.columns(), len(run.rows))
-    return why(rule, letters(rule, word), ends=True)
+    return why(requirement, letters(requirement, word), ends=True)

@@ -19,13 +19,14 @@ from compiler.logic import decision_diagrams as bdd
 from compiler.logic import formula as f
 from compiler.logic.decision_diagrams import Function
 from compiler.situations.situations import Situation, situations
-from fretc.analysis.arena.alphabet import Tick, UnsupportedError, numbers
+from fretc.analysis.arena.alphabet import Tick
 from fretc.analysis.arena.budget import Budget
-from fretc.analysis.arena.counters import Counter, counter
-from fretc.analysis.arena.memory import Bit, Memory, Past
+from fretc.analysis.arena.counters import counter
+from fretc.analysis.arena.memory import Bit, Counter, Memory, Past
 from fretc.analysis.arena.product import Fixed, near_each_other
 from fretc.analysis.arena.roles import Roles
 from fretc.analysis.arena.transition import State, Transition
+from fretc.analysis.arena.variables import UnsupportedError, numbers
 from fretc.analysis.games.game import upheld
 from fretc.analysis.realizability_problem import alphabet_of
 from fretc.testing.bench import demands
@@ -38,7 +39,7 @@ from fretish.bindings.declarations import Role
 class TargetState:
     """What a run is to lead to."""
 
-    rule: FormalizedRequirement
+    requirement: FormalizedRequirement
     situation: Situation
     polarity: Polarity
     shown: tuple[f.Formula, ...]
@@ -50,7 +51,7 @@ class TargetState:
     @property
     def name(self) -> str:
         """For people, and as a seed."""
-        return f"{self.rule.id} {self.situation.key} {self.polarity}"
+        return f"{self.requirement.id} {self.situation.key} {self.polarity}"
 
 
 class RequirementGroup:
@@ -58,7 +59,7 @@ class RequirementGroup:
 
     def __init__(
         self,
-        rules: Sequence[FormalizedRequirement],
+        requirements: Sequence[FormalizedRequirement],
         assumptions: Sequence[FormalizedRequirement],
         roles: Roles,
         budget: Budget,
@@ -69,7 +70,7 @@ class RequirementGroup:
             UnsupportedError: an assumption has no counter, or no values are known for an input.
             OutOfTimeError: the assumptions take too long.
         """
-        every = [*rules, *assumptions]
+        every = [*requirements, *assumptions]
         fresh = numbers()
         alphabet = alphabet_of(every, roles, fresh, Role.INPUT, of_moments=True)
         shared: dict[Function, Bit] = {}
@@ -90,10 +91,14 @@ class RequirementGroup:
         self.alphabet = Fixed(alphabet)
         self._memory = Memory(fresh, shared)
         self._past = Past(self.alphabet.atom, self._memory)
-        self._counters = {rule.id: found[rule.id] for rule in rules if rule.id in found}
+        self._counters = {
+            requirement.id: found[requirement.id]
+            for requirement in requirements
+            if requirement.id in found
+        }
         given = [found[each.id] for each in assumptions]
         given += [before] if before is not None else []
-        self.aims = tuple(aim for rule in rules for aim in self._aims(rule))
+        self.aims = tuple(aim for requirement in requirements for aim in self._aims(requirement))
         self.transition = Transition([*self._counters.values(), *given, self._remembered()])
         self._kept = upheld(self.alphabet, given, budget)
         self._safe = self.alphabet.reachable
@@ -113,42 +118,42 @@ class RequirementGroup:
         """The inputs that keep the assumptions, whatever a program does that keeps its own."""
         return self.alphabet.legal & bdd.every_implied(self._safe, self._kept, self._outputs)
 
-    def _aims(self, rule: FormalizedRequirement) -> Iterator[TargetState]:
-        if rule.id not in self._counters:
+    def _aims(self, requirement: FormalizedRequirement) -> Iterator[TargetState]:
+        if requirement.id not in self._counters:
             return
-        for situation in situations(rule):
+        for situation in situations(requirement):
             if situation.unknown is not None or situation.place is not None:
                 continue  # a program is given values, and those that a strategy has no say in
             try:
-                yield self._kept_aim(rule, situation)
-                yield self._broken_aim(rule, situation)
+                yield self._kept_aim(requirement, situation)
+                yield self._broken_aim(requirement, situation)
             except UnsupportedError as error:
-                self.beyond[f"{rule.id}: {situation.words}"] = str(error)
+                self.beyond[f"{requirement.id}: {situation.words}"] = str(error)
 
-    def _kept_aim(self, rule: FormalizedRequirement, situation: Situation) -> TargetState:
+    def _kept_aim(self, requirement: FormalizedRequirement, situation: Situation) -> TargetState:
         """The situation, and then, where it can be, a tick at which nothing is open any more."""
         if situation.at_end:
-            return self._aim(rule, situation, Polarity.KEPT, situation.formula)
+            return self._aim(requirement, situation, Polarity.KEPT, situation.formula)
         seen = f.once(situation.formula)
-        done = f.and_(seen, f.not_(rule.watch.owed))
-        return self._aim(rule, situation, Polarity.KEPT, done, seen)
+        done = f.and_(seen, f.not_(requirement.watch.owed))
+        return self._aim(requirement, situation, Polarity.KEPT, done, seen)
 
-    def _broken_aim(self, rule: FormalizedRequirement, situation: Situation) -> TargetState:
+    def _broken_aim(self, requirement: FormalizedRequirement, situation: Situation) -> TargetState:
         """The situation, and a tick at which the requirement is broken."""
-        return self._aim(rule, situation, Polarity.BROKEN, f.once(situation.formula))
+        return self._aim(requirement, situation, Polarity.BROKEN, f.once(situation.formula))
 
     def _aim(
         self,
-        rule: FormalizedRequirement,
+        requirement: FormalizedRequirement,
         situation: Situation,
         polarity: Polarity,
         *shown: f.Formula,
     ) -> TargetState:
-        own = self._counters[rule.id].safe
+        own = self._counters[requirement.id].safe
         goals = tuple(self._past.value(formula) for formula in shown)
         if polarity is Polarity.BROKEN:
             goals = tuple(goal - own for goal in goals)
-        return TargetState(rule, situation, polarity, shown, goals)
+        return TargetState(requirement, situation, polarity, shown, goals)
 
     # Plans
 
@@ -177,7 +182,7 @@ class RequirementGroup:
             return self._safe
         found = self.alphabet.reachable
         for id, each in self._counters.items():
-            if id != aim.rule.id:
+            if id != aim.requirement.id:
                 found = found & each.safe
         return found
 

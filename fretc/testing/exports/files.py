@@ -37,19 +37,19 @@ Left = Mapping[str, str]
 
 def files(
     suite: Suite,
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     form: Form,
     languages: Sequence[Language] = (Language.PYTHON,),
 ) -> tuple[tuple[Artifact, ...], Left]:
     """All files of a suite, and the tests that are in none of them.
 
     Args:
-        suite: made of the rules.
-        rules: the requirements.
+        suite: made of the requirements.
+        requirements: the requirements.
         form: of the files.
         languages: of the monitors that tests for pytest step.
     """
-    by_id = {rule.id: rule for rule in rules}
+    by_id = {requirement.id: requirement for requirement in requirements}
     reasons = {
         each.name: _refusal(by_id[each.requirement], each, form, languages) for each in suite.tests
     }
@@ -60,9 +60,9 @@ def files(
         case Form.PYTEST:
             made = [file for each in targets(languages) for file in each.emit(tested)]
             sentences = {each.id: each.sentence for each in suite.requirements}
-            for rule in tested:
-                own = [test for test in tests if test.requirement == rule.id]
-                test_file = pytest_file(rule, sentences[rule.id], own, languages)
+            for requirement in tested:
+                own = [test for test in tests if test.requirement == requirement.id]
+                test_file = pytest_file(requirement, sentences[requirement.id], own, languages)
                 made.append(_apart(test_file, {each.path for each in made}))
         case Form.CSV:
             tables = {test.name: table(by_id[test.requirement], test) for test in tests}
@@ -86,12 +86,12 @@ def _apart(file: Artifact, taken: Set[PurePosixPath]) -> Artifact:
 
 
 def _refusal(
-    rule: FormalizedRequirement, test: Test, form: Form, languages: Sequence[Language]
+    requirement: FormalizedRequirement, test: Test, form: Form, languages: Sequence[Language]
 ) -> str | None:
     """Why a test cannot be written so, as where there is no monitor; None: it can."""
     match form:
         case Form.FRET:
-            return simulator.refusal(rule, test)
+            return simulator.refusal(requirement, test)
         case Form.C:
             languages = (Language.C,)
         case Form.CSV:
@@ -102,7 +102,7 @@ def _refusal(
             pass
         case _:
             assert_never(form)
-    wrong = next(filter(None, (each.refuse(rule) for each in targets(languages))), None)
+    wrong = next(filter(None, (each.refuse(requirement) for each in targets(languages))), None)
     return None if wrong is None else wrong.message
 
 
@@ -133,10 +133,12 @@ def _index(tests: Sequence[Test], tables: Mapping[str, Table]) -> Artifact:
     return Artifact(PurePosixPath(INDEX), csv_text((*_COLUMNS, "option", "words"), rows))
 
 
-def _fret(tests: Sequence[Test], rules: Mapping[str, FormalizedRequirement]) -> Iterator[Artifact]:
+def _fret(
+    tests: Sequence[Test], requirements: Mapping[str, FormalizedRequirement]
+) -> Iterator[Artifact]:
     """`ltlsim.json` with all traces, and each of them as CSV."""
-    text = f"{to_json(simulator.traces(rules, tests))}\n"
+    text = f"{to_json(simulator.traces(requirements, tests))}\n"
     yield Artifact(PurePosixPath("ltlsim.json"), text)
     for test in tests:
         path = PurePosixPath(f"{test.name}.csv")
-        yield Artifact(path, simulator.table(rules[test.requirement], test))
+        yield Artifact(path, simulator.table(requirements[test.requirement], test))

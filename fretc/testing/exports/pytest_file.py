@@ -57,29 +57,32 @@ def targets(languages: Sequence[Language]) -> list[Target]:
 
 
 def pytest_file(
-    rule: FormalizedRequirement, sentence: str, tests: Sequence[Test], languages: Sequence[Language]
+    requirement: FormalizedRequirement,
+    sentence: str,
+    tests: Sequence[Test],
+    languages: Sequence[Language],
 ) -> Artifact:
     """`test_<id>.py`.
 
     Args:
-        rule: one that no target of the languages refuses.
+        requirement: one that no target of the languages refuses.
         sentence: its own.
-        tests: of the rule.
+        tests: of the requirement.
         languages: those of the monitors; each once.
     """
-    (names,) = c.interface([rule]) if Language.C in languages else (None,)
-    monitors = [each.emit([rule])[0].path for each in targets(languages)]
+    (names,) = c.interface([requirement]) if Language.C in languages else (None,)
+    monitors = [each.emit([requirement])[0].path for each in targets(languages)]
     stem = monitors[0].stem
     text = render(
         "tests/test_monitor.py.j2",
-        id=rule.id,
+        id=requirement.id,
         sentence=sentence,
         monitors=[path.name for path in monitors],
         stem=stem,
         languages=languages,
         imports=sorted({name for each in languages for name in _IMPORTS[each]}),
         c=names,
-        tests=[_case(rule, test, languages) for test in tests],
+        tests=[_case(requirement, test, languages) for test in tests],
         violated=Verdict.VIOLATED,
         pending=Verdict.PENDING,
         satisfied=Verdict.SATISFIED,
@@ -88,7 +91,11 @@ def pytest_file(
     return Artifact(PurePosixPath(f"test_{stem.removesuffix('_monitor')}.py"), text)
 
 
-def _case(rule: FormalizedRequirement, test: Test, languages: Sequence[Language]) -> _Case:
-    own = table(rule, test)
-    more = truths(rule, test) if Language.C in languages and own.names != rule.watched else None
+def _case(requirement: FormalizedRequirement, test: Test, languages: Sequence[Language]) -> _Case:
+    own = table(requirement, test)
+    more = (
+        truths(requirement, test)
+        if Language.C in languages and own.names != requirement.watched
+        else None
+    )
     return _Case(test, f"test_{test.name.replace('-', '_')}", own, more)

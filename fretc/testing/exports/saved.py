@@ -40,13 +40,13 @@ class Saved:
     """The ids of its requirements that are not there, or have another sentence now."""
 
 
-def saved(suite: Suite, rules: Sequence[FormalizedRequirement]) -> Saved:
-    """The tests of a file that are about the rules.
+def saved(suite: Suite, formalized: Sequence[FormalizedRequirement]) -> Saved:
+    """The tests of a file that are about the requirements.
 
     Raises:
         WrongError: one of them is not a test of its requirement.
     """
-    known = {rule.id: rule for rule in rules}
+    known = {requirement.id: requirement for requirement in formalized}
     same = {
         each.id
         for each in suite.requirements
@@ -78,23 +78,25 @@ def saved(suite: Suite, rules: Sequence[FormalizedRequirement]) -> Saved:
     return Saved(replace(suite, requirements=requirements, tests=tests, **chosen), others)
 
 
-def _check(rule: FormalizedRequirement, monitor: Monitor, test: Test) -> None:
+def _check(requirement: FormalizedRequirement, monitor: Monitor, test: Test) -> None:
     """Whether the monitor can read it, and says what it expects.
 
     Raises:
         WrongError: not so.
     """
     try:
-        own = table(rule, test)
-        tables = (own,) if own.names == rule.watched else (own, truths(rule, test))
+        own = table(requirement, test)
+        tables = (own,) if own.names == requirement.watched else (own, truths(requirement, test))
     except KeyError as error:
         raise WrongError(f"`{test.name}` lacks values of `{error.args[0]}`") from None
     for read in tables:
-        _check_table(rule, monitor, test, read)
+        _check_table(requirement, monitor, test, read)
 
 
-def _check_table(rule: FormalizedRequirement, monitor: Monitor, test: Test, read: Table) -> None:
-    variables = front((rule,), rule.watched)
+def _check_table(
+    requirement: FormalizedRequirement, monitor: Monitor, test: Test, read: Table
+) -> None:
+    variables = front((requirement,), requirement.watched)
     inputs = {} if variables is None or read.of_truths else variables.inputs
     for _, values in read.rows:
         for name, value in zip(read.names, values, strict=True):

@@ -33,31 +33,33 @@ class _Requirement:
     tests: tuple[Mapping[str, Any], ...]
 
 
-def self_test(rules: Sequence[FormalizedRequirement], tests: Sequence[Test]) -> Artifact:
+def self_test(formalized: Sequence[FormalizedRequirement], tests: Sequence[Test]) -> Artifact:
     """The tests of monitors in C, which stand beside the file.
 
     Args:
-        rules: each with a test at least.
+        formalized: each with a test at least.
         tests: of them; they are numbered requirement by requirement, from 1 on.
     """
-    requirements = [*_requirements(rules, tests)]
+    requirements = [*_requirements(formalized, tests)]
     text = render("tests/self_test.c.j2", requirements=requirements, version=__version__)
     return Artifact(NAME, text)
 
 
 def _requirements(
-    rules: Sequence[FormalizedRequirement], tests: Sequence[Test]
+    requirements: Sequence[FormalizedRequirement], tests: Sequence[Test]
 ) -> Iterator[_Requirement]:
     before = 0
-    for rule, names in zip(rules, interface(rules), strict=True):
-        own = [test for test in tests if test.requirement == rule.id]
-        numbered = tuple(_test(rule, test, number) for number, test in enumerate(own, before + 1))
-        yield _Requirement(rule.id, rule.requirement.wording.text, names, before, numbered)
+    for requirement, names in zip(requirements, interface(requirements), strict=True):
+        own = [test for test in tests if test.requirement == requirement.id]
+        numbered = tuple(
+            _test(requirement, test, number) for number, test in enumerate(own, before + 1)
+        )
+        yield _Requirement(requirement.id, requirement.entry.wording.text, names, before, numbered)
         before += len(own)
 
 
-def _test(rule: FormalizedRequirement, test: Test, number: int) -> dict[str, Any]:
-    rows = truths(rule, test).rows
+def _test(requirement: FormalizedRequirement, test: Test, number: int) -> dict[str, Any]:
+    rows = truths(requirement, test).rows
     return {
         "number": number,
         "name": test.name,

@@ -22,31 +22,31 @@ LEAST = 4
 Numbers = tuple[float, ...]
 
 
-def refusal(rule: FormalizedRequirement, test: Test) -> str | None:
+def refusal(requirement: FormalizedRequirement, test: Test) -> str | None:
     """Why LTLSIM cannot show a test; None: it can."""
     if test.polarity is Polarity.UNKNOWN:
         return "a value is unknown"
     names = _names(test)
     if any(not re.fullmatch(r"\w+", name, re.ASCII) for name in names):
         return "a name is no word"
-    missing = {*rule.variables} - {*names}
+    missing = {*requirement.variables} - {*names}
     return f"no number is known for `{min(missing)}`" if missing else None
 
 
 def traces(
-    rules: Mapping[str, FormalizedRequirement], tests: Sequence[Test]
+    requirements: Mapping[str, FormalizedRequirement], tests: Sequence[Test]
 ) -> list[dict[str, Any]]:
     """What LTLSIM imports as JSON.
 
     Args:
-        rules: by their ids.
+        requirements: by their ids.
         tests: none of them refused.
     """
-    return [_trace(rules[test.requirement], test) for test in tests]
+    return [_trace(requirements[test.requirement], test) for test in tests]
 
 
-def _trace(rule: FormalizedRequirement, test: Test) -> dict[str, Any]:
-    names, rows = _numbers(rule, test)
+def _trace(requirement: FormalizedRequirement, test: Test) -> dict[str, Any]:
+    names, rows = _numbers(requirement, test)
     kinds = [isinstance(test.rows[0].values.get(name), bool) for name in names]
     every = [*zip(*rows, strict=True)]
     return {
@@ -64,7 +64,7 @@ def _trace(rule: FormalizedRequirement, test: Test) -> dict[str, Any]:
         },
         "saveToReqID": "*",
         "saveToComponent": "*",
-        "saveToProject": rule.requirement.fret.get("project", "") or "*",
+        "saveToProject": requirement.entry.fret.get("project", "") or "*",
     }
 
 
@@ -77,9 +77,9 @@ def _description(test: Test) -> str:
     return shown
 
 
-def table(rule: FormalizedRequirement, test: Test) -> str:
+def table(requirement: FormalizedRequirement, test: Test) -> str:
     """What LTLSIM imports as CSV; its trace is to be as long before."""
-    names, rows = _numbers(rule, test)
+    names, rows = _numbers(requirement, test)
     ends = [0] * (len(rows) - 1) + [1]
     return csv_text(("LAST", *names), ((end, *row) for end, row in zip(ends, rows, strict=True)))
 
@@ -91,13 +91,13 @@ def _names(test: Test) -> tuple[str, ...]:
     return tuple(name for name in known if not is_compound(name))
 
 
-def _numbers(rule: FormalizedRequirement, test: Test) -> tuple[list[str], list[Numbers]]:
+def _numbers(requirement: FormalizedRequirement, test: Test) -> tuple[list[str], list[Numbers]]:
     """Names and the numbers of each tick: LTLSIM has no words and no truth values.
 
     The words of an enumerated signal are constants: the place of each in its list.
     """
     names = _names(test)
-    signals = rule.declarations.signals if rule.declarations else {}
+    signals = requirement.declarations.signals if requirement.declarations else {}
     used = [signals[name].values for name in names if name in signals and signals[name].values]
     words = {word: float(place) for values in used for place, word in enumerate(values)}
     constants = [word for word in words if word not in names]

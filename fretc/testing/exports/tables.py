@@ -29,19 +29,19 @@ class Table:
     numbers that make its comparisons so. The monitor reads it with `--propositions`."""
 
 
-def table(rule: FormalizedRequirement, test: Test) -> Table:
+def table(requirement: FormalizedRequirement, test: Test) -> Table:
     """The columns of a test that the monitor of its requirement reads."""
-    variables = front((rule,), rule.watched)
-    names = rule.watched if variables is None else tuple(variables.inputs)
+    variables = front((requirement,), requirement.watched)
+    names = requirement.watched if variables is None else tuple(variables.inputs)
     known = all(row.values.keys() >= {*names} for row in test.rows)
     if not known:
-        names = rule.watched
+        names = requirement.watched
     return Table(names, columns(test, names), of_truths=not known)
 
 
-def truths(rule: FormalizedRequirement, test: Test) -> Table:
+def truths(requirement: FormalizedRequirement, test: Test) -> Table:
     """The truth of the propositions of a test, as the monitor in C takes it."""
-    return Table(rule.watched, columns(test, rule.watched), of_truths=True)
+    return Table(requirement.watched, columns(test, requirement.watched), of_truths=True)
 
 
 def columns(test: Test, names: Sequence[str]) -> tuple[Row, ...]:

@@ -56,8 +56,8 @@ def logs(
     """
     declarations = project.declarations
     plan = planned(project)
-    rules = {rule.id: rule for rule in project.rules}
-    monitor = cache(lambda id: load(f"{id}_staged", monitors.text(rules[id])))
+    requirements = {requirement.id: requirement for requirement in project.formalized}
+    monitor = cache(lambda id: load(f"{id}_staged", monitors.text(requirements[id])))
     with tempfile.TemporaryDirectory(dir=folder, prefix=".staging.") as temporary:
         for done, test in enumerate(tests, start=1):
             try:

@@ -70,15 +70,15 @@ def stageable(suite: Suite, project: Project) -> tuple[tuple[Aim, ...], Mapping[
     """What is looked for, and why nothing of other requirements can be staged."""
     there = {topic.name for topic in TOPICS}
     declarations, why = project.declarations, {}
-    for rule in project.rules:
+    for requirement in project.formalized:
         bound = declarations.propositions if declarations is not None else {}
-        free = [name for name in rule.watched if name not in bound]
-        read = declarations.reading(rule.watched).signals.values() if declarations else ()
+        free = [name for name in requirement.watched if name not in bound]
+        read = declarations.reading(requirement.watched).signals.values() if declarations else ()
         absent = sorted({signal.path.topic for signal in read} - there)
         if free:
-            why[rule.id] = f"nothing binds `{free[0]}`"
+            why[requirement.id] = f"nothing binds `{free[0]}`"
         elif absent:
-            why[rule.id] = f"the simulated robot has no topic `{absent[0]}`"
+            why[requirement.id] = f"the simulated robot has no topic `{absent[0]}`"
     aims = tuple(_aim(one) for one in suite.obligations if one.outcome is Met.MET)
     return tuple(aim for aim in aims if aim[0] not in why), why
 

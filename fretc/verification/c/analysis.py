@@ -19,38 +19,40 @@ from fretc.verification.engines.sandbox import Limits
 
 
 def analysed(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     given: SourceText,
     program: str,
     limits: Limits,
     others: Sequence[FormalizedRequirement] = (),
 ) -> Iterator[RequirementOutcome]:
-    """What Frama-C says of a monitor, for each of its rules: it is one answer.
+    """What Frama-C says of a monitor, for each of its requirements: it is one answer.
 
     Args:
-        rules: those that are asked about; the target accepts them.
+        requirements: those that are asked about; the target accepts them.
         given: a monitor of them, maybe with others.
         program: the path of Frama-C.
         limits: of the analysis.
-        others: further rules that the texts may implement.
+        others: further requirements that the texts may implement.
 
     Raises:
         NotAMonitorError: the texts name no requirement.
     """
     artefacts = {name: sha256(text) for name, text in given.texts.items()}
     try:
-        found = checked(given, (*rules, *others))
+        found = checked(given, (*requirements, *others))
         run = prepared(given, found)
     except UnexpectedLayoutError as error:
-        for rule in rules:
-            yield RequirementOutcome(rule, not_checked(str(error)), frama_c.NAME, artefacts)
+        for requirement in requirements:
+            yield RequirementOutcome(requirement, not_checked(str(error)), frama_c.NAME, artefacts)
         return
     outcome, engine = frama_c.answer(program, run, limits)
     artefacts[f"{PurePath(given.name).stem}_driver.c"] = sha256(run.driver)
-    own = {rule.id for rule in found.rules}
+    own = {requirement.id for requirement in found.requirements}
     absent = not_checked("the monitor is of other requirements")
-    for rule in rules:
-        yield RequirementOutcome(rule, outcome if rule.id in own else absent, engine, artefacts)
+    for requirement in requirements:
+        yield RequirementOutcome(
+            requirement, outcome if requirement.id in own else absent, engine, artefacts
+        )
 
 
 def prepared(given: SourceText, found: ParsedSource) -> frama_c.Run:
@@ -60,7 +62,7 @@ def prepared(given: SourceText, found: ParsedSource) -> frama_c.Run:
         given: the texts.
         found: what is known of their form.
     """
-    made = driver(PurePath(given.header_name).stem, base(given), found.rules)
+    made = driver(PurePath(given.header_name).stem, base(given), found.requirements)
     return frama_c.Run(
         without_comments(given.text),
         (given.header_name, without_comments(given.header)),

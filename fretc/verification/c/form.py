@@ -198,7 +198,7 @@ class _Step(Flow):
                 return False
 
     def _fixed(self, statement: Tokens) -> bool:
-        """What is as fretc writes it: the outcome that is told next, and rings."""
+        """What is as fretc writes it: the outcome that is reported next, and rings."""
         if statement not in self._known:
             return False
         match statement:

@@ -21,17 +21,17 @@ _OUTCOMES = re.compile(r"^    fretc_outcome (\w+); /\* (.*) \*/$", re.MULTILINE)
 tool = compiler
 
 
-def checked(given: SourceText, rules: Sequence[FormalizedRequirement]) -> ParsedSource:
+def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) -> ParsedSource:
     """The texts in the form that fretc writes.
 
     Args:
         given: they.
-        rules: those that they may implement.
+        requirements: those that they may implement.
 
     Raises:
         UnexpectedLayoutError: they have another form.
     """
-    own_rules = implemented([id for _, id in _OUTCOMES.findall(given.header)], rules)
+    own_rules = implemented([id for _, id in _OUTCOMES.findall(given.header)], requirements)
     own, own_header = _written(given, own_rules)
     same(LEXIS.tokens(given.header), LEXIS.tokens(own_header))
     prefix = base(given)
@@ -61,10 +61,10 @@ def base(given: SourceText) -> str:
     return str(found)
 
 
-def _written(given: SourceText, rules: Sequence[FormalizedRequirement]) -> tuple[str, str]:
-    """What fretc writes for these rules: in one file if the header has the name of that."""
-    for one_file in (False, True) if len(rules) == 1 else (True,):
-        files = {str(f.path): f.text for f in TARGET.emit(rules, Options(one_file=one_file))}
+def _written(given: SourceText, requirements: Sequence[FormalizedRequirement]) -> tuple[str, str]:
+    """What fretc writes for these requirements: in one file if the header has the name of that."""
+    for one_file in (False, True) if len(requirements) == 1 else (True,):
+        files = {str(f.path): f.text for f in TARGET.emit(requirements, Options(one_file=one_file))}
         header = files.get(given.header_name)
         if header is not None:
             return files[given.header_name.removesuffix(".h") + ".c"], header

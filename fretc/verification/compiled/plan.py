@@ -55,7 +55,7 @@ class Plan:
 class ParsedSource:
     """A text that has the form that fretc writes."""
 
-    rules: tuple[FormalizedRequirement, ...]
+    requirements: tuple[FormalizedRequirement, ...]
     """In the order of its outcomes."""
     outcomes: tuple[str, ...]
     """Their names in the text."""
@@ -67,20 +67,22 @@ class ParsedSource:
     is_original: bool = False
     """Whether the text is, but for comments and layout, the one that fretc writes."""
 
-    def plan(self, rule: FormalizedRequirement) -> Plan:
+    def plan(self, requirement: FormalizedRequirement) -> Plan:
         """Where a requirement is.
 
         Raises:
             UnexpectedLayoutError: it is not there, or depends on more than its sentence speaks of.
         """
-        ids = [each.id for each in self.rules]
-        if rule.id not in ids:
+        ids = [each.id for each in self.requirements]
+        if requirement.id not in ids:
             raise UnexpectedLayoutError("the monitor is of other requirements")
-        place, own = ids.index(rule.id), atoms(rule)
+        place, own = ids.index(requirement.id), atoms(requirement)
         part = self.form.part(self.outcomes[place])
-        names = tuple(dict.fromkeys(name for each in self.rules for name in each.watched))
+        names = tuple(dict.fromkeys(name for each in self.requirements for name in each.watched))
         if not {names[i] for i in part.inputs} <= {*own}:
-            raise UnexpectedLayoutError(f"{rule.id} depends on what its sentence does not speak of")
+            raise UnexpectedLayoutError(
+                f"{requirement.id} depends on what its sentence does not speak of"
+            )
         places = tuple(names.index(name) if name in names else -1 for name in own)
         return Plan(part.cells, place, places, len(names), self.is_original)
 
@@ -134,12 +136,14 @@ class Language(Protocol):
     def tool(self) -> str | None:
         """The path of the program that compiles or runs; None: none is installed."""
 
-    def checked(self, given: SourceText, rules: Sequence[FormalizedRequirement]) -> ParsedSource:
+    def checked(
+        self, given: SourceText, requirements: Sequence[FormalizedRequirement]
+    ) -> ParsedSource:
         """The text in the form that fretc writes.
 
         Args:
             given: it.
-            rules: those that it may implement.
+            requirements: those that it may implement.
 
         Raises:
             NotAMonitorError: it names no requirement.
@@ -162,21 +166,21 @@ class Language(Protocol):
         """
 
 
-def atoms(rule: FormalizedRequirement) -> tuple[str, ...]:
+def atoms(requirement: FormalizedRequirement) -> tuple[str, ...]:
     """The order of the values in a letter."""
-    return tuple(dict.fromkeys((*atoms_of(rule.sentence), *rule.watched)))
+    return tuple(dict.fromkeys((*atoms_of(requirement.sentence), *requirement.watched)))
 
 
 def implemented(
-    ids: Sequence[str], rules: Sequence[FormalizedRequirement]
+    ids: Sequence[str], requirements: Sequence[FormalizedRequirement]
 ) -> tuple[FormalizedRequirement, ...]:
-    """The rules with the ids that a text tells.
+    """The requirements with the ids that a text tells.
 
     Raises:
         NotAMonitorError: there is none.
         UnexpectedLayoutError: one of them is not there.
     """
-    by_id = {each.id: each for each in rules}
+    by_id = {each.id: each for each in requirements}
     if not ids:
         raise NotAMonitorError("it names no requirement")
     for id in ids:

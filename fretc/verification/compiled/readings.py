@@ -59,13 +59,18 @@ class PythonRail:
     """A rail of a monitor in Python, with what it remembers in ticks from now."""
 
     def __init__(
-        self, monitor: Monitor, rule: FormalizedRequirement, atoms: Sequence[str], *, doubt: bool
+        self,
+        monitor: Monitor,
+        requirement: FormalizedRequirement,
+        atoms: Sequence[str],
+        *,
+        doubt: bool,
     ) -> None:
         """Before the first tick.
 
         Args:
-            monitor: that of the rule alone, as fretc writes it.
-            rule: it.
+            monitor: that of the requirement alone, as fretc writes it.
+            requirement: it.
             atoms: the order of the values in a letter.
             doubt: whether unknown values count as true.
         """
@@ -75,9 +80,9 @@ class PythonRail:
         self._order = tuple(atoms.index(name) for name in monitor.PROPOSITIONS)
         (prefix,) = (n[: -len("_open")] for n in self._rail.__slots__ if n.endswith("_open"))
         self._names = {mark: f"{prefix}_{mark}" for mark in MARKS}
-        (requirement,) = program({rule.id: rule.watch}).requirements
+        (entry,) = program({requirement.id: requirement.watch}).requirements
         self._ages: tuple[str, ...] = () if self._horizon is None else ("open",)
-        if requirement.renewed and self._ages:
+        if entry.renewed and self._ages:
             self._ages = ("open", "last")
         self._now = 0 if self._horizon is None else self._horizon + 2
 

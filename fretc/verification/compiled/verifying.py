@@ -46,7 +46,7 @@ from monitors.loading import load
 class RequirementOutcome(NamedTuple):
     """An outcome, with what it rests on."""
 
-    rule: FormalizedRequirement
+    requirement: FormalizedRequirement
     outcome: Outcome
     engine: str
     """What compiled or ran the text, with version and flags; empty where nothing did."""
@@ -55,46 +55,49 @@ class RequirementOutcome(NamedTuple):
 
 
 def verified(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     given: SourceText,
     language: Language,
     program: str,
     limits: Limits,
     others: Sequence[FormalizedRequirement] = (),
 ) -> Iterator[RequirementOutcome]:
-    """Compare a text with each of its rules, in processes of their own.
+    """Compare a text with each of its requirements, in processes of their own.
 
     Args:
-        rules: those that are asked about; the target accepts them, and they have a clock.
+        requirements: those that are asked about; the target accepts them, and they have a clock.
         given: a monitor of them, maybe with others.
         language: of the text.
         program: its tool.
         limits: of each exploration.
-        others: further rules that the text may implement.
+        others: further requirements that the text may implement.
     """
     artefacts = {name: sha256(text) for name, text in given.texts.items()}
     with TemporaryDirectory(prefix="fretc-") as folder, Session(limits) as session:
         try:
-            checked = language.checked(given, (*rules, *others))
+            checked = language.checked(given, (*requirements, *others))
             found = language.prepared(program, given, checked, Path(folder))
         except (UnexpectedLayoutError, ToolError) as error:
-            for rule in rules:
-                yield RequirementOutcome(rule, not_checked(str(error)), "", artefacts)
+            for requirement in requirements:
+                yield RequirementOutcome(requirement, not_checked(str(error)), "", artefacts)
             return
         artefacts.update(found.artefacts)
-        for rule in rules:
-            outcome = _confined(rule, checked, found.executable, session)
-            yield RequirementOutcome(rule, outcome, found.engine, artefacts)
+        for requirement in requirements:
+            outcome = _confined(requirement, checked, found.executable, session)
+            yield RequirementOutcome(requirement, outcome, found.engine, artefacts)
 
 
 def _confined(
-    rule: FormalizedRequirement, checked: ParsedSource, executable: Executable, session: Session
+    requirement: FormalizedRequirement,
+    checked: ParsedSource,
+    executable: Executable,
+    session: Session,
 ) -> Outcome:
     try:
-        plan = checked.plan(rule)
+        plan = checked.plan(requirement)
     except UnexpectedLayoutError as error:
         return not_checked(str(error))
-    outcome = session.call(explored, rule, executable, plan, MOST_STATES)
+    outcome = session.call(explored, requirement, executable, plan, MOST_STATES)
     if isinstance(outcome, Stopped):
         return not_checked(f"{outcome.reason}; so may end what the text must not do")
     return outcome
@@ -104,33 +107,33 @@ def _confined(
 
 
 def explored(
-    rule: FormalizedRequirement, executable: Executable, plan: Plan, limit: int
+    requirement: FormalizedRequirement, executable: Executable, plan: Plan, limit: int
 ) -> Outcome:
     """Run the text, and compare it; a crash of a library is one of this process.
 
     Args:
-        rule: the requirement.
+        requirement: the requirement.
         executable: the text.
         plan: where the requirement is in it.
         limit: the most states of either comparison.
     """
     try:
         with executable.running(plan) as machines:
-            return _explored(rule, machines, limit)
+            return _explored(requirement, machines, limit)
     except ToolError as error:
         return not_checked(str(error))
 
 
-def _explored(rule: FormalizedRequirement, machines: Machines, limit: int) -> Outcome:
-    free = _without_delays(rule, machines, limit)
+def _explored(requirement: FormalizedRequirement, machines: Machines, limit: int) -> Outcome:
+    free = _without_delays(requirement, machines, limit)
     if free is not None:
         return free
-    judged = lock_step(rule, machines.judging(), atoms(rule), limit)
+    judged = lock_step(requirement, machines.judging(), atoms(requirement), limit)
     if isinstance(judged, str):
         return not_checked(judged)
     if isinstance(judged, Difference):
-        return judged_wrongly(judged, atoms(rule))
-    states = _read(rule, machines, limit)
+        return judged_wrongly(judged, atoms(requirement))
+    states = _read(requirement, machines, limit)
     if not isinstance(states, int):
         return states
     return proved(
@@ -140,24 +143,29 @@ def _explored(rule: FormalizedRequirement, machines: Machines, limit: int) -> Ou
     )
 
 
-def _without_delays(rule: FormalizedRequirement, machines: Machines, limit: int) -> Outcome | None:
+def _without_delays(
+    requirement: FormalizedRequirement, machines: Machines, limit: int
+) -> Outcome | None:
     """Proved, if both monitors are the same whatever bits their delay lines give.
 
     Then each verdict of the text is that of the monitor in Python, for it follows from both rails
     as there; so that monitor is compared with the automaton of the sentence. Not checked, where
     that is too large. None: nothing is known, and all states are to be compared.
     """
-    names, monitor, states = atoms(rule), load("reference", python.text(rule)), 0
+    names, monitor, states = atoms(requirement), load("reference", python.text(requirement)), 0
     if len(names) > rails.MOST_PROPOSITIONS:
         return None
     for doubt in (False, True):
-        left, right = machines.delayed(doubt=doubt), PythonRail(monitor, rule, names, doubt=doubt)
+        left, right = (
+            machines.delayed(doubt=doubt),
+            PythonRail(monitor, requirement, names, doubt=doubt),
+        )
         windows = right.windows()
         if left is None or [line.length for line in left.lines] != [each.lo for each in windows]:
             return None
         letters = [
             FreeLetter(values, oldest)
-            for values in _letters(rule, names)
+            for values in _letters(requirement, names)
             for oldest in product((False, True), repeat=len(windows))
         ]
         further = tuple(f"delay line {place}" for place in range(len(windows)))
@@ -167,9 +175,9 @@ def _without_delays(rule: FormalizedRequirement, machines: Machines, limit: int)
             return None
         states += result.states
         ticks = _PERIODS * max(line.length for line in left.lines)
-        if not _agree(rule, machines, _letters(rule, names), ticks, doubt=doubt):
+        if not _agree(requirement, machines, _letters(requirement, names), ticks, doubt=doubt):
             return None
-    judged = lock_step(rule, PythonJudging(monitor, names), names, limit)
+    judged = lock_step(requirement, PythonJudging(monitor, names), names, limit)
     if isinstance(judged, str):
         return not_checked(judged)
     if isinstance(judged, Difference):
@@ -186,7 +194,7 @@ _PERIODS = 4
 
 
 def _agree(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     machines: Machines,
     letters: Sequence[rails.Letter],
     ticks: int,
@@ -194,9 +202,9 @@ def _agree(
     doubt: bool,
 ) -> bool:
     """Whether both monitors, with all their bits, give the same on a drawn run."""
-    monitor, draw = load("reference", python.text(rule)), Random(0)
+    monitor, draw = load("reference", python.text(requirement)), Random(0)
     left = machines.rail(letters, doubt=doubt)
-    right = PythonRail(monitor, rule, atoms(rule), doubt=doubt)
+    right = PythonRail(monitor, requirement, atoms(requirement), doubt=doubt)
     first, second = left.save(), right.save()
     for _ in range(ticks):
         letter = draw.choice(letters)
@@ -206,34 +214,36 @@ def _agree(
     return True
 
 
-def _letters(rule: FormalizedRequirement, names: Sequence[str]) -> Sequence[rails.Letter]:
+def _letters(requirement: FormalizedRequirement, names: Sequence[str]) -> Sequence[rails.Letter]:
     """The values that may come at a tick, unknown ones among them."""
     every = tuple(product((False, True, None), repeat=len(names)))
-    return only_possible(every, names, excluded(rule))
+    return only_possible(every, names, excluded(requirement))
 
 
-def _read(rule: FormalizedRequirement, machines: Machines, limit: int) -> int | Outcome:
+def _read(requirement: FormalizedRequirement, machines: Machines, limit: int) -> int | Outcome:
     """The states in which each rail tells what that of the monitor in Python tells."""
-    names = atoms(rule)
+    names = atoms(requirement)
     if len(names) > rails.MOST_PROPOSITIONS:
         most = rails.MOST_PROPOSITIONS
         return not_checked(
             f"{len(names)} propositions, more than {most}, are too many for unknown values"
         )
-    every = _letters(rule, names)
-    monitor, states = load("reference", python.text(rule)), 0
+    every = _letters(requirement, names)
+    monitor, states = load("reference", python.text(requirement)), 0
 
     def compare(
         more: Sequence[Exclusion], *, doubt: bool
     ) -> rails.Equivalent | rails.Distinguished | None:
         letters = only_possible(every, names, more)
         left = machines.rail(letters, doubt=doubt)
-        right = PythonRail(monitor, rule, names, doubt=doubt)
+        right = PythonRail(monitor, requirement, names, doubt=doubt)
         most = min(limit, MOST_SEARCHED) if more else limit
         return rails.in_lock_step(left, right, letters, most, NAMES)
 
     for doubt in (False, True):
-        result, note = by_numbers(rule, names, rails.Distinguished, partial(compare, doubt=doubt))
+        result, note = by_numbers(
+            requirement, names, rails.Distinguished, partial(compare, doubt=doubt)
+        )
         match result:
             case None:
                 return not_checked(f"with unknown values there are more than {limit} states")

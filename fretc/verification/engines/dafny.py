@@ -37,30 +37,30 @@ _VERSION = re.compile(r"\b(\d+)\.\d+[\w.+-]*")
 
 
 def with_dafny(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     text: str,
     declarations: Declarations | None,
     *,
     seconds: float = DAFNY_SECONDS,
 ) -> tuple[Proof, ...]:
-    """Let Dafny verify the file of a rule: one line for each claim of the file.
+    """Let Dafny verify the file of a requirement: one line for each claim of the file.
 
     Dafny gives one verdict for a file. So either all claims are proved, or none is.
 
     Args:
-        rule: one that the target does not refuse.
+        requirement: one that the target does not refuse.
         text: the file of `--emit dafny`; with any other text nothing is checked.
         declarations: those of the file.
         seconds: the limit of Dafny.
     """
-    if text == dafny.text(rule, declarations):
+    if text == dafny.text(requirement, declarations):
         outcome, engine = answer(text, seconds=seconds)
     else:
         outcome, engine = not_checked(_OTHER), "Dafny"
-    artefacts = {f"{stem(rule)}.dfy": sha256(text)}
+    artefacts = {f"{stem(requirement)}.dfy": sha256(text)}
     return tuple(
         proof(
-            rule.id,
+            requirement.id,
             claim.layer,
             claim.sentence,
             outcome if claim.unshown is None else not_checked(claim.unshown),
@@ -68,7 +68,7 @@ def with_dafny(
             claim.assumptions,
             artefacts,
         )
-        for claim in claims(rule, declarations)
+        for claim in claims(requirement, declarations)
     )
 
 

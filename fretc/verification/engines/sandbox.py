@@ -71,7 +71,7 @@ class Session:
     """Calls in a process of their own, one after the other, each with limits of its own.
 
     One process serves them, until it is stopped or crashes: then the next call gets a new one.
-    Whoever is interrupted meanwhile (Ctrl-C) ends the process.
+    An interruption (Ctrl-C) ends the process.
     """
 
     def __init__(self, limits: Limits) -> None:
@@ -191,7 +191,7 @@ def _serve(connection: Connection, limits: Limits) -> None:
 
 
 def _allow(seconds: int) -> None:
-    """So many seconds of a processor from now on."""
+    """So many CPU seconds from now on."""
     used = resource.getrusage(resource.RUSAGE_SELF)
     most = resource.getrlimit(resource.RLIMIT_CPU)[1]
     soon = ceil(used.ru_utime + used.ru_stime) + seconds

@@ -118,7 +118,7 @@ def is_original(text: str) -> bool:
 
 
 def _around(text: str) -> tuple[list[str], str | None]:
-    """What binds `OPTIONS`, and the node (None: there is none), to the letter but for comments."""
+    """What binds `OPTIONS`, and the node (None: there is none), exactly but for comments."""
     above, marked, node = text.partition(f"{MARKER}\n")
     options = [ast.unparse(part) for part in ast.parse(above).body if _is_options(part)]
     return options, ast.dump(ast.parse(node)) if marked else None

@@ -186,7 +186,7 @@ class _Module:
             _demand(ast.dump(_bare(node)) == _velocity(), node)
 
     def check_type(self, annotation: ast.expr | None, node: ast.AST) -> None:
-        """It names types and does nothing, whoever evaluates it."""
+        """It names types and does nothing, no matter who evaluates it."""
         match annotation:
             case None | ast.Constant(None):
                 pass

@@ -25,13 +25,13 @@ def tool() -> str | None:
     return shutil.which("node")
 
 
-def checked(given: SourceText, rules: Sequence[FormalizedRequirement]) -> ParsedSource:
+def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) -> ParsedSource:
     """The text in the form that fretc writes.
 
     Raises:
         UnexpectedLayoutError: it has another form.
     """
-    own_rules = implemented([json.loads(id) for id in _IDS.findall(given.text)], rules)
+    own_rules = implemented([json.loads(id) for id in _IDS.findall(given.text)], requirements)
     made = _program(own_rules)
     cells, ids = tuple(cell.name for cell in made.cells), tuple(each.id for each in own_rules)
     form = formed(given.text, text(*own_rules), cells, _windows(made), ids)
@@ -44,15 +44,15 @@ def prepared(program: str, given: SourceText, checked: ParsedSource, folder: Pat
     Raises:
         ToolError: Node cannot be run.
     """
-    made = _program(checked.rules)
+    made = _program(checked.requirements)
     ages = {place: _ages(each) for place, each in enumerate(made.requirements)}
     placed(given.text, folder)
     module = Module(program, folder, checked.cells, _windows(made), ages)
     return BuiltLibrary(module, f"Node {version(program)} {' '.join(FLAGS)}", {})
 
 
-def _program(rules: Sequence[FormalizedRequirement]) -> Program:
-    return lowered({rule.id: rule.watch for rule in rules})
+def _program(requirements: Sequence[FormalizedRequirement]) -> Program:
+    return lowered({requirement.id: requirement.watch for requirement in requirements})
 
 
 def _windows(program: Program) -> dict[str, int]:
@@ -61,7 +61,7 @@ def _windows(program: Program) -> dict[str, int]:
 
 
 def _ages(requirement: Requirement) -> tuple[str, ...]:
-    """The marks whose age counts: those that a deadline is told by."""
+    """The marks whose age counts: those that a deadline is reported by."""
     if requirement.horizon is None:
         return ()
     return ("open", "last") if requirement.renewed else ("open",)

@@ -245,7 +245,7 @@ class Node:
         if not line.endswith(b"\n"):
             with suppress(subprocess.TimeoutExpired):
                 if self._process.wait(_ENDING) == -signal.SIGXCPU:
-                    raise ToolError("out of time: Node took as many seconds of a processor")
+                    raise ToolError("out of time: Node took as many CPU seconds")
             text = self._errors.read_text(encoding="utf-8", errors="replace")
             lines = (each for each in text.splitlines() if "Error" in each or "FATAL" in each)
             raise ToolError(f"Node does not run it: {next(lines, 'it gives no reason')}")
@@ -253,7 +253,7 @@ class Node:
 
 
 class Observation(NamedTuple):
-    """What is told after a step."""
+    """What is reported after a step."""
 
     rails: tuple[Reading, Reading]
     """What holds for certain, and what may hold."""
@@ -271,7 +271,7 @@ class Table:
     node: Node
     letters: Mapping[Letter, int]
     rows: list[list[tuple[int, int]]] = field(default_factory=list)
-    """Of each state and letter the next state, and the number of what is told."""
+    """Of each state and letter the next state, and the number of what is reported."""
     outcomes: list[Observation] = field(default_factory=list)
 
     def take(self, answer: Any) -> None:
@@ -283,7 +283,7 @@ class Table:
             self.outcomes.append(Observation(rails, (verdict, *both), is_real))
 
     def step(self, state: int, letter: Letter) -> tuple[int, int]:
-        """The next state, and the number of what is told."""
+        """The next state, and the number of what is reported."""
         if state >= len(self.rows):
             self.take(self.node.ask({"until": state}))
         return self.rows[state][self.letters[letter]]

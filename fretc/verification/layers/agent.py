@@ -26,17 +26,17 @@ _OF_AGENT = (Layer.AGENT, Layer.AJPF)
 
 
 def prove(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> tuple[Proof, ...] | Diagnostic:
-    """Of the agent that is given; else of the one that the bundle of each rule has."""
+    """Of the agent that is given; else of the one that the bundle of each requirement has."""
     request.progress("agent: its properties")
     agent, properties = request.agent, request.properties
     if agent is None or properties is None:
         return tuple(
             proof
-            for rule in rules
-            if any(request.demands(layer, rule.requirement) for layer in _OF_AGENT)
-            for proof in _bundle(rule, request.limits)
+            for requirement in requirements
+            if any(request.demands(layer, requirement.entry) for layer in _OF_AGENT)
+            for proof in _bundle(requirement, request.limits)
         )
     proofs = processes.confined(request.limits, checked, agent, properties, request.percepts)
     if isinstance(proofs, Stopped):
@@ -44,21 +44,26 @@ def prove(
     return proofs
 
 
-def _bundle(rule: FormalizedRequirement, limits: Limits) -> tuple[Proof, ...]:
-    refused = ajpf.refusal(rule)
-    agent = processes.confined(limits, bundle.checked_agent, rule) if refused is None else refused
+def _bundle(requirement: FormalizedRequirement, limits: Limits) -> tuple[Proof, ...]:
+    refused = ajpf.refusal(requirement)
+    agent = (
+        processes.confined(limits, bundle.checked_agent, requirement)
+        if refused is None
+        else refused
+    )
     if isinstance(agent, Diagnostic):
-        return (_without_agent(rule, agent.message),)
+        return (_without_agent(requirement, agent.message),)
     if isinstance(agent, Stopped):
-        return (unknown(rule.id, Layer.AGENT, CLAIM, agent.reason),)
-    remark = ajpf.remark(rule)
+        return (unknown(requirement.id, Layer.AGENT, CLAIM, agent.reason),)
+    remark = ajpf.remark(requirement)
     refuted = any(line.result is Result.COUNTEREXAMPLE for line in agent.evidence)
     if refuted and remark is not None and remark.code in _TOO_SOON:
-        timing = printing_of(rule.sentence.timing)
+        timing = printing_of(requirement.sentence.timing)
         return (
             _without_agent(
-                rule,
-                f"an agent cannot keep the timing `{timing}` of {rule.id}: it needs some nine "
+                requirement,
+                f"an agent cannot keep the timing `{timing}` of {requirement.id}: it needs some "
+                "nine "
                 "states from a percept to its response",
             ),
         )
@@ -69,6 +74,6 @@ _TOO_SOON = (Code.STATE_ZERO, Code.NO_TIME_TO_REACT)
 """What no reasoning cycle can keep: the agent that breaks it is one that no bundle has."""
 
 
-def _without_agent(rule: FormalizedRequirement, reason: str) -> Proof:
+def _without_agent(requirement: FormalizedRequirement, reason: str) -> Proof:
     outcome = not_applicable(f"there is none: {reason}")
-    return unexamined(rule.id, Layer.AGENT, CLAIM, outcome)
+    return unexamined(requirement.id, Layer.AGENT, CLAIM, outcome)

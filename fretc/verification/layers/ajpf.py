@@ -11,13 +11,15 @@ from fretc.verification.layers.request import Request, unknown
 
 
 def prove(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
-    """The results of AJPF; where nothing else is asked, rules without one are not checked."""
+    """The results of AJPF; if nothing else is asked, requirements without one are not checked."""
     yield from request.ajpf
     if set(request.layers) == {Layer.AJPF}:
         known = {proof.requirement for proof in request.ajpf}
-        for rule in rules:
-            if rule.id not in known:
-                claim = f"AJPF: the agent of {rule.id} keeps it"
-                yield unknown(rule.id, Layer.AJPF, claim, "there is no result of AJPF (--ajpf)")
+        for requirement in requirements:
+            if requirement.id not in known:
+                claim = f"AJPF: the agent of {requirement.id} keeps it"
+                yield unknown(
+                    requirement.id, Layer.AJPF, claim, "there is no result of AJPF (--ajpf)"
+                )

@@ -12,9 +12,11 @@ from fretc.verification.loop.bounds import bounds_proofs
 
 
 def prove(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
-    """Two proofs for each rule: the law of the answers, and the declared bound."""
-    for rule in rules:
-        request.progress(f"{rule.id}: bounds")
-        yield from bounds_proofs(rule, setup_of(rule, project, request), request.limits)
+    """Two proofs for each requirement: the law of the answers, and the declared bound."""
+    for requirement in requirements:
+        request.progress(f"{requirement.id}: bounds")
+        yield from bounds_proofs(
+            requirement, setup_of(requirement, project, request), request.limits
+        )

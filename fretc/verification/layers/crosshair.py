@@ -19,7 +19,7 @@ CLAIM = "CrossHair confirms the contracts in the text"
 
 
 def prove(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
     """A proof for each contract of the core: the node would be executed, and takes commands apart.
 

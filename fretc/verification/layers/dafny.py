@@ -13,15 +13,17 @@ from fretc.verification.layers.request import Request, unknown
 
 
 def prove(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
-    """A proof for each claim of the file of each rule."""
-    for rule in rules:
-        request.progress(f"{rule.id}: Dafny")
-        refused = dafny.TARGET.refuse(rule)
+    """A proof for each claim of the file of each requirement."""
+    for requirement in requirements:
+        request.progress(f"{requirement.id}: Dafny")
+        refused = dafny.TARGET.refuse(requirement)
         if refused is not None:
             claim = "Dafny verifies the file of the requirement"
-            yield unknown(rule.id, Layer.LOOP, claim, refused.message)
+            yield unknown(requirement.id, Layer.LOOP, claim, refused.message)
             continue
         declared, seconds = project.declarations, float(request.limits.seconds)
-        yield from with_dafny(rule, dafny.text(rule, declared), declared, seconds=seconds)
+        yield from with_dafny(
+            requirement, dafny.text(requirement, declared), declared, seconds=seconds
+        )

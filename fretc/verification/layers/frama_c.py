@@ -36,9 +36,9 @@ def refusal(request: Request) -> Diagnostic | None:
 
 
 def prove(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
-    """A proof for each rule: of the monitor that is given, else of the one that fretc writes.
+    """A proof for each requirement: of the given monitor, else of the one that fretc writes.
 
     Raises:
         NotAMonitorError: the given text names no requirement.
@@ -46,44 +46,44 @@ def prove(
     refused, program = refusal(request), frama_c.program()
     if refused is not None or program is None:
         reason = refused.message if refused else ""
-        return (_not_checked(rule, reason) for rule in rules)
-    return _proofs(rules, project, request, program)
+        return (_not_checked(requirement, reason) for requirement in requirements)
+    return _proofs(requirements, project, request, program)
 
 
 def _proofs(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request, program: str
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request, program: str
 ) -> Iterator[Proof]:
     accepted = list[FormalizedRequirement]()
-    for rule in rules:
-        refused = TARGET.refuse(rule)
+    for requirement in requirements:
+        refused = TARGET.refuse(requirement)
         if refused is None:
-            accepted.append(rule)
+            accepted.append(requirement)
         else:
-            yield _not_checked(rule, refused.message)
+            yield _not_checked(requirement, refused.message)
     machines = " and ".join(f"`{name}`" for name in frama_c.MACHINES)
     under = (f"C is that of the machines {machines} of Frama-C: an `int` has 16 or 32 bits",)
     for given, own in _given(accepted, request):
         request.progress(f"{given.name}: Frama-C")
-        found = analysed(own, given, program, request.limits, project.rules)
-        for rule, outcome, engine, artefacts in found:
-            yield proof(rule.id, Layer.MONITOR, CLAIM, outcome, engine, under, artefacts)
+        found = analysed(own, given, program, request.limits, project.formalized)
+        for requirement, outcome, engine, artefacts in found:
+            yield proof(requirement.id, Layer.MONITOR, CLAIM, outcome, engine, under, artefacts)
 
 
-def _not_checked(rule: FormalizedRequirement, reason: str) -> Proof:
-    return proof(rule.id, Layer.MONITOR, CLAIM, not_checked(reason), frama_c.NAME)
+def _not_checked(requirement: FormalizedRequirement, reason: str) -> Proof:
+    return proof(requirement.id, Layer.MONITOR, CLAIM, not_checked(reason), frama_c.NAME)
 
 
 def _given(
-    rules: Sequence[FormalizedRequirement], request: Request
+    requirements: Sequence[FormalizedRequirement], request: Request
 ) -> Iterator[tuple[SourceText, Sequence[FormalizedRequirement]]]:
-    """The text that is given, else one for each rule; with the rules that it is about."""
+    """The given text, else one for each requirement; with the requirements that it is about."""
     if request.monitor is not None and request.header is not None:
         texts = (request.monitor, request.header)
-        yield _named([(PurePath(each.name).name, each.text) for each in texts]), rules
+        yield _named([(PurePath(each.name).name, each.text) for each in texts]), requirements
         return
-    for rule in rules:
-        monitor = TARGET.emit((rule,))[:2]  # what stands behind it says what samples mean
-        yield _named([(str(each.path), each.text) for each in monitor]), [rule]
+    for requirement in requirements:
+        monitor = TARGET.emit((requirement,))[:2]  # what stands behind it says what samples mean
+        yield _named([(str(each.path), each.text) for each in monitor]), [requirement]
 
 
 def _named(texts: Sequence[tuple[str, str]]) -> SourceText:

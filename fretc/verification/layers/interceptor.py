@@ -22,7 +22,7 @@ CLAIM = "the interceptor keeps its contracts"
 
 
 def prove(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
     """A proof for each contract."""
     file = interceptor_of(project, request)
@@ -37,7 +37,7 @@ def prove(
 
 
 def _contracts(file: NamedText, declared: Interception, limits: Limits) -> Iterator[Proof]:
-    """Of the module that flies: its core may be any, the rest is what fretc writes."""
+    """Of the deployed module: its core may be any, the rest is what fretc writes."""
     deviation = otherwise(file.text, declared)
     proofs: Stopped | tuple[Proof, ...]
     if deviation is not None:

@@ -15,10 +15,10 @@ from fretc.verification.loop.closed_loop import loop_proofs
 
 
 def prove(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
-    """Two proofs for each rule: the requirement is kept, and a stop is released in the end."""
-    for rule in rules:
-        request.progress(f"{rule.id}: loop")
-        setup = setup_of(rule, project, request)
-        yield from loop_proofs(rule, setup, request.limits)
+    """Two proofs for each requirement: it is kept, and a stop is released in the end."""
+    for requirement in requirements:
+        request.progress(f"{requirement.id}: loop")
+        setup = setup_of(requirement, project, request)
+        yield from loop_proofs(requirement, setup, request.limits)

@@ -20,9 +20,9 @@ ENGINE = "fretc, lock step with the counter automaton of the sentence"
 
 
 def prove(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterable[Proof] | Diagnostic:
-    """One proof for each rule; the text may hold monitors of other rules, too.
+    """One proof for each requirement; the text may hold monitors of other requirements, too.
 
     A diagnostic where no tool is installed that compiles or runs it.
 
@@ -31,7 +31,7 @@ def prove(
     """
     language = language_of(request.monitor.name) if request.monitor else None
     if request.monitor is None or language is None:
-        return _of_python(rules, project, request)
+        return _of_python(requirements, project, request)
     program = language.module.tool()
     if program is None:
         return Diagnostic(
@@ -41,28 +41,28 @@ def prove(
         )
     texts = (named_text(each) for each in (request.monitor, request.header))
     given = SourceText(*(part for text in texts if text for part in (text.name, text.text)))
-    return _of_language(rules, project, request, language, (program, given))
+    return _of_language(requirements, project, request, language, (program, given))
 
 
 def _of_python(
-    rules: Sequence[FormalizedRequirement], project: Project, request: Request
+    requirements: Sequence[FormalizedRequirement], project: Project, request: Request
 ) -> Iterator[Proof]:
     given = request.monitor
     with Session(request.limits) as session:
-        whole = session.call(written, given.text, tuple(project.rules)) if given else None
-        for rule in rules:
-            file = setup_of(rule, project, request).monitor
-            request.progress(f"{rule.id}: monitor")
+        whole = session.call(written, given.text, tuple(project.formalized)) if given else None
+        for requirement in requirements:
+            file = setup_of(requirement, project, request).monitor
+            request.progress(f"{requirement.id}: monitor")
             beside = file.text if given is None else whole if isinstance(whole, str) else None
-            outcome = session.call(verified_beside, rule, file.text, beside)
+            outcome = session.call(verified_beside, requirement, file.text, beside)
             if isinstance(outcome, Stopped):
                 outcome = not_checked(outcome.reason)
             artefacts = {file.name: sha256(file.text)}
-            yield proof(rule.id, Layer.MONITOR, CLAIM, outcome, ENGINE, (), artefacts)
+            yield proof(requirement.id, Layer.MONITOR, CLAIM, outcome, ENGINE, (), artefacts)
 
 
 def _of_language(
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     project: Project,
     request: Request,
     language: Row,
@@ -71,8 +71,8 @@ def _of_language(
     """Proofs of a monitor in a language.
 
     Args:
-        rules: those that are asked about.
-        project: all rules.
+        requirements: those that are asked about.
+        project: all requirements.
         request: the limits.
         language: it.
         made: its tool, and the text.
@@ -80,11 +80,13 @@ def _of_language(
     from fretc.verification.compiled.verifying import verified as examined
 
     program, given = made
-    words = (f"{rule.id}: monitor in {language.name}" for rule in rules)
-    found = examined(rules, given, language.module, program, request.limits, project.rules)
+    words = (f"{requirement.id}: monitor in {language.name}" for requirement in requirements)
+    found = examined(
+        requirements, given, language.module, program, request.limits, project.formalized
+    )
     for progress in words:
         request.progress(progress)
-        rule, outcome, by, artefacts = next(found)
+        requirement, outcome, by, artefacts = next(found)
         under = (f"{language.under}: {by}",) if by else ()
         engine = f"{ENGINE} and the monitor in Python"
-        yield proof(rule.id, Layer.MONITOR, CLAIM, outcome, engine, under, artefacts)
+        yield proof(requirement.id, Layer.MONITOR, CLAIM, outcome, engine, under, artefacts)

@@ -15,7 +15,7 @@ from compiler.targets.target import stem
 from fretc.verification.engines.sandbox import Limits
 from fretc.verification.loop.closed_loop import NamedText, Setup
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 Progress = Callable[[str], None]
 """Is called with what is being worked on from now on, in words."""
@@ -47,16 +47,17 @@ class Request:
         """Whether a layer or a prover is asked."""
         return name in self.layers or name in self.provers
 
-    def demands(self, layer: Layer, requirement: Requirement) -> bool:
+    def demands(self, layer: Layer, requirement: RequirementEntry) -> bool:
         """Whether a claim of a layer is open as long as nothing is known of it."""
         return layer in self.demanded or str(layer) in requirement.verify
 
 
-def setup_of(rule: FormalizedRequirement, project: Project, request: Request) -> Setup:
+def setup_of(requirement: FormalizedRequirement, project: Project, request: Request) -> Setup:
     """The parts of the closed loop around a requirement."""
     declared = project.declarations
     return Setup(
-        named_text(request.monitor) or NamedText(f"{stem(rule)}_monitor.py", monitor.text(rule)),
+        named_text(request.monitor)
+        or NamedText(f"{stem(requirement)}_monitor.py", monitor.text(requirement)),
         interceptor_of(project, request),
         declared.interceptor if declared else None,
         declared.assumed if declared else None,

@@ -36,13 +36,13 @@ class Method:
     """Whether it steps the monitor of a requirement, and its runs are runs of that monitor."""
 
     def prove(
-        self, rules: Sequence[FormalizedRequirement], project: Project, request: Request
+        self, requirements: Sequence[FormalizedRequirement], project: Project, request: Request
     ) -> Iterable[Proof] | Diagnostic:
-        """The proofs about the rules; a diagnostic where a text of the request has a mistake.
+        """The proofs about the requirements; a diagnostic where a given text has a mistake.
 
         Args:
-            rules: those that are asked about.
-            project: all rules, and what the bindings declare.
+            requirements: those that are asked about.
+            project: all requirements, and what the bindings declare.
             request: the texts that are given, the limits, and the other wishes.
 
         Raises:
@@ -50,7 +50,7 @@ class Method:
         """
         name = self.name.replace("-", "_")
         module = import_module(f"fretc.verification.layers.{name}")
-        return cast("Iterable[Proof] | Diagnostic", module.prove(rules, project, request))
+        return cast("Iterable[Proof] | Diagnostic", module.prove(requirements, project, request))
 
 
 TABLE = (

@@ -52,7 +52,7 @@ from fretc.verification.monitor.statements import is_same
 from fretish import syntax as s
 from fretish.clock import in_words
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.printer import canonical
 from monitors.interceptor import Options
 
@@ -95,10 +95,12 @@ class Answer:
     z3: str = ""
 
 
-def bounds_proofs(rule: FormalizedRequirement, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
+def bounds_proofs(
+    requirement: FormalizedRequirement, setup: Setup, limits: Limits
+) -> tuple[Proof, ...]:
     """Both claims: an answer comes in time, whatever the times are; and the bound is enough."""
-    reason = _inapplicable(rule, setup)
-    query = reason or question(rule, setup)
+    reason = _inapplicable(requirement, setup)
+    query = reason or question(requirement, setup)
     answer: Answer | Stopped
     if reason is not None:
         answer = Answer(not_applicable(reason), not_applicable(reason))
@@ -109,15 +111,25 @@ def bounds_proofs(rule: FormalizedRequirement, setup: Setup, limits: Limits) -> 
     if isinstance(answer, Stopped):
         answer = Answer(not_checked(answer.reason), not_checked(answer.reason))
     at_declared, at_any = (
-        () if isinstance(query, str) else tuple(assumptions(rule, setup, query.case, any_time=any_))
+        ()
+        if isinstance(query, str)
+        else tuple(assumptions(requirement, setup, query.case, any_time=any_))
         for any_ in (False, True)
     )
     engine = f"z3 {answer.z3}; fretc, explicit states" if answer.z3 else "fretc, explicit states"
     return tuple(
-        proof(rule.id, Layer.BOUNDS, claim, result, engine, assumed, artefacts(rule, setup))
+        proof(
+            requirement.id,
+            Layer.BOUNDS,
+            claim,
+            result,
+            engine,
+            assumed,
+            artefacts(requirement, setup),
+        )
         for claim, result, assumed in (
             (_answered(query), answer.answered, at_any),
-            (_enough(rule), answer.enough, at_declared),
+            (_enough(requirement), answer.enough, at_declared),
         )
     )
 
@@ -129,10 +141,10 @@ def _answered(query: Question | str) -> str:
     return f"every demand is answered within {beat} ticks for each message of `lost` and {_MORE}"
 
 
-def _enough(rule: FormalizedRequirement) -> str:
-    if s.deadline(rule.sentence.timing) is None:
+def _enough(requirement: FormalizedRequirement) -> str:
+    if s.deadline(requirement.sentence.timing) is None:
         return "some bound is enough"
-    return f"the bound of {_ticks(rule.ticks or 0)} is enough"
+    return f"the bound of {_ticks(requirement.ticks or 0)} is enough"
 
 
 def _ticks(amount: int) -> str:
@@ -142,9 +154,9 @@ def _ticks(amount: int) -> str:
 # The question ---------------------------------------------------------------------------------
 
 
-def _inapplicable(rule: FormalizedRequirement, setup: Setup) -> str | None:
+def _inapplicable(requirement: FormalizedRequirement, setup: Setup) -> str | None:
     """Why there is no bound to ask about; None: there is one."""
-    reason, sentence = inapplicable(rule, setup), rule.sentence
+    reason, sentence = inapplicable(requirement, setup), requirement.sentence
     if reason is not None:
         return reason
     if sentence.scope is not None:
@@ -154,23 +166,23 @@ def _inapplicable(rule: FormalizedRequirement, setup: Setup) -> str | None:
     return None
 
 
-def question(rule: FormalizedRequirement, setup: Setup) -> Question | str:
+def question(requirement: FormalizedRequirement, setup: Setup) -> Question | str:
     """The question to prove, of a requirement that has a bound; or why it cannot be asked."""
-    problem = case(rule, setup)
+    problem = case(requirement, setup)
     if isinstance(problem, str):
         return problem
-    sentence = rule.sentence
+    sentence = requirement.sentence
     if problem.settings.event_driven:
         return "an interceptor without a timer stops nothing before the next command"
     if problem.channel.edge and not problem.channel.heartbeat:
         return "a request that is sent only once may be lost (`requests`, [assume]: no `heartbeat`)"
     if not _answers(sentence, problem.stands):
         return f"`{problem.stands}` alone does not answer it"
-    assert rule.clock is not None
-    bound = rule.ticks if s.deadline(sentence.timing) else None
+    assert requirement.clock is not None
+    bound = requirement.ticks if s.deadline(sentence.timing) else None
     if not is_same(problem.safety, problem.observer):
         return "the monitor is not the one that fretc writes for it, and only that is looked at"
-    return Question(problem, sentence, bound, rule.clock.period or 0)
+    return Question(problem, sentence, bound, requirement.clock.period or 0)
 
 
 def _answers(sentence: s.Sentence, stands: str) -> bool:
@@ -274,11 +286,11 @@ def _endless(query: Question) -> Case:
 
 def _with(query: Question, timing: s.Timing) -> Case:
     text = canonical(replace(query.sentence, timing=timing))
-    requirement = Requirement(query.case.requirement, Source("sentence", text).span())
-    rule, diagnostics = formalize(requirement, None)
-    assert rule is not None, diagnostics
-    monitor = target.text(rule)
-    return replace(query.case, safety=monitor, observer=monitor, formula=rule.ft_infinite)
+    entry = RequirementEntry(query.case.requirement, Source("sentence", text).span())
+    requirement, diagnostics = formalize(entry, None)
+    assert requirement is not None, diagnostics
+    monitor = target.text(requirement)
+    return replace(query.case, safety=monitor, observer=monitor, formula=requirement.ft_infinite)
 
 
 def _least(query: Question, least: int, drive: ActuationModel) -> Outcome:

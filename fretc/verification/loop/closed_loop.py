@@ -53,10 +53,12 @@ class Setup:
     assumed: Assumed | None
 
 
-def loop_proofs(rule: FormalizedRequirement, setup: Setup, limits: Limits) -> tuple[Proof, ...]:
+def loop_proofs(
+    requirement: FormalizedRequirement, setup: Setup, limits: Limits
+) -> tuple[Proof, ...]:
     """The proofs of both claims: the requirement is kept, and the stop is released."""
-    reason = inapplicable(rule, setup)
-    problem = reason or case(rule, setup)
+    reason = inapplicable(requirement, setup)
+    problem = reason or case(requirement, setup)
     results: Results | Stopped
     if reason is not None:
         results = Results(not_applicable(reason), not_applicable(reason))
@@ -66,55 +68,55 @@ def loop_proofs(rule: FormalizedRequirement, setup: Setup, limits: Limits) -> tu
         results = processes.confined(limits, search, problem)
     if isinstance(results, Stopped):
         results = Results(not_checked(results.reason), not_checked(results.reason))
-    premises = () if isinstance(problem, str) else tuple(assumptions(rule, setup, problem))
+    premises = () if isinstance(problem, str) else tuple(assumptions(requirement, setup, problem))
     return (
-        _evidence(rule, setup, KEPT, results.kept, premises),
-        _evidence(rule, setup, RELEASED, results.released, premises),
+        _evidence(requirement, setup, KEPT, results.kept, premises),
+        _evidence(requirement, setup, RELEASED, results.released, premises),
     )
 
 
 def _evidence(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     setup: Setup,
     claim: str,
     result: Outcome,
     premises: tuple[str, ...],
 ) -> Proof:
     return proof(
-        rule.id,
+        requirement.id,
         Layer.LOOP,
         claim,
         result,
         f"fretc, explicit states; Spot {automata.version()}",
         premises,
-        artefacts(rule, setup),
+        artefacts(requirement, setup),
     )
 
 
-def artefacts(rule: FormalizedRequirement, setup: Setup) -> dict[str, str]:
+def artefacts(requirement: FormalizedRequirement, setup: Setup) -> dict[str, str]:
     """SHA-256 of each text, and of what the bindings assume."""
     texts = [setup.monitor, *([setup.interceptor] if setup.interceptor else [])]
     hashes = {text.name: sha256(text.text) for text in texts}
-    digest = hash_of_assumed(rule.declarations) if rule.declarations else ""
+    digest = hash_of_assumed(requirement.declarations) if requirement.declarations else ""
     return {**hashes, ASSUMED: digest} if digest else hashes
 
 
 # The case -------------------------------------------------------------------------------------
 
 
-def inapplicable(rule: FormalizedRequirement, setup: Setup) -> str | None:
+def inapplicable(requirement: FormalizedRequirement, setup: Setup) -> str | None:
     """Why no loop decides the requirement; None: one does."""
     if setup.interception is None or setup.interceptor is None:
         return "the bindings declare no interceptor (`[interceptor]`)"
     if setup.assumed is None:
         return "the bindings assume nothing of the loop (`[assume]`)"
     stands = setup.assumed.stands
-    if stands not in {name.id for name in names(rule.sentence.response)}:
+    if stands not in {name.id for name in names(requirement.sentence.response)}:
         return f"its response does not speak of `{stands}`, which is what the loop decides"
     return None
 
 
-def case(rule: FormalizedRequirement, setup: Setup) -> Case | str:
+def case(requirement: FormalizedRequirement, setup: Setup) -> Case | str:
     """The case to search, of a requirement that a loop decides; or why it cannot be searched."""
     interception, assumed = setup.interception, setup.assumed
     assert interception is not None
@@ -123,27 +125,27 @@ def case(rule: FormalizedRequirement, setup: Setup) -> Case | str:
     deviation = otherwise(setup.interceptor.text, interception)
     if deviation is not None:
         return deviation
-    declared = channel(rule, interception, assumed)
+    declared = channel(requirement, interception, assumed)
     if isinstance(declared, str):
         return declared
     return Case(
-        rule.id,
-        rule.ft_infinite,
+        requirement.id,
+        requirement.ft_infinite,
         setup.monitor.text,
-        target.text(rule),
+        target.text(requirement),
         setup.interceptor.text,
         options(interception),
         declared,
         assumed.stands,
-        excluded=excluded(rule),
+        excluded=excluded(requirement),
     )
 
 
 def channel(
-    rule: FormalizedRequirement, interception: Interception, assumed: Assumed
+    requirement: FormalizedRequirement, interception: Interception, assumed: Assumed
 ) -> Channel | str:
     """The assumptions in cells; or why no cell fits."""
-    tick = rule.clock.period if rule.clock else None
+    tick = requirement.clock.period if requirement.clock else None
     if tick is None:
         return "the clock has no period: it ticks with messages"
     cell = cell_of(tick, interception, assumed)
@@ -176,28 +178,28 @@ def cell_of(tick: int, interception: Interception, assumed: Assumed) -> int:
 
 
 def assumptions(
-    rule: FormalizedRequirement, setup: Setup, problem: Case, *, any_time: bool = False
+    requirement: FormalizedRequirement, setup: Setup, problem: Case, *, any_time: bool = False
 ) -> Iterator[str]:
     """The assumptions of the verdict in words, each with its place of declaration.
 
     Args:
-        rule: the requirement.
+        requirement: the requirement.
         setup: the declarations.
-        problem: the case of rule and setup.
+        problem: the case of requirement and setup.
         any_time: the verdict holds whatever latency, losses and braking time are.
     """
     interception, assumed, channel = setup.interception, setup.assumed, problem.channel
     assert interception is not None
     assert assumed is not None
-    assert rule.clock is not None
-    tick = rule.clock.period or 0
+    assert requirement.clock is not None
+    tick = requirement.clock.period or 0
     yield from _messages(assumed, tick, any_time=any_time)
     if channel.punctual:
         yield "the planner sends a command in every tick (`planner`, [assume])"
     braking = "`braking`" if any_time else f"{in_words(assumed.braking)} (`braking`, [assume])"
     yield (
-        f"`{assumed.stands}` is false while the wheels are told to move, and true once they have "
-        f"had zero for {braking}, or earlier"
+        f"`{assumed.stands}` is false while the wheels are commanded to move, and true once they "
+        f"have had zero for {braking}, or earlier"
     )
     for exclusion in problem.excluded:
         yield f"never at one tick: {exclusion_in_words(exclusion)}, for no numbers compare so"

@@ -117,7 +117,7 @@ class Disagreement:
 
 
 def agreed(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     monitor: Monitor,
     place: int,
     atoms: Sequence[str],
@@ -126,13 +126,13 @@ def agreed(
     """The ticks on which both programs agree; or a trace on which they do not.
 
     Args:
-        rule: the requirement.
+        requirement: the requirement.
         monitor: it has both programs.
         place: of the requirement among those of the monitor.
         atoms: what the requirement depends on.
         never: what is left out beside what can never be.
     """
-    bound, never = rule.ticks or 0, (*excluded(rule), *never)
+    bound, never = requirement.ticks or 0, (*excluded(requirement), *never)
     is_alone = len(monitor.REQUIREMENTS) == 1
     traces = _traces(monitor, bound, *((tuple(atoms), never) if is_alone or never else ((), ())))
     for columns, ticks in traces:

@@ -52,34 +52,34 @@ class NotAMonitorError(Exception):
 
 
 def verified(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     text: str,
     limit: int = MOST_STATES,
     others: Sequence[FormalizedRequirement] = (),
 ) -> Outcome:
-    """Compare the text of a monitor with its rule.
+    """Compare the text of a monitor with its requirement.
 
     Args:
-        rule: one that the target accepts, on its own clock.
-        text: that of its monitor, maybe with monitors of other rules.
+        requirement: one that the target accepts, on its own clock.
+        text: that of its monitor, maybe with monitors of other requirements.
         limit: the most states of the exploration.
-        others: further rules that the text may implement.
+        others: further requirements that the text may implement.
 
     Raises:
         NotAMonitorError: the text is no generated monitor.
     """
-    return verified_beside(rule, text, written(text, (rule, *others)), limit)
+    return verified_beside(requirement, text, written(text, (requirement, *others)), limit)
 
 
 def verified_beside(
-    rule: FormalizedRequirement, text: str, whole: str | None, limit: int = MOST_STATES
+    requirement: FormalizedRequirement, text: str, whole: str | None, limit: int = MOST_STATES
 ) -> Outcome:
     """As `verified`.
 
     Args:
-        rule: one that the target accepts, on its own clock.
-        text: that of its monitor, maybe with monitors of other rules.
-        whole: what fretc writes for all of them, from `written`: once for all rules of a text.
+        requirement: one that the target accepts, on its own clock.
+        text: that of its monitor, maybe with monitors of other requirements.
+        whole: what fretc writes for all of them, from `written`: once for each text.
         limit: the most states of the exploration.
 
     Raises:
@@ -88,17 +88,17 @@ def verified_beside(
     monitor = _opened(text)
     if isinstance(monitor, str):
         return not_checked(monitor)
-    return _compared(rule, text, monitor, limit, whole)
+    return _compared(requirement, text, monitor, limit, whole)
 
 
-def written(text: str, rules: Sequence[FormalizedRequirement]) -> str | None:
+def written(text: str, requirements: Sequence[FormalizedRequirement]) -> str | None:
     """What fretc writes for the requirements of a text; None where not all of them are known.
 
     Raises:
         NotAMonitorError: the text is no generated monitor.
     """
     monitor = _opened(text)
-    by_id = {rule.id: rule for rule in rules}
+    by_id = {requirement.id: requirement for requirement in requirements}
     if isinstance(monitor, str) or not all(each.id in by_id for each in monitor.REQUIREMENTS):
         return None
     return target.text(*(by_id[each.id] for each in monitor.REQUIREMENTS))
@@ -122,31 +122,34 @@ def _opened(text: str) -> Monitor | str:
 
 
 def _compared(
-    rule: FormalizedRequirement, text: str, monitor: Monitor, limit: int, whole: str | None
+    requirement: FormalizedRequirement, text: str, monitor: Monitor, limit: int, whole: str | None
 ) -> Outcome:
     """The outcome for a text that is safe to execute."""
-    places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == rule.id]
+    places = [i for i, each in enumerate(monitor.REQUIREMENTS) if each.id == requirement.id]
     if not places:
         return not_checked("the monitor is of other requirements")
     place = places[0]
-    atoms = tuple(dict.fromkeys((*atoms_of(rule.sentence), *monitor.PROPOSITIONS)))
-    needed, cells = _needed(rule, text, monitor, atoms)
+    atoms = tuple(dict.fromkeys((*atoms_of(requirement.sentence), *monitor.PROPOSITIONS)))
+    needed, cells = _needed(requirement, text, monitor, atoms)
     machine = Alone(Stepped(monitor, place, atoms, cells), len(atoms) - len(needed))
-    result = lock_step(rule, machine, needed, limit)
+    result = lock_step(requirement, machine, needed, limit)
     if isinstance(result, str):
         return not_checked(result)
     if isinstance(result, Difference):
         return judged_wrongly(result, atoms)
-    generated = target.text(rule)
+    generated = target.text(requirement)
     if text != generated:
         (expected,) = load("generated", generated).REQUIREMENTS
         if tuple(monitor.REQUIREMENTS[place]) != tuple(expected):
             return not_checked("it decides the same, but states another sentence or deadline")
-        fault = _front_compared(rule, (generated, whole), text, monitor, atoms)
+        fault = _front_compared(requirement, (generated, whole), text, monitor, atoms)
         if fault is not None:
             return fault
     ticks, note = by_numbers(
-        rule, needed, Disagreement, lambda more: agreed(rule, monitor, place, needed, more)
+        requirement,
+        needed,
+        Disagreement,
+        lambda more: agreed(requirement, monitor, place, needed, more),
     )
     if isinstance(ticks, Disagreement):
         apart = f"its column program and its steps differ{noted(note)}"
@@ -154,33 +157,33 @@ def _compared(
     if text == generated or (whole is not None and _is_like(whole, text)):
         return _proved(result, ticks)
     states = _compared_with_generated(
-        rule, generated, text, monitor, place, (atoms, len(needed)), limit
+        requirement, generated, text, monitor, place, (atoms, len(needed)), limit
     )
     return _proved(result, ticks, states) if isinstance(states, int) else states
 
 
 def _needed(
-    rule: FormalizedRequirement, text: str, monitor: Monitor, atoms: tuple[str, ...]
+    requirement: FormalizedRequirement, text: str, monitor: Monitor, atoms: tuple[str, ...]
 ) -> tuple[tuple[str, ...], frozenset[str] | None]:
     """The atoms and the cells that a requirement depends on; all, where it may depend on more."""
-    own = atoms_of(rule.sentence)
-    prefix = prefixes_of(each.id for each in monitor.REQUIREMENTS)[rule.id]
+    own = atoms_of(requirement.sentence)
+    prefix = prefixes_of(each.id for each in monitor.REQUIREMENTS)[requirement.id]
     part = slice_of(text, prefix, monitor.PROPOSITIONS)
     return (own, part.cells) if part.propositions <= {*own} else (atoms, None)
 
 
 def lock_step(
-    rule: FormalizedRequirement, machine: Machine, atoms: Sequence[str], limit: int
+    requirement: FormalizedRequirement, machine: Machine, atoms: Sequence[str], limit: int
 ) -> Equivalence | Difference | str:
     """The comparison with the automaton of the sentence, over all valuations of the atoms.
 
     Where they differ, over those that can occur: a trace that no numbers make shows nothing. One
     that floats may make and real numbers do not is shown where there is no other, with a note.
     """
-    sentence, ticks = rule.sentence, rule.ticks or 0
+    sentence, ticks = requirement.sentence, requirement.ticks or 0
     start = machine.save()
     result = compare(machine, sentence, ticks, atoms, limit)
-    impossible = excluded(rule) if isinstance(result, Difference) else ()
+    impossible = excluded(requirement) if isinstance(result, Difference) else ()
 
     def compare_without(more: Sequence[Exclusion]) -> Equivalence | Difference | str:
         if not impossible and not more:
@@ -190,7 +193,7 @@ def lock_step(
         return compare(machine, sentence, ticks, atoms, most, (*impossible, *more))
 
     found: Equivalence | Difference | str
-    found, note = by_numbers(rule, atoms, Difference, compare_without)
+    found, note = by_numbers(requirement, atoms, Difference, compare_without)
     return replace(found, note=note) if isinstance(found, Difference) else found
 
 
@@ -266,7 +269,7 @@ def _is_like(whole: str, text: str) -> bool:
 
 
 def _front_compared(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     texts: tuple[str, str | None],
     text: str,
     monitor: Monitor,
@@ -278,21 +281,25 @@ def _front_compared(
     then what fretc writes for all of them counts.
     """
     generated, whole = texts
-    fault = _differing(rule, text, generated, monitor, atoms)
+    fault = _differing(requirement, text, generated, monitor, atoms)
     if fault is None or whole is None:
         return fault
-    return _differing(rule, text, whole, monitor, atoms)
+    return _differing(requirement, text, whole, monitor, atoms)
 
 
 def _differing(
-    rule: FormalizedRequirement, text: str, written: str, monitor: Monitor, atoms: Sequence[str]
+    requirement: FormalizedRequirement,
+    text: str,
+    written: str,
+    monitor: Monitor,
+    atoms: Sequence[str],
 ) -> Outcome | None:
     """Why the variables of a text, or what it compares, are not those of the other."""
     try:
         actual, expected = front_terms.terms(text), front_terms.terms(written)
     except UnexpectedCodeError as error:
         return not_checked(str(error))
-    names = [name for name in rule.watched if name in expected]
+    names = [name for name in requirement.watched if name in expected]
     if all(actual.get(name) == expected[name] for name in names):
         return None
     reference = load("written", written)
@@ -311,7 +318,7 @@ def _kinds(variables: Mapping[str, Variable]) -> Mapping[str, object]:
 
 
 def _compared_with_generated(
-    rule: FormalizedRequirement,
+    requirement: FormalizedRequirement,
     generated: str,
     text: str,
     monitor: Monitor,
@@ -319,10 +326,10 @@ def _compared_with_generated(
     atoms: tuple[Sequence[str], int],
     limit: int,
 ) -> int | Outcome:
-    """In how many states it agrees with the text that fretc writes for the rule.
+    """In how many states it agrees with the text that fretc writes for the requirement.
 
     Args:
-        rule: it.
+        requirement: it.
         generated: that text.
         text: the monitor's.
         monitor: loaded from it.
@@ -338,14 +345,14 @@ def _compared_with_generated(
             f"{most}, are too many to compare both with unknown values"
         )
     reference = load("generated", generated)
-    never = excluded(rule)
+    never = excluded(requirement)
 
     def compare_without(more: Sequence[Exclusion]) -> rails.Equivalent | rails.Distinguished | None:
         most = min(limit, MOST_SEARCHED) if more else limit
         every = (*never, *more)
         return rails.compared(monitor, place, reference, names[:count], most, every)
 
-    comparison, note = by_numbers(rule, names[:count], rails.Distinguished, compare_without)
+    comparison, note = by_numbers(requirement, names[:count], rails.Distinguished, compare_without)
     match comparison:
         case None:
             return not_checked(f"with unknown values there are more than {limit} states")

@@ -20,13 +20,13 @@ _OUTCOMES = re.compile(r"^[ \t]+/// (.*)\n[ \t]+pub (\w+): Outcome,$", re.MULTIL
 tool = compiler
 
 
-def checked(given: SourceText, rules: Sequence[FormalizedRequirement]) -> ParsedSource:
+def checked(given: SourceText, requirements: Sequence[FormalizedRequirement]) -> ParsedSource:
     """The text in the form that fretc writes.
 
     Raises:
         UnexpectedLayoutError: it has another form.
     """
-    own_rules = implemented([id for id, _ in _OUTCOMES.findall(given.text)], rules)
+    own_rules = implemented([id for id, _ in _OUTCOMES.findall(given.text)], requirements)
     files = TARGET.emit(own_rules, Options(one_file=True))
     own = next(file.text for file in files if file.path.name == "lib.rs")
     cells, inputs = _fields(own, "struct Rail"), _fields(own, "pub struct Inputs")

@@ -1,6 +1,6 @@
 """When something is published: what arrives at once, what is known with each change, and steadily.
 
-Whoever publishes is never waited for, and what fails there does not touch the watch.
+No publisher is waited for, and what fails there does not touch the watch.
 """
 
 from __future__ import annotations

@@ -66,7 +66,7 @@ class Dds(Middleware):
                 domain.wait(WAIT)
                 listening.look()
                 diagnosing.publish(self._statuses)
-        except Exception as error:  # what Cyclone DDS raises of what strangers send, it may be
+        except Exception as error:  # what Cyclone DDS raises of what others send, it may be
             self._lost(_broken(error))
         finally:
             domain.close()

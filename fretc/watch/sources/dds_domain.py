@@ -98,7 +98,7 @@ def _joined(number: int) -> Domain | Diagnostic:
             f"domain {number} of DDS cannot be joined",
             help="Cyclone DDS has printed why: no network, or a mistake in CYCLONEDDS_URI",
         )
-    library.dds_set_log_mask(0)  # from here on it speaks of packets of strangers, without end
+    library.dds_set_log_mask(0)  # from here on it speaks of packets of others, without end
     return domain
 
 
@@ -148,7 +148,7 @@ class Domain:
         for _ in range(_AT_ONCE):
             try:
                 found = self._news.take()
-            except Exception:  # names of strangers may be no text, and each is one of its own
+            except Exception:  # names of others may be no text, and each is one of its own
                 continue
             if not found:
                 return
@@ -197,7 +197,7 @@ class Domain:
         return self._topics[name, type_]
 
     def writer(self, topic: str, offer: Offer, definition: str) -> Writer:
-        """What publishes messages, so that ROS 2 and whoever has type information reads them.
+        """What publishes messages, so that ROS 2 and every reader with type information reads them.
 
         Args:
             topic: `/diagnostics`.

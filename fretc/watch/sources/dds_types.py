@@ -1,7 +1,7 @@
 """Names, offers and types of DDS, and what they are in ROS 2.
 
 Names are those of https://design.ros2.org/articles/topic_and_service_names.html. No type is ever
-made of a stranger's type information: Cyclone DDS's Python would run the names in it as code.
+made of untrusted type information: Cyclone DDS's Python would run the names in it as code.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def ros_type(name: str) -> str:
 
 
 def is_type(name: str) -> bool:
-    """Whether a stranger's type has such a name that Cyclone DDS may print it."""
+    """Whether a type of others has such a name that Cyclone DDS may print it."""
     return _NAME.fullmatch(name) is not None
 
 

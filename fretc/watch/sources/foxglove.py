@@ -1,7 +1,7 @@
 """A Foxglove WebSocket server as a source: foxglove_bridge on a robot, or a program with the SDK.
 
-The server is a stranger: what it sends is bounded, what it must answer is waited for so long and no
-longer, and a connection on which something else is said than the protocol allows is closed.
+The server is not trusted: what it sends is bounded, what it must answer is waited for so long and
+no longer, and a connection on which something else is said than the protocol allows is closed.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """What a Foxglove WebSocket server and its client say to each other.
 
-A server of a stranger is read strictly: what is not of the protocol is an error, what is newer than
+An untrusted server is read strictly: what is not of the protocol is an error, what is newer than
 this module is ignored.
 
 Source: https://github.com/foxglove/ws-protocol/blob/main/docs/spec.md

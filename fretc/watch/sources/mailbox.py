@@ -17,7 +17,7 @@ MOST = 20_000
 MOST_BYTES = 2**28
 """Their payloads together."""
 WAIT = 0.05
-"""Seconds after which a reader is told that nothing has come."""
+"""Seconds after which a reader learns that nothing has come."""
 
 
 class Mailbox:

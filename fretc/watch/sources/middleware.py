@@ -112,7 +112,7 @@ def several_publishers(topic: str, count: int, names: Collection[str] = ()) -> D
     return Diagnostic(
         Code.SEVERAL_PUBLISHERS,
         f"{count} nodes publish `{topic}`{who}",
-        help="each message counts, whoever sent it; end what should not publish",
+        help="each message counts, no matter who sent it; end what should not publish",
         severity=Severity.WARNING,
     )
 

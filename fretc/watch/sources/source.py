@@ -109,7 +109,7 @@ class Source(Protocol):
 
         A source that cannot be had at all gives a `Problem` with an error, and ends; what breaks
         off later is `Interrupted`, and sought again, ever less often. `Idle` comes at least every
-        tenth of a second while nothing else does, so that whoever iterates can look at the clock.
+        tenth of a second while nothing else does, so that the caller can look at the clock.
         A middleware runs in a thread of its own and puts what it receives in a `Mailbox`.
         """
 

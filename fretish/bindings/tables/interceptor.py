@@ -11,7 +11,7 @@ from fretish.bindings.declarations import Assumed, Form, Interception, Planner, 
 from fretish.bindings.tables.fields import Fields
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source, Span
-from fretish.documents import IDENTIFIER, Requirement
+from fretish.documents import IDENTIFIER, RequirementEntry
 from fretish.reading.toml_text import Tables, as_key
 
 TABLE = """\
@@ -255,7 +255,7 @@ class Loop(Fields):
 
     # [[assume.requirement]]
 
-    def sentences(self) -> tuple[Requirement, ...]:
+    def sentences(self) -> tuple[RequirementEntry, ...]:
         """`[[assume.requirement]]`: what the environment is taken to keep, sentence by sentence."""
         table = self.tables.data.get("assume")
         listed = table.get(_SENTENCES, []) if isinstance(table, dict) else []
@@ -267,7 +267,7 @@ class Loop(Fields):
                 f"write `[[assume.{_SENTENCES}]]`, and `id` and `sentence` below it",
             )
             return ()
-        found: dict[str, Requirement] = {}
+        found: dict[str, RequirementEntry] = {}
         for each, block in zip(listed, self._blocks(len(listed)), strict=True):
             requirement = Loop(Tables(block, each), self.notes)._sentence(each)
             if requirement is not None and requirement.id in found:
@@ -288,7 +288,7 @@ class Loop(Fields):
             for start, end in zip(starts, ends, strict=True)
         ]
 
-    def _sentence(self, table: Mapping[str, Any]) -> Requirement | None:
+    def _sentence(self, table: Mapping[str, Any]) -> RequirementEntry | None:
         before = len(self.notes.diagnostics)
         where = f"[[assume.{_SENTENCES}]]"
         self._check_keys(table, _SENTENCE, where)
@@ -310,4 +310,4 @@ class Loop(Fields):
         wording = value.part(start, start + len(sentence))
         if start < 0:  # written with escapes: the text stands for itself
             wording = Source(f"{value.source.name} ({id})", sentence).span()
-        return Requirement(id, wording, text=texts["text"])
+        return RequirementEntry(id, wording, text=texts["text"])
