@@ -220,6 +220,6 @@ def _internal(error: Exception) -> Diagnostic:
         where = f" in {Path(last.tb_frame.f_code.co_filename).name}:{last.tb_lineno}"
     return Diagnostic(
         Code.INTERNAL,
-        f"fretc itself is at fault: {type(error).__name__}{where}: {error}",
+        f"internal error in fretc: {type(error).__name__}{where}: {error}",
         help="please report it with the input; FRETC_TRACEBACK=1 shows where it comes from",
     )

@@ -45,7 +45,7 @@ def too_deep(sentence: Sentence) -> Diagnostic:
 def _too_deep(place: Span | None) -> Diagnostic:
     return Diagnostic(
         Code.TOO_DEEP,
-        "an expression has too many operators within each other",
+        "an expression has too many nested operators",
         place,
         help="give parts of it names of their own",
     )

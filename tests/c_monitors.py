@@ -63,10 +63,12 @@ class Source:
     outcomes: tuple[str, ...]
 
     @classmethod
-    def of(cls, *rules: FormalizedRequirement) -> Source:
-        """One file of all rules."""
-        assert [TARGET.refuse(rule) for rule in rules] == [None] * len(rules)
-        files = TARGET.emit(rules, Options(one_file=len(rules) > 1))
+    def of(cls, *requirements: FormalizedRequirement) -> Source:
+        """One file of all requirements."""
+        assert [TARGET.refuse(requirement) for requirement in requirements] == [None] * len(
+            requirements
+        )
+        files = TARGET.emit(requirements, Options(one_file=len(requirements) > 1))
         texts = {str(file.path): file.text for file in files}
         header = next(text for name, text in texts.items() if name.endswith(".h"))
         (base,) = re.findall(r"^} (\w+)_inputs;$", header, re.M)

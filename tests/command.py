@@ -89,7 +89,7 @@ _MADE: dict[str, dict[str, bytes]] = {}
 
 
 def made_once(name: str, make: Callable[[], object]) -> None:
-    """Files in the present folder, which is empty: made once by each process, then written again.
+    """Files in the current folder, which is empty: made once by each process, then written again.
 
     Args:
         name: of what is made, no other one's.

@@ -28,7 +28,7 @@ R = TypeVar("R")
 
 
 def once(function: Callable[P, R]) -> Callable[P, R]:
-    """Call it once for the same objects: requirements have no hash, and `rule` gives the same."""
+    """Call it once for the same objects: requirements have no hash."""
     known: dict[tuple[int, ...], tuple[object, R]] = {}
 
     @wraps(function)
@@ -74,31 +74,34 @@ class Checker:
 
     @once
     def prepared(
-        self, monitor: SourceText, *rules: FormalizedRequirement
+        self, monitor: SourceText, *requirements: FormalizedRequirement
     ) -> tuple[ParsedSource, Executable]:
         """The text, checked and compiled; `UnexpectedLayoutError` and `ToolError` say why not."""
-        checked = self.language.checked(monitor, rules)
+        checked = self.language.checked(monitor, requirements)
         program = self.language.tool()
         assert program is not None
         folder = Path(mkdtemp(dir=self.folder))
         return checked, self.language.prepared(program, monitor, checked, folder).executable
 
     def outcomes(
-        self, monitor: SourceText, rules: Sequence[FormalizedRequirement]
+        self, monitor: SourceText, requirements: Sequence[FormalizedRequirement]
     ) -> list[Outcome]:
         """Of each requirement of one text."""
-        checked, executable = self.prepared(monitor, *rules)
-        return [explored(rule, executable, checked.plan(rule), 10**5) for rule in rules]
+        checked, executable = self.prepared(monitor, *requirements)
+        return [
+            explored(requirement, executable, checked.plan(requirement), 10**5)
+            for requirement in requirements
+        ]
 
-    def outcome(self, monitor: SourceText, rule: FormalizedRequirement) -> Outcome:
+    def outcome(self, monitor: SourceText, requirement: FormalizedRequirement) -> Outcome:
         """Of a text of one requirement."""
-        (outcome,) = self.outcomes(monitor, [rule])
+        (outcome,) = self.outcomes(monitor, [requirement])
         return outcome
 
-    def kind(self, monitor: SourceText, rule: FormalizedRequirement) -> str:
+    def kind(self, monitor: SourceText, requirement: FormalizedRequirement) -> str:
         """Whether it is refuted, refused, or the same as what fretc writes."""
         try:
-            return KINDS[self.outcome(monitor, rule).result]
+            return KINDS[self.outcome(monitor, requirement).result]
         except (UnexpectedLayoutError, ToolError):
             return REFUSED
 
@@ -110,7 +113,7 @@ class Tongue:
     name: str
     language: Language
     given: Callable[..., SourceText]
-    """The monitor that fretc writes for some rules."""
+    """The monitor that fretc writes for some requirements."""
     comments: tuple[str, str]
     """Those that are free, and one of them."""
     start: str
@@ -144,29 +147,29 @@ _BITWISE = ((r"(?<!word) & (?!bit|~)", " | "), (r" \| (?!bit)", " & "))
 
 
 @once
-def given_c(*rules: FormalizedRequirement) -> SourceText:
+def given_c(*requirements: FormalizedRequirement) -> SourceText:
     """What `--emit c` writes for them."""
-    source = Source.of(*rules)
+    source = Source.of(*requirements)
     header = source.source.removesuffix(".c") + ".h"
     return SourceText(source.source, source.texts[source.source], header, source.texts[header])
 
 
 def _told_by_c(
-    folder: Path, monitor: SourceText, rule: FormalizedRequirement, rows: Rows
+    folder: Path, monitor: SourceText, requirement: FormalizedRequirement, rows: Rows
 ) -> list[list[c_monitors.Outcome]]:
-    source = replace(Source.of(rule), texts=monitor.texts)
+    source = replace(Source.of(requirement), texts=monitor.texts)
     program = c_monitors.compiled(folder, "gcc", source, flags=["-std=c99"])
     return program.run((0, rows))[1][0]
 
 
 @once
-def given_rust(*rules: FormalizedRequirement) -> SourceText:
+def given_rust(*requirements: FormalizedRequirement) -> SourceText:
     """What `--emit rust` writes for them."""
-    return SourceText("lib.rs", rust_monitors.library(rust_monitors.crate(*rules)))
+    return SourceText("lib.rs", rust_monitors.library(rust_monitors.crate(*requirements)))
 
 
 def _told_by_rust(
-    folder: Path, monitor: SourceText, rule: FormalizedRequirement, rows: Rows
+    folder: Path, monitor: SourceText, requirement: FormalizedRequirement, rows: Rows
 ) -> list[list[c_monitors.Outcome]]:
     return rust_monitors.outcomes(
         folder, [monitor.text], [(0, rows)], lints=["--cap-lints", "warn"]
@@ -174,13 +177,13 @@ def _told_by_rust(
 
 
 @once
-def given_javascript(*rules: FormalizedRequirement) -> SourceText:
+def given_javascript(*requirements: FormalizedRequirement) -> SourceText:
     """What `--emit js` writes for them."""
-    return SourceText("monitor.mjs", in_javascript(*rules))
+    return SourceText("monitor.mjs", in_javascript(*requirements))
 
 
 def _told_by_javascript(
-    folder: Path, monitor: SourceText, rule: FormalizedRequirement, rows: Rows
+    folder: Path, monitor: SourceText, requirement: FormalizedRequirement, rows: Rows
 ) -> list[list[c_monitors.Outcome]]:
     (told,) = node.outcomes(folder, [monitor.text], [(0, rows)], "judge")
     return [[_outcome(tick, each) for each in row] for tick, row in enumerate(told)]

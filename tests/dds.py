@@ -1,6 +1,6 @@
 """DDS for tests: a domain of their own on the loopback, without multicast, and its publishers.
 
-Whoever waits, waits for what a process or the wire tells, never for a time to pass.
+Anyone who waits, waits for what a process or the wire tells, never for a time to pass.
 """
 
 from __future__ import annotations

@@ -2,19 +2,19 @@
 
 from compiler.emit import TARGETS
 from fretish.diagnostics.rendering import render
-from tests.monitoring import rule as rule
+from tests.monitoring import requirement as requirement
 
 
 def emitted(target: str, sentence: str, id: str = "R1") -> dict[str, str]:
     """The texts of the files by their names."""
-    subject = rule(sentence, id)
+    subject = requirement(sentence, id)
     refusal = TARGETS[target].refuse(subject)
     assert refusal is None, render(refusal)
     return {str(file.path): file.text for file in TARGETS[target].emit([subject])}
 
 
 def refused(target: str, sentence: str) -> str:
-    refusal = TARGETS[target].refuse(rule(sentence))
+    refusal = TARGETS[target].refuse(requirement(sentence))
     assert refusal is not None
     return render(refusal)
 

@@ -1,6 +1,6 @@
 """Foxglove servers for tests: one by the SDK, in a process of its own, and hostile ones.
 
-Whoever waits, waits for what a server or a client says, never for a time to pass.
+Anyone who waits, waits for what a server or a client says, never for a time to pass.
 """
 
 from __future__ import annotations

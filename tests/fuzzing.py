@@ -21,7 +21,7 @@ from compiler.formalization.record import formulas
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.parser import parse
 
 _DATA = Path(__file__).parent / "data"
@@ -121,9 +121,9 @@ def check(text: str) -> bool:
         assert 0 <= tree.span.start <= tree.span.end <= len(text), text
         assert render(tree)
         return False
-    rule, diagnostics = formalize(Requirement("fuzz", source.span()), None)
-    assert rule is not None, diagnostics
-    assert formulas(rule)["ft_infinite"]
+    requirement, diagnostics = formalize(RequirementEntry("fuzz", source.span()), None)
+    assert requirement is not None, diagnostics
+    assert formulas(requirement)["ft_infinite"]
     return True
 
 

@@ -1,4 +1,4 @@
-"""JSON documents held against the schemas that are shipped."""
+"""JSON documents compared with the schemas that are shipped."""
 
 import json
 from functools import cache

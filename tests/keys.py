@@ -38,7 +38,7 @@ def public(key: Key) -> str:
 
 
 def written(name: str, kind: str = "ed25519", passphrase: str = "") -> str:
-    """A new key in files `NAME` and `NAME.pub` of the present folder; the name."""
+    """A new key in files `NAME` and `NAME.pub` of the current folder; the name."""
     key = make(kind)
     Path(name).write_bytes(private(key, passphrase))
     Path(f"{name}.pub").write_text(f"{public(key)} a comment\n", encoding="utf-8")
@@ -46,6 +46,6 @@ def written(name: str, kind: str = "ed25519", passphrase: str = "") -> str:
 
 
 def line(principals: str, name: str, options: str = "") -> str:
-    """A line of `allowed_signers` for a key of the present folder."""
+    """A line of `allowed_signers` for a key of the current folder."""
     text = Path(f"{name}.pub").read_text(encoding="utf-8")
     return " ".join(filter(None, [f'"{principals}"', options, text]))

@@ -8,7 +8,7 @@ from fretc.verification.loop.actuation_model import Channel
 from fretc.verification.loop.search import Case
 from monitors.interceptor import Options
 from monitors.source_text import interceptor
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 WITHIN = "whenever near the sw shall within {} ticks satisfy stopped"
 EVENTUALLY = "whenever near the sw shall eventually satisfy stopped"
@@ -34,7 +34,7 @@ def case(
     core: str = CORE,
 ) -> Case:
     """The case of a sentence about `near` and `stopped`."""
-    made = rule(sentence)
+    made = requirement(sentence)
     text = target.text(made)
     return Case("R1", made.ft_infinite, text, text, core, settings, channel, "stopped")
 

@@ -20,7 +20,7 @@ from fretc.verification.monitor.tick_layout import inlined
 from fretish.bindings.declarations import Declarations
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from monitors.kernel import INCONCLUSIVE, Column, Monitor, Outcome, evaluate
 from monitors.kernel.columns import columns_of, pieces_of
 from monitors.kernel.verdicts import Truth, Verdict, truth
@@ -47,11 +47,11 @@ class Step(NamedTuple):
 
 
 @lru_cache(maxsize=4096)
-def rule(sentence: str, id: str = "R1", clock: Clock | None = None) -> FormalizedRequirement:
-    """The rule of a sentence; tests that ask for the same one share it."""
+def requirement(sentence: str, id: str = "R1", clock: Clock | None = None) -> FormalizedRequirement:
+    """The requirement of a sentence; tests that ask for the same one share it."""
     source = Source("r.fret", sentence)
     declared = Declarations(Source("bindings.toml", ""), clock, {}, {}) if clock else None
-    result, diagnostics = formalize(Requirement(id, source.span()), declared)
+    result, diagnostics = formalize(RequirementEntry(id, source.span()), declared)
     assert result is not None, diagnostics
     return result
 
@@ -59,8 +59,10 @@ def rule(sentence: str, id: str = "R1", clock: Clock | None = None) -> Formalize
 @lru_cache(maxsize=512)
 def emitted(*sentences: str, clock: Clock | None = None) -> str:
     """The text of one monitor for all of them; they are called R1, R2, ..."""
-    rules = [rule(sentence, f"R{i}", clock) for i, sentence in enumerate(sentences, 1)]
-    return target.text(*rules)
+    requirements = [
+        requirement(sentence, f"R{i}", clock) for i, sentence in enumerate(sentences, 1)
+    ]
+    return target.text(*requirements)
 
 
 def monitor(*sentences: str) -> Monitor:
@@ -74,7 +76,7 @@ def _kind(*sentences: str) -> type[Monitor]:
 
 
 def steps(machine: Monitor, columns: Mapping[str, Sequence[Truth]], place: int = 0) -> list[Step]:
-    """Step over columns by name; what is told of the requirement at that place."""
+    """Step over columns by name; what is reported the requirement at that place."""
     machine.reset()
     names = tuple(machine.PROPOSITIONS)
     length = len(next(iter(columns.values())))
@@ -145,4 +147,6 @@ def of_formula(formula: f.Formula) -> Monitor:
     """A monitor whose trigger is a past-time formula and whose answer is its negation."""
     no = f.FALSE
     watch = MonitorSpec(formula, no, no, no, no, no, f.Not(formula), None, renewed=False)
-    return load("monitor.py", target.text(replace(rule("the sw shall satisfy q"), watch=watch)))
+    return load(
+        "monitor.py", target.text(replace(requirement("the sw shall satisfy q"), watch=watch))
+    )

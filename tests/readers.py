@@ -280,7 +280,7 @@ def put(folder: Path, files: Mapping[str, str | bytes]) -> None:
 
 
 def command(folder: Path, *args: str) -> tuple[int, str, float]:
-    """Status, text and seconds of a processor of one command in a folder, in this process."""
+    """Status, text and CPU seconds of one command in a folder, in this process."""
     out, before = io.TextIOWrapper(io.BytesIO(), "utf-8"), sys.argv
     start = time.process_time()
     sys.argv = ["fretc", *args]

@@ -1,8 +1,9 @@
 """MCAPL's reasoning cycle, written down a second time: whole cycles over plain tuples and queues.
 
 It shares nothing with `compiler/agents/model.py` but the reader of agents. A run is cut into
-cycles: perceive, then one turn of one intention. What is believed is told after each single change,
-as the model checker sees it. Only what fretc's bundles use is here: actions, `+b`, `-b`, guards.
+cycles: perceive, then one turn of one intention. What is believed is reported after each single
+change, as the model checker sees it. Only what fretc's bundles use is here: actions, `+b`, `-b`,
+guards.
 """
 
 from collections.abc import Callable, Iterator

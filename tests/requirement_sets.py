@@ -17,23 +17,25 @@ from fretc.analysis.findings import Analysis
 from fretc.analysis.realizability_problem import RealizabilityProblem, stage
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 INPUTS, OUTPUTS = ("a", "b"), ("x", "y")
 ROLES: Roles = {**dict.fromkeys(INPUTS, Role.INPUT), **dict.fromkeys(OUTPUTS, Role.OUTPUT)}
 
 
 @cache
-def rule(id: str, sentence: str) -> FormalizedRequirement:
-    """A rule, without any bindings."""
-    found, diagnostics = formalize(Requirement(id, Source(f"{id}.fret", sentence).span()), None)
+def requirement(id: str, sentence: str) -> FormalizedRequirement:
+    """A requirement, without any bindings."""
+    found, diagnostics = formalize(
+        RequirementEntry(id, Source(f"{id}.fret", sentence).span()), None
+    )
     assert found is not None, (sentence, diagnostics)
     return found
 
 
-def rules(*sentences: str) -> tuple[FormalizedRequirement, ...]:
-    """Rules that are called R1, R2, ..."""
-    return tuple(rule(f"R{i}", f"{sentence}") for i, sentence in enumerate(sentences, 1))
+def requirements(*sentences: str) -> tuple[FormalizedRequirement, ...]:
+    """Requirements that are called R1, R2, ..."""
+    return tuple(requirement(f"R{i}", f"{sentence}") for i, sentence in enumerate(sentences, 1))
 
 
 def roles(inputs: Sequence[str], outputs: Sequence[str]) -> Roles:
@@ -45,8 +47,8 @@ def staged(
     *sentences: str, roles: Roles = ROLES, assumed: Sequence[str] = (), as_fret: bool = False
 ) -> RealizabilityProblem:
     """Their stage."""
-    assumptions = [rule(f"A{i}", sentence) for i, sentence in enumerate(assumed, 1)]
-    return stage(rules(*sentences), assumptions, roles, as_fret=as_fret)
+    assumptions = [requirement(f"A{i}", sentence) for i, sentence in enumerate(assumed, 1)]
+    return stage(requirements(*sentences), assumptions, roles, as_fret=as_fret)
 
 
 def analyzed(
@@ -57,8 +59,10 @@ def analyzed(
     repairs: bool = False,
 ) -> Analysis:
     """All that is found of them."""
-    assumptions = [rule(f"A{i}", sentence) for i, sentence in enumerate(assumed, 1)]
-    return analyze(rules(*sentences), roles, assumptions, Options(as_fret=as_fret, repairs=repairs))
+    assumptions = [requirement(f"A{i}", sentence) for i, sentence in enumerate(assumed, 1)]
+    return analyze(
+        requirements(*sentences), roles, assumptions, Options(as_fret=as_fret, repairs=repairs)
+    )
 
 
 def conflicts(analysis: Analysis) -> list[tuple[str, ...]]:
@@ -67,20 +71,20 @@ def conflicts(analysis: Analysis) -> list[tuple[str, ...]]:
 
 
 def synthesized(
-    rules: Sequence[FormalizedRequirement], assumptions: Sequence[FormalizedRequirement] = ()
+    requirements: Sequence[FormalizedRequirement], assumptions: Sequence[FormalizedRequirement] = ()
 ) -> bool:
     """What Spot says of the future-time formulas."""
     kept, given = (
-        " & ".join(f"({printing.future(rule.ft_infinite)})" for rule in some) or "1"
-        for some in (rules, assumptions)
+        " & ".join(f"({printing.future(requirement.ft_infinite)})" for requirement in some) or "1"
+        for some in (requirements, assumptions)
     )
     formula = f"({given}) -> ({kept})"
     return bool(spot.solve_game(spot.ltl_to_game(formula, list(OUTPUTS))))
 
 
-def satisfiable(rules: Sequence[FormalizedRequirement]) -> bool:
+def satisfiable(requirements: Sequence[FormalizedRequirement]) -> bool:
     """Whether any run keeps them, as Spot says."""
-    formulas = (f"({printing.future(rule.ft_infinite)})" for rule in rules)
+    formulas = (f"({printing.future(requirement.ft_infinite)})" for requirement in requirements)
     return not spot.translate(" & ".join(formulas)).is_empty()
 
 

@@ -1,7 +1,7 @@
 """ROS 1 for tests: a master on a free port, and a world of topics around the node under test.
 
-What runs here are Debian's packages under Debian's Python. Whoever waits, waits for what the master
-or a node tells, never for a time to pass.
+What runs here are Debian's packages under Debian's Python. Anyone who waits, waits for what the
+master or a node tells, never for a time to pass.
 """
 
 from __future__ import annotations

@@ -18,10 +18,12 @@ STRICT = ["--edition", "2021", "-D", "warnings", "-C", "debug-assertions=on"]
 _TRUTHS = (False, True, None)
 
 
-def crate(*rules: FormalizedRequirement) -> Mapping[str, str]:
+def crate(*requirements: FormalizedRequirement) -> Mapping[str, str]:
     """The files of one crate."""
-    assert [TARGET.refuse(rule) for rule in rules] == [None] * len(rules)
-    files = TARGET.emit(rules, Options(one_file=len(rules) > 1))
+    assert [TARGET.refuse(requirement) for requirement in requirements] == [None] * len(
+        requirements
+    )
+    files = TARGET.emit(requirements, Options(one_file=len(requirements) > 1))
     return {str(file.path): file.text for file in files}
 
 

@@ -41,7 +41,7 @@ from fretish.diagnostics.source import Source
 from fretish.units import ONE, unit
 from monitors.kernel import readings
 from monitors.kernel.verdicts import Truth
-from tests.emitting import rule
+from tests.emitting import requirement
 
 SIGNS = ("<", "<=", ">", ">=", "=", "!=")
 EDGES = (0, 1, 2, 3, *(2**k + i for k in (52, 53, 63) for i in (-1, 0, 1)), 2**64 - 1)
@@ -346,7 +346,7 @@ def _arrays(near: Sequence[Any], choose: random.Random) -> list[Any]:
 
 
 def numbered(case: Case, number: int) -> FormalizedRequirement:
-    """A rule that watches the case's proposition, over signals that no other case has."""
+    """A requirement that watches the case's proposition, over signals that no other case has."""
     names = {signal.name: f"{signal.name}{number}" for signal in case.signals}
 
     def renamed(tree: e.Expression) -> e.Expression:
@@ -359,7 +359,7 @@ def numbered(case: Case, number: int) -> FormalizedRequirement:
     tree = renamed(e.And((case.tree, *all_read)))
     declared = {f"p{number}": Proposition(f"p{number}", tree)}
     declarations = Declarations(Source("bindings.toml", ""), Clock(10**8), given, declared)
-    subject = rule(f"the sw shall always satisfy p{number}", f"R{number}")
+    subject = requirement(f"the sw shall always satisfy p{number}", f"R{number}")
     return replace(subject, declarations=declarations)
 
 

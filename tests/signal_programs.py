@@ -56,10 +56,10 @@ class Language:
         return self.target
 
     def runner(
-        self, folder: Path, rules: Sequence[FormalizedRequirement], text: str
+        self, folder: Path, requirements: Sequence[FormalizedRequirement], text: str
     ) -> Callable[[bytes], bytes]:
-        """What runs the program over the monitor of all rules."""
-        files = TARGETS[self.target].emit(rules, Options(one_file=True))
+        """What runs the program over the monitor of all requirements."""
+        files = TARGETS[self.target].emit(requirements, Options(one_file=True))
         write(folder, {str(file.path): file.text for file in files})
         command = self.build(folder, text)
 

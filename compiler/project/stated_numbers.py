@@ -189,9 +189,9 @@ def _differs(
         other = f": {elsewhere.text} ({elsewhere.source.name}:{elsewhere.line}:{elsewhere.column})"
     return Diagnostic(
         Code.PROSE_DRIFT,
-        f"the {field} of {requirement.id} says {words}, and what is judged has another "
+        f"the {field} of {requirement.id} says {words}, but the requirement uses another "
         f"number{other}",
         where,
-        help="make the words or the numbers say what is meant",
+        help="correct the text or the number",
         severity=Severity.WARNING,
     )

@@ -421,4 +421,4 @@ def _terms(
             "own first value"
         )
     if any(comparisons(requirement) for requirement in requirements):
-        yield "numbers are exact: whole or real, without bounds; floats round, which is not seen"
+        yield "numbers are exact: whole or real, without bounds; rounding of floats is not modelled"

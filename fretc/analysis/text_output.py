@@ -97,7 +97,7 @@ def _conflict(
         yield f"    and from tick {conflict.loop} on the same again, for ever", None
     fixing = [each for each in analysis.repairs if each.conflict == ids]
     if fixing:
-        yield "  any of these would settle it (proved by the same game):", None
+        yield "  each of these changes resolves the conflict (proved):", None
     for repair in fixing:
         yield from _repair(repair)
 
@@ -215,4 +215,4 @@ def _rest(analysis: Analysis) -> Iterator[Line]:
         names = [name for name, own in analysis.roles.items() if own is role]
         yield f"{role}s: {', '.join(names) or 'none'}", None
     for term in analysis.terms:
-        yield f"taken for granted: {term}", None
+        yield f"assumption: {term}", None

@@ -108,7 +108,7 @@ def _verdict(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, st
     return Verdict.NOT_CHECKED, doubt
 
 
-_WHATEVER = "whatever is taken for what is not known"
+_WHATEVER = "whatever the unknown values are"
 
 
 def _unrolled(setting: RealizabilityProblem, budget: Budget) -> tuple[Verdict, str] | None:
@@ -213,7 +213,7 @@ def conflicts(
 
 
 def _perhaps_larger(conflict: Conflict) -> Conflict:
-    return altered(conflict, because=f"{conflict.because}; fewer of them may fight already")
+    return altered(conflict, because=f"{conflict.because}; a subset may already conflict")
 
 
 @dataclass(slots=True)

@@ -60,6 +60,6 @@ def too_deep() -> Diagnostic:
     """An expression of more levels than Python can follow."""
     return Diagnostic(
         Code.TOO_DEEP,
-        "an expression has too many operators within each other",
+        "an expression has too many nested operators",
         help="give parts of it names of their own",
     )

@@ -339,7 +339,7 @@ def _unknown(evidence: RunResult, recording: Recording) -> str:
     if errors:
         return errors[0]
     if not recording.intact:
-        return "the log is damaged: what is lost could hold a violation"
+        return "the log is damaged: the lost part may contain a violation"
     runs = evidence.outcome.unknown
     ticks = sum(last - first + 1 for first, last in runs)
     if not evidence.outcome.ticks:

@@ -39,7 +39,7 @@ def selected(
     if selection is not None:
         say_line(in_words(selection))
     if not some:
-        say_line("nothing is audited, and evidence stays as it was")
+        say_line("no log is audited; the evidence is unchanged")
         raise SystemExit(NOT_SHOWN)
     return some, selection
 

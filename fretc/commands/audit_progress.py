@@ -36,7 +36,10 @@ def audit_into(session: StoreWriter, engine: Engine) -> StoredAudit:
     """Audit the logs of a session; whatever ends that early, what is finished is in its store."""
     if session.known:
         count = len(session.known) + len(session.new)
-        say_line(f"{len(session.known)} of {count} logs are unchanged: their results are known")
+        say_line(
+            f"{len(session.known)} of {count} logs are unchanged: their earlier results are used "
+            "again"
+        )
     elif session.earlier.claims:
         say_line(
             "requirements or bindings have changed: results of unchanged logs by "
@@ -49,7 +52,10 @@ def audit_into(session: StoreWriter, engine: Engine) -> StoredAudit:
         whose = "its" if session.missing == 1 else "their"
         say_line(f"{session.missing} {what} not named this time: {whose} results leave it")
     if session.earlier.foreign:
-        say_line(f"`{session.folder}` was not written by you in this place: nothing of it is used")
+        say_line(
+            f"`{session.folder}` was written by another user or in another folder: its results "
+            "are not used again"
+        )
     try:
         with shown(session.new) as show:
             result = session.run(engine, show)

@@ -152,7 +152,7 @@ def _exists(path: str) -> Diagnostic:
     """F905: only `--force` writes over a file."""
     return Diagnostic(
         Code.NOT_WRITTEN,
-        f"`{path}` is there already",
+        f"`{path}` already exists",
         help="name another file with `-o`, or write over it with `--force`",
     )
 

@@ -140,11 +140,7 @@ def _check_weaken(kinds: Sequence[str]) -> None:
     weak = [f"`--emit {name}`" for name, target in TARGETS.items() if target.weak is not None]
     if not any(TARGETS[kind].weak for kind in kinds):
         message = f"`--weaken` is for {' and '.join(weak)}"
-        stop(
-            Diagnostic(
-                Code.BAD_USAGE, message, help="nothing else may say less than its requirement"
-            )
-        )
+        stop(Diagnostic(Code.BAD_USAGE, message, help="other files never weaken a requirement"))
 
 
 def _deliver_formulas(project: Project, output: str) -> None:
@@ -359,6 +355,6 @@ def _deliver_all(files: Mapping[str, str], output: str) -> None:
 def _exists(path: str) -> Diagnostic:
     return Diagnostic(
         Code.NOT_WRITTEN,
-        f"`{path}` is there already",
+        f"`{path}` already exists",
         help="name another folder with `-o`, or write over it with `--force`",
     )

@@ -84,7 +84,7 @@ def _exists(path: str) -> Diagnostic:
     """F905: the place of the requirements is taken."""
     return Diagnostic(
         Code.NOT_WRITTEN,
-        f"`{path}` is there already",
+        f"`{path}` already exists",
         help="name another folder; `fretc bind --from LOG` drafts bindings alone",
     )
 

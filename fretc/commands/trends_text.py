@@ -193,7 +193,9 @@ def _regressions(trends: Trends, screen: Screen) -> Iterator[Line]:
         return
     yield _BLANK
     yield _title(
-        signs.BAD, len(found), f"regressed in {trends.held.after} (medians), by more than chance"
+        signs.BAD,
+        len(found),
+        f"regressed in {trends.held.after} (medians), statistically significant",
     )
     for one in found[:6]:
         ids = _column(one.measure.ids, _ID, screen)

@@ -144,7 +144,7 @@ def _pair(new: FormalizedRequirement, old: FormalizedRequirement, seconds: float
             note = "written in another way; all finite runs without unknown values have the same"
             note += " verdicts: proved"
             if _has_numbers(new) or _has_numbers(old):
-                note += ", of exact numbers; floats round, which is not seen"
+                note += ", of exact numbers; rounding of floats is not modelled"
         return Pair(new, old, f"{new.id}: {note}", None)
     word = found.word
     count = f"{word.ticks} tick{'' if word.ticks == 1 else 's'}"

@@ -193,5 +193,5 @@ def _text(one: Comparison, of_round: dict[int, list[Value]]) -> str:
     medians = f"Median of {' and of '.join(ends)}"
     runs = phrases.times(len(one.values), "run")
     if one.finding is Finding.REGRESSED:
-        return f"Worse by more than chance, by medians: {one.worse}. {medians}; {runs} in all."
+        return f"Significantly worse, by medians: {one.worse}. {medians}; {runs} in all."
     return f"{medians}; {runs} in all: {one.finding}."

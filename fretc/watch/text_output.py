@@ -16,7 +16,7 @@ from monitors.guard import State
 from monitors.kernel.verdicts import Truth
 
 _S = 10**9
-_OWED: Mapping[Truth, str] = {True: "owed", None: "perhaps owed", False: ""}
+_OWED: Mapping[Truth, str] = {True: "owed", None: "may be owed", False: ""}
 _NAME = 40
 """Columns of a requirement's name, at most."""
 

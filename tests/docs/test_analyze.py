@@ -29,11 +29,11 @@ def of_project(folder: str) -> str:
     """What is printed of the requirements of a folder of this repository."""
     project = load_folder(folder)
     assert not isinstance(project, Diagnostic)
-    assumed, _ = assumptions(project.rules, project.declarations)
-    named = roles([*project.rules, *assumed])
+    assumed, _ = assumptions(project.formalized, project.declarations)
+    named = roles([*project.formalized, *assumed])
     assert not isinstance(named, tuple)
-    found = analyze(project.rules, named, assumed)
-    written = {rule.id: sentence(rule.written) for rule in project.rules}
+    found = analyze(project.formalized, named, assumed)
+    written = {requirement.id: sentence(requirement.written) for requirement in project.formalized}
     return "\n".join(f"    {line}".rstrip() for line, _ in lines(found, written))
 
 

@@ -6,7 +6,7 @@ from compiler.explanation.explain import explanation, text
 from fretish.clock import Clock
 from fretish.diagnostics import explanations
 from fretish.diagnostics.diagnostic import Code
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 DOCS = (Path(__file__).parent.parent.parent / "docs/explain.md").read_text("utf-8")
 SENTENCE = "whenever too_close the robot shall within 200 milliseconds satisfy stopped"
@@ -24,7 +24,7 @@ def block(start: str) -> list[str]:
 
 
 def test_the_drawing_and_the_trace_are_printed() -> None:
-    told = text(explanation(rule(SENTENCE, "R2", Clock(100_000_000))))
+    told = text(explanation(requirement(SENTENCE, "R2", Clock(100_000_000))))
     printed = [line.strip() for line in told.splitlines() if line.strip()]
     for start in ("tick   ", "✘ violated"):
         first, *_ = shown = block(start)

@@ -38,10 +38,10 @@ def verdict(sentence: str, trace: str) -> bool:
     columns = columns_of(trace)
     length = len(next(iter(columns.values())))
     points = [{name: digits[t] == "1" for name, digits in columns.items()} for t in range(length)]
-    ((requirement,), _) = requirements(Source("r.fret", sentence))
-    rule, said = formalize(requirement, None)
-    assert rule is not None, said
-    return holds(rule.pt, points, length - 1)
+    ((entry,), _) = requirements(Source("r.fret", sentence))
+    requirement, said = formalize(entry, None)
+    assert requirement is not None, said
+    return holds(requirement.pt, points, length - 1)
 
 
 @pytest.mark.parametrize(

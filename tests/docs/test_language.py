@@ -20,7 +20,7 @@ from fretish.diagnostics.source import Source
 from fretish.meaning import meaning
 from tests.docs import pages
 from tests.docs.pages import FOLDER, blocks, rows, section, subjects
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 PAGE = "language.md"
 TEXT = (FOLDER / PAGE).read_text("utf-8")
@@ -35,8 +35,8 @@ def picture(sentence: str) -> str:
 
     The good one answers, where there is one that does.
     """
-    told = explanation(rule(sentence))
-    means = meaning(told.rule.sentence, told.rule.ticks, None)
+    told = explanation(requirement(sentence))
+    means = meaning(told.requirement.sentence, told.requirement.ticks, None)
     every = [shown for shown in told.traces if shown.satisfied]
     good = [shown for shown in every if "nothing is" not in shown.reason][-1:] or every[-1:]
     bad = [shown for shown in told.traces if not shown.satisfied][-1:]
@@ -58,13 +58,13 @@ PARTS = {
 
 
 def form(grammar_rule: Rule) -> str:
-    """`except in m`, for a rule whose parts are key words and `PARTS`."""
+    """`except in m`, for a requirement whose parts are key words and `PARTS`."""
     return " ".join(PARTS.get(part.name, part.name.lower()) for part in grammar_rule.expansion)
 
 
 def forms_of(name: str) -> list[str]:
     """Each way in which the grammar lets one spell a part of a sentence."""
-    found = [form(r) for r in GRAMMAR.rules if name in (r.origin.name, r.alias)]
+    found = [form(r) for r in GRAMMAR.requirements if name in (r.origin.name, r.alias)]
     return list(dict.fromkeys(found))
 
 
@@ -138,7 +138,7 @@ def uses_in(sentences: list[str]) -> set[Use]:
 
 
 def test_each_alternative_of_the_grammar_stands_on_the_page() -> None:
-    every = set[Use]().union(*map(uses_of, GRAMMAR.rules)) - ELSEWHERE
+    every = set[Use]().union(*map(uses_of, GRAMMAR.requirements)) - ELSEWHERE
     assert every - uses_in([*SENTENCES, *subjects(TEXT, "picture"), *SPELT]) == set()
 
 
@@ -155,9 +155,9 @@ SPELT = [
 
 
 def test_each_scope_and_timing_has_its_forms_and_a_picture() -> None:
-    known = {r.alias for r in GRAMMAR.rules if r.origin.name in ("scope", "timing")}
+    known = {r.alias for r in GRAMMAR.requirements if r.origin.name in ("scope", "timing")}
     assert {*SCOPES, *TIMINGS} == known
-    read = [rule(sentence).sentence for sentence in subjects(TEXT, "picture")]
+    read = [requirement(sentence).sentence for sentence in subjects(TEXT, "picture")]
     assert {s.scope_key(each) for each in read} == {"null", *s.ScopeKind}
     assert {type(each.timing) for each in read} == {*get_args(s.Timing)}
     assert {s.condition_key(each) for each in read} == {"null", *s.ConditionKind}

@@ -27,7 +27,7 @@ from fretc.testing.text_output import lines, shown
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.diagnostic import Diagnostic
 from tests.docs.pages import is_current
-from tests.emitting import rule
+from tests.emitting import requirement
 from tests.fretc.testing.controllers import INPUTS, OUTPUTS, program, seen_of
 from tests.requirement_sets import roles
 from tests.strategies import templates
@@ -109,7 +109,7 @@ def table_of_situations(subject: str) -> str:
     found: defaultdict[str, set[Place]] = defaultdict(set)
     every: set[Place] = set()
     for drawn in templates((2,)):
-        made = rule(drawn.sentence)
+        made = requirement(drawn.sentence)
         place = facts(made).demand.kind, drawn.scope, drawn.condition
         if not {*drawn.columns} <= {*made.propositions}:
             continue  # the scope is the whole run
@@ -157,20 +157,22 @@ def summary(folder: str) -> str:
     """What `fretc test` prints of a folder."""
     paths = requirement_files(str(Path(__file__).parents[2] / folder))
     assert not isinstance(paths, Diagnostic)
-    rules = tuple(load(paths, None).rules)
-    return _printed(f"fretc test {folder}", lines(_suite(rules)))
+    requirements = tuple(load(paths, None).formalized)
+    return _printed(f"fretc test {folder}", lines(_suite(requirements)))
 
 
 def drawn(sentence: str) -> str:
     """What `--show` prints of one sentence."""
-    subject = rule(sentence)
+    subject = requirement(sentence)
     roles = {"start": Role.INPUT, "run": Role.OUTPUT}
     lanes, words = subject.watched, subject.wordings
     return _printed("fretc test --show R1", shown(_suite([subject]), "R1", lanes, roles, words))
 
 
-def _suite(rules: Sequence[FormalizedRequirement]) -> Suite:
-    return suite(rules, (), [batch for job in jobs(rules, (), 60) for batch in job.ask(())])
+def _suite(requirements: Sequence[FormalizedRequirement]) -> Suite:
+    return suite(
+        requirements, (), [batch for job in jobs(requirements, (), 60) for batch in job.ask(())]
+    )
 
 
 def _printed(command: str, found: Iterable[Line]) -> str:
@@ -180,10 +182,10 @@ def _printed(command: str, found: Iterable[Line]) -> str:
 
 def emitted(sentence: str) -> str:
     """The test of a sentence, in pytest, that takes the most ticks."""
-    rules = (rule(sentence),)
-    found = _suite(rules)
+    requirements = (requirement(sentence),)
+    found = _suite(requirements)
     longest = max(found.tests, key=lambda test: test.ticks)
-    artifacts, _ = files(found, rules, Form.PYTEST)
+    artifacts, _ = files(found, requirements, Form.PYTEST)
     name = longest.name.replace("-", "_")
     _, start, rest = artifacts[-1].text.partition(f"def test_{name}()")
     return f"```python\n{start}{rest.partition('def ')[0].strip()}\n```"

@@ -327,7 +327,7 @@ def test_an_unexpected_fault_of_our_own_is_told_as_such(
     monkeypatch.chdir(tmp_path)
     run = runner(monkeypatch, capsys, fault=True)(write("r1.fret", R1))
     assert run.status == 2
-    assert run.err.startswith("F999 fretc itself is at fault: ZeroDivisionError in test_cli.py:")
+    assert run.err.startswith("F999 internal error in fretc: ZeroDivisionError in test_cli.py:")
 
 
 def test_two_requirements_with_one_id_are_refused(fretc: Fretc) -> None:

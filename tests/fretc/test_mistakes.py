@@ -211,7 +211,7 @@ Made = Mapping[str, Any]
 class Command:
     words: tuple[str, ...]
     made: Callable[[Run], Made]
-    """Of the present folder; what is about refused requirements is left out by `check`."""
+    """Of the current folder; what is about refused requirements is left out by `check`."""
     before: tuple[tuple[str, ...], ...] = ()
     """Commands on the whole project."""
     reads: Callable[[Mistake], set[str]] = refused
@@ -280,7 +280,7 @@ def locked(_: Run) -> Made:
 
 
 def checked(run: Run) -> Made:
-    """Propositions of `bind --check`: they are those of the bindings, whoever names them."""
+    """Propositions of `bind --check`: they are those of the bindings, no matter who names them."""
     found = json.loads(run.out)["propositions"] if run.out else []
     return {each["name"]: each for each in found if not each["name"].startswith("(")}
 

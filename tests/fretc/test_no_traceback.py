@@ -123,7 +123,7 @@ def places(number: int, line: tuple[str, ...]) -> list[int]:
 
 
 def prepared(fretc: Fretc, write: Callable[[Fretc], None]) -> dict[str, str]:
-    """The project in the present folder, what other commands read of it, and its own names."""
+    """The project in the current folder, what other commands read of it, and its own names."""
     write(fretc)
     written("key")
     if not Path("export.json").exists():

@@ -5,7 +5,7 @@ import pytest
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement, requirements
+from fretish.documents import RequirementEntry, requirements
 
 SENTENCE = "whenever too_close agilex_agent shall eventually satisfy stopped"
 WHOLE = f"""+++
@@ -22,7 +22,7 @@ params    = {{ too_close = "5 cm" }} # numbers the requirement states
 """
 
 
-def read(text: str, name: str = "r1.fret") -> tuple[Requirement, ...]:
+def read(text: str, name: str = "r1.fret") -> tuple[RequirementEntry, ...]:
     found, wrong = requirements(Source(name, text))
     assert wrong == ()
     return found

@@ -5,7 +5,7 @@ import pytest
 from compiler.formalization.formalize import formalize
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.parser import parse
 from tests.effort import FULL
 from tests.fuzzing import check, sentences
@@ -29,8 +29,10 @@ def test_a_thousand_parentheses_around_a_name_are_that_name() -> None:
 @pytest.mark.slow
 def test_a_thousand_levels_of_operators_are_formalized_or_told_to_be_too_deep() -> None:
     text = "the sw shall always satisfy " + "a & (b | " * 1_000 + "c" + ")" * 1_000
-    rule, diagnostics = formalize(Requirement("deep", Source("r.fret", text).span()), None)
-    assert rule is not None or [d.code for d in diagnostics] == [Code.TOO_DEEP]
+    requirement, diagnostics = formalize(
+        RequirementEntry("deep", Source("r.fret", text).span()), None
+    )
+    assert requirement is not None or [d.code for d in diagnostics] == [Code.TOO_DEEP]
 
 
 @pytest.mark.slow

@@ -49,9 +49,9 @@ def emitted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Any, Any]:
     (folder / "bindings.toml").write_text(BINDINGS)
     for id, sentence in SENTENCES.items():
         (folder / f"{id}.fret").write_text(sentence)
-    rules = load(sorted(map(str, folder.glob("*.fret")))).rules
-    assert len(rules) == 2
-    return executed(monitor.text(*rules), "m"), executed(perception.text(rules), "p")
+    requirements = load(sorted(map(str, folder.glob("*.fret")))).formalized
+    assert len(requirements) == 2
+    return executed(monitor.text(*requirements), "m"), executed(perception.text(requirements), "p")
 
 
 class Run:

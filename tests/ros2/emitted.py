@@ -28,10 +28,12 @@ def write(requirements: Path, folder: Path, kind: str = "ros2-package") -> Path:
     assert isinstance(paths, list)
     project = load(paths)
     assert {each.severity for each in project.diagnostics} <= {Severity.WARNING}
-    assert [no.message for rule in project.rules if (no := target.refuse(rule))] == []
+    assert [
+        no.message for requirement in project.formalized if (no := target.refuse(requirement))
+    ] == []
     options = Options(declarations=project.declarations, attribution=OWNER)
     assert target.refuse_project(options) is None
-    artifacts = target.emit(project.rules, options)
+    artifacts = target.emit(project.formalized, options)
     for artifact in artifacts:
         path = folder / artifact.path
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -60,7 +62,7 @@ class Robot:
         self.scans = self.odometry = self.plans = True
         """Whether the drivers and the planner speak."""
         self.obeys = False
-        """Whether it moves as its wheels are told, and not by `speed`."""
+        """Whether it moves as its wheels are reported, and not by `speed`."""
         self._node = self.world.node("robot")
         sensor = self._node.process.modules["rclpy.qos"].qos_profile_sensor_data
         self._scan = self._publisher("sensor_msgs/LaserScan", "/scan", sensor)

@@ -31,7 +31,7 @@ class Reliability(enum.Enum):
 
 
 class Durability(enum.Enum):
-    """A transient local publisher keeps its last messages for whoever subscribes later so."""
+    """A transient local publisher keeps its last messages for those who subscribes later so."""
 
     TRANSIENT_LOCAL = 1
     VOLATILE = 2

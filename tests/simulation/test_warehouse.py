@@ -45,7 +45,7 @@ def of_log(audit: Audit, name: str) -> dict[str, Any]:
 
 def test_nothing_is_bound_but_signals() -> None:
     project = fretc.read_project(str(AGV))
-    assert [rule.id for rule in project.rules] == IDS
+    assert [requirement.id for requirement in project.formalized] == IDS
     assert "[proposition" not in (AGV / "bindings.toml").read_text("utf-8")
 
 
@@ -114,7 +114,7 @@ def field(message: Any, path: str) -> Any:
 def test_a_monitor_says_of_the_numbers_what_the_audit_says_of_the_log(
     name: str, logs: Mapping[str, Path], audit: Audit, tmp_path: Path, capsys: Any
 ) -> None:
-    text = fretc.monitor_text(*fretc.read_project(str(AGV)).rules)
+    text = fretc.monitor_text(*fretc.read_project(str(AGV)).formalized)
     module = executed(text, "agv_monitor")
     table = tmp_path / "t.csv"
     with table.open("w", newline="") as stream:

@@ -54,7 +54,7 @@ def refusal(requirement: FormalizedRequirement, language: str) -> Diagnostic | N
         return not_expressible(
             language,
             requirement,
-            f"more than {_MOST_LEVELS} operators within each other",
+            f"more than {_MOST_LEVELS} nested operators",
             "give parts of the expression names of their own",
         )
     ahead = next(

@@ -89,7 +89,8 @@ class Estimated(Record, frozen=True):
         yield f"{outcomes}, {triggers.open} open, in {times(logs.counted, 'log')}{_others(logs)}"
         share = "not known" if self.estimate is None else f"{self.estimate:.4f}"
         each = odds.both_sides(self.operator, self.confidence)
-        stretch = f"bounds, by whole logs, at {_percent(each)} each: {shown(self.bounds)}"
+        at = f"at {_percent(each)} each: {shown(self.bounds)}"
+        stretch = f"bounds (the logs are the independent units) {at}"
         yield f"estimate {share}; {stretch}"
         if self.needed is not None:
             how = "no trigger" if self.operator in ("<", "<=") else "all triggers"

@@ -139,7 +139,8 @@ def _probability(assessment: Assessment) -> ProbabilityView | None:
         lines=estimation.lines[1:],
         estimate=estimation.estimate,
         bars=(BoundsView("by whole logs", estimation.bounds.low, estimation.bounds.high),),
-        text=f"Estimate {share}; bounds, by whole logs, {shown(estimation.bounds)}; "
+        text=f"Estimate {share}; bounds (the logs are the independent units) "
+        f"{shown(estimation.bounds)}; "
         f"the bound of the sentence is {estimation.bound}.",
     )
 

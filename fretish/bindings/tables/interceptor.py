@@ -21,7 +21,7 @@ command      = "/cmd_vel"           # geometry_msgs/Twist: what the planner want
 output       = "/cmd_vel_filtered"  # geometry_msgs/Twist: what the wheels hear
 scan         = "/scan"              # sensor_msgs/LaserScan: only that it comes counts
 period       = "50 ms"              # of the interceptor's timer
-hold         = "200 ms"             # zero after a request, whatever is heard meanwhile
+hold         = "200 ms"             # zero after a request, whatever arrives meanwhile
 stop_timeout = "500 ms"             # silence of the safety function for so long halts
 scan_timeout = "500 ms"             # and that of the sensor
 """

@@ -162,7 +162,7 @@ class VariableTables(Fields):
         if chain:
             self._say(
                 Code.DEFINITION_CIRCLE,
-                f"the values of variables lead in a circle: {' -> '.join(chain[:_MOST_NAMES])}"
+                f"the values of variables form a cycle: {' -> '.join(chain[:_MOST_NAMES])}"
                 f"{' ...' if len(chain) > _MOST_NAMES else ''}",
                 self._of_value(chain[0], component),
                 "let one of them stand for numbers and signals alone",

@@ -16,7 +16,7 @@ from compiler.logic.kripke import check, explore
 from compiler.targets.ajpf import bundle
 from fretish.diagnostics.diagnostic import Diagnostic
 from fretish.diagnostics.source import Source
-from tests.compiler.targets.ajpf.test_bundle import rule
+from tests.compiler.targets.ajpf.test_bundle import requirement
 from tests.effort import some
 from tests.reasoning import Machine, answers
 
@@ -51,7 +51,7 @@ KEPT = {
 def parts(
     condition: str, word: str, guarded: bool, mutant: bool
 ) -> tuple[tuple[str, ...], Agent, str]:
-    made = rule(f"{word} {condition} the ag shall eventually satisfy r")
+    made = requirement(f"{word} {condition} the ag shall eventually satisfy r")
     known = bundle.forms(made)
     assert not isinstance(known, Diagnostic)
     found = known[0 if guarded else -1]

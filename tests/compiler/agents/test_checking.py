@@ -9,7 +9,7 @@ from compiler.logic.claims import Layer, Proof, Result, not_checked, proved, vac
 from compiler.targets.ajpf import properties as ajpf
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
-from tests.compiler.targets.ajpf.test_bundle import rule
+from tests.compiler.targets.ajpf.test_bundle import requirement
 from tests.proofs import outcome
 
 PAPER = """GWENDOLEN
@@ -198,7 +198,7 @@ def test_a_file_without_properties_shows_nothing(properties: str) -> None:
 
 def test_in_an_only_scope_an_agent_that_never_responds_keeps_the_prohibition() -> None:
     """As AJPF says; that the mode is left at all is the control that counts."""
-    made = rule("only in m mode the ag shall eventually satisfy r")
+    made = requirement("only in m mode the ag shall eventually satisfy r")
     idle = PAPER.replace("agilex_agent", "ag").replace("too_close", "m")
     found = checked(Source("a.gwen", idle), Source("p.psl", ajpf.text(made)), ["m"])
     assert not isinstance(found, Diagnostic)

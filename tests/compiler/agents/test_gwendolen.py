@@ -1,4 +1,4 @@
-"""Agents in Gwendolen: read to the letter, and every trap a mistake with its place."""
+"""Agents in Gwendolen: read exactly, and every trap a mistake with its place."""
 
 import pytest
 from hypothesis import given

@@ -1,4 +1,4 @@
-"""Property files of AJPF: its grammar to the letter, and every trap a mistake with its place."""
+"""Property files of AJPF: its grammar exactly, and every trap a mistake with its place."""
 
 import pytest
 from hypothesis import given

@@ -13,7 +13,7 @@ from compiler.explanation.windows import ObligationWindow
 from compiler.files.templating import render
 from fretish.clock import Clock
 from tests import meaning
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.strategies import Template, few_templates, templates
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -62,7 +62,7 @@ def test_the_windows_are_the_ticks_at_which_the_response_matters(
     for drawn in few_templates((0, 1)):
         if (drawn.scope, drawn.condition) != (scope, condition):
             continue
-        picture = diagram(rule(drawn.sentence))
+        picture = diagram(requirement(drawn.sentence))
         if condition == "null":
             expected = mattering(drawn, picture, picture.windows[0])
             everywhere = set().union(*(drawn_for(picture, w) for w in picture.windows))
@@ -75,7 +75,7 @@ def test_the_windows_are_the_ticks_at_which_the_response_matters(
 @pytest.mark.slow
 def test_the_triggers_and_the_scope_are_those_of_the_definition() -> None:
     for drawn in templates((2,)):
-        picture = diagram(rule(drawn.sentence))
+        picture = diagram(requirement(drawn.sentence))
         lanes = {lane.kind: lane for lane in picture.lanes}
         intervals = list(meaning.intervals(drawn.scope, picture.trace.m))
         scope = [(each.first, each.last) for each in lanes[Kind.SCOPE].stretches]
@@ -90,7 +90,7 @@ def test_the_triggers_and_the_scope_are_those_of_the_definition() -> None:
 
 def pictures(counts: tuple[int, ...]) -> Iterator[tuple[Template, Diagram]]:
     for drawn in templates(counts):
-        yield drawn, diagram(rule(drawn.sentence))
+        yield drawn, diagram(requirement(drawn.sentence))
 
 
 @pytest.mark.slow
@@ -125,7 +125,7 @@ def test_templates_that_share_a_picture_mean_the_same() -> None:
 def test_any_bound_gives_a_picture_of_few_columns(n: int) -> None:
     for scope, timing in product(("", "in m mode"), ("within", "for", "after")):
         sentence = f"{scope} whenever p sw shall {timing} {n} ticks satisfy q"
-        picture = diagram(rule(sentence, clock=Clock(10**8)))
+        picture = diagram(requirement(sentence, clock=Clock(10**8)))
         columns = slots(picture)
         assert len(columns) <= 24
         assert [slot.first for slot in columns[1:]] == [slot.last + 1 for slot in columns[:-1]]
@@ -138,7 +138,7 @@ def test_any_bound_gives_a_picture_of_few_columns(n: int) -> None:
 
 def test_a_picture_in_characters() -> None:
     sentence = "in m mode, when near robot shall within 200 milliseconds satisfy stopped"
-    picture = diagram(rule(sentence, clock=Clock(100_000_000)))
+    picture = diagram(requirement(sentence, clock=Clock(100_000_000)))
     assert text(picture) == (
         "tick                                 0 1 2 3 4 5 6 7 8 9 …\n"
         "m: true                              · · ─────────── · ·\n"
@@ -156,16 +156,16 @@ def test_a_picture_in_characters() -> None:
 
 
 def test_the_end_of_a_run_is_drawn_where_it_counts() -> None:
-    picture = diagram(rule("the sw shall finally satisfy q"))
+    picture = diagram(requirement("the sw shall finally satisfy q"))
     assert picture.ends
     assert picture.lanes[-1].stretches == (Stretch(4, 4),)
     assert "the run ends" in svg(picture)
-    assert not diagram(rule("in m mode, the sw shall finally satisfy q")).ends
+    assert not diagram(requirement("in m mode, the sw shall finally satisfy q")).ends
 
 
 def test_names_are_escaped_and_long_ones_shortened_with_the_whole_in_a_title() -> None:
     name = "a<b&'" + "very_long_" * 8 + "end"
-    picture = diagram(rule(f'whenever p sw shall immediately satisfy "{name}"'))
+    picture = diagram(requirement(f'whenever p sw shall immediately satisfy "{name}"'))
     root = ElementTree.fromstring(svg(picture))
     texts = [element.text or "" for element in root.iter(f"{SVG}text")]
     assert any(told.endswith('_end"') and "…" in told and len(told) <= 34 for told in texts)
@@ -173,7 +173,7 @@ def test_names_are_escaped_and_long_ones_shortened_with_the_whole_in_a_title() -
 
 
 def test_two_pictures_in_a_page_share_no_name() -> None:
-    picture = diagram(rule("the sw shall eventually satisfy q"))
+    picture = diagram(requirement("the sw shall eventually satisfy q"))
     first, second = (asdict(drawing(picture, id)) for id in ("one", "two"))
     assert (first["id"], second["id"]) == ("one", "two")
     assert first["rows"] == second["rows"]
@@ -185,7 +185,7 @@ def test_a_text_is_shortened_in_its_middle() -> None:
 
 
 def test_a_page_can_hold_the_drawing_and_escapes_a_name_once() -> None:
-    picture = diagram(rule("whenever a & b sw shall immediately satisfy x < 3"))
+    picture = diagram(requirement("whenever a & b sw shall immediately satisfy x < 3"))
     told = render("diagram/diagram.svg.j2", drawing=asdict(drawing(picture, "in-report")))
     assert told.count("a &amp; b") >= 1
     assert "amp;amp" not in told

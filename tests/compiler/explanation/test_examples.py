@@ -12,7 +12,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from compiler.logic.spot import holds_on
 from tests import meaning
 from tests.effort import FULL
-from tests.monitoring import monitor, rule, steps
+from tests.monitoring import monitor, requirement, steps
 from tests.strategies import Template, some_templates
 
 QUIET = 3
@@ -21,7 +21,7 @@ QUIET = 3
 
 @cache
 def found(sentence: str) -> tuple[FormalizedRequirement, Examples]:
-    made = rule(sentence)
+    made = requirement(sentence)
     return made, examples(made)
 
 

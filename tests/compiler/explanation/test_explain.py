@@ -9,7 +9,7 @@ from compiler.explanation.drawing import svg
 from compiler.explanation.explain import Row, as_record, explanation, text
 from fretish.clock import Clock
 from tests.effort import FULL
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 PARTS = ("p", "q", "!p", "!q", "p & q", "p | q", "p xor q", "p -> q", "true", "false", "p & !r")
 SCOPES = ("", "in m mode", "while {}", "before {}", "after {}", "only in m mode", "only before {}")
@@ -29,14 +29,16 @@ def test_sentences_whose_parts_share_propositions_are_explained(seed: int) -> No
             choose.choice(of).format(choose.choice(PARTS)) for of in (SCOPES, CONDITIONS, TIMINGS)
         )
         sentence = f"{scope} {condition} sw shall {timing} satisfy {choose.choice(PARTS)}"
-        explained = explanation(rule(sentence))
+        explained = explanation(requirement(sentence))
         assert explained.traces or explained.notes, sentence
         assert as_record(explained)["sentence"] == " ".join(sentence.split())
         assert ElementTree.fromstring(svg(explained.picture)).get("role") == "img"
 
 
 def test_equal_ticks_are_one_row_but_for_the_tick_that_decides() -> None:
-    explained = explanation(rule("when p sw shall within 1000 ticks satisfy q", clock=Clock(10**6)))
+    explained = explanation(
+        requirement("when p sw shall within 1000 ticks satisfy q", clock=Clock(10**6))
+    )
     silent = explained.traces[2]
     assert silent.rows == (
         Row(0, 0, (True, False), repeats=False, decides=False),
@@ -66,10 +68,10 @@ def test_equal_ticks_are_one_row_but_for_the_tick_that_decides() -> None:
     ],
 )
 def test_what_traces_do_not_tell_is_noted(sentence: str, note: str) -> None:
-    assert note in explanation(rule(sentence)).notes
+    assert note in explanation(requirement(sentence)).notes
 
 
 def test_an_undecided_trace_says_so() -> None:
-    told = text(explanation(rule("whenever p sw shall eventually satisfy q")))
+    told = text(explanation(requirement("whenever p sw shall eventually satisfy q")))
     assert told.count("decided at the end only") == 4
     assert "← decided" not in told

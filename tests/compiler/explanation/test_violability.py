@@ -1,4 +1,4 @@
-"""What no run can violate, held against Spot and against every short run."""
+"""What no run can violate, compared with Spot and against every short run."""
 
 from itertools import product
 
@@ -14,7 +14,7 @@ from monitors.kernel.columns import column
 from tests.compiler.formalization.test_anticipation import WHEN, counted, sharing
 from tests.effort import pairwise
 from tests.meaning import SCOPES
-from tests.monitoring import monitor, rule
+from tests.monitoring import monitor, requirement
 from tests.strategies import few_templates, some_templates
 
 
@@ -29,14 +29,16 @@ def is_live(formula: Formula) -> bool:
 def test_of_each_template_spot_says_the_same(scope: str) -> None:
     for template in few_templates((0, 1, 3)):
         if template.scope == scope:
-            made = rule(template.sentence)
+            made = requirement(template.sentence)
             assert is_violable(made) is not is_live(made.ft_infinite), template.sentence
 
 
 @pytest.mark.slow
 def test_of_parts_that_share_atoms_spot_says_the_same() -> None:
     for scope, condition, (timing, n) in pairwise(SCOPES, WHEN, [*counted()]):
-        made = rule(sharing(scope, condition, timing, n, f"{scope} {condition} {timing} {n}"))
+        made = requirement(
+            sharing(scope, condition, timing, n, f"{scope} {condition} {timing} {n}")
+        )
         assert is_violable(made) is not is_live(made.ft_infinite), made.sentence
 
 
@@ -47,7 +49,7 @@ def test_where_the_end_violates_some_short_run_does_exactly_if_it_is_violable(sc
     for template in some_templates((1,)):
         if template.scope != scope:
             continue
-        made, machine = rule(template.sentence, clock=clock), monitor(template.sentence)
+        made, machine = requirement(template.sentence, clock=clock), monitor(template.sentence)
         found = any(
             evaluate(machine, dict(zip(template.columns, told, strict=True)), 3, VIOLATED)[
                 0
@@ -63,8 +65,8 @@ def test_where_the_end_violates_some_short_run_does_exactly_if_it_is_violable(sc
 
 def test_what_whatever_happens_keeps_is_not_violated_by_the_end_either() -> None:
     clock = Clock(10**8, end=End.VIOLATED)
-    assert not is_violable(rule("the sw shall always satisfy q | !q", clock=clock))
-    assert is_violable(rule("the sw shall eventually satisfy q", clock=clock))
+    assert not is_violable(requirement("the sw shall always satisfy q | !q", clock=clock))
+    assert is_violable(requirement("the sw shall eventually satisfy q", clock=clock))
 
 
 @pytest.mark.parametrize(
@@ -80,4 +82,4 @@ def test_what_whatever_happens_keeps_is_not_violated_by_the_end_either() -> None
     ],
 )
 def test_the_reason_is_one_sentence(sentence: str, words: str) -> None:
-    assert limit(rule(sentence)) == words
+    assert limit(requirement(sentence)) == words

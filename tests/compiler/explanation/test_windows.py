@@ -40,12 +40,15 @@ def test_the_intervals_are_those_of_the_definition(scope: str) -> None:
 @pytest.mark.slow
 def test_every_short_trace_is_judged_as_fretish_means_it() -> None:
     for drawn in few_templates((0, 1, 2)):
-        rule, names = counted(drawn), drawn.columns
+        requirement, names = counted(drawn), drawn.columns
         for length in range(1, 4 if len(names) < 4 else 3):
             for values in product((False, True), repeat=len(names) * length):
                 columns = {n: list(values[i :: len(names)]) for i, n in enumerate(names)}
                 m, p, q, stop = (columns.get(name, columns["q"]) for name in "mpqs")
-                assert kept(rule, m, p, q, stop) is drawn.satisfied(columns), (drawn, columns)
+                assert kept(requirement, m, p, q, stop) is drawn.satisfied(columns), (
+                    drawn,
+                    columns,
+                )
 
 
 @given(st.sampled_from([*templates((0, 1, 2, 3, 5))]), traces("m", "p", "q", "s", max_size=14))
@@ -58,6 +61,6 @@ def test_long_traces_are_judged_as_fretish_means_them(
 
 
 def test_after_asks_twice() -> None:
-    rule = Counted(None, s.ConditionKind.HOLDING, s.After, 2)
+    requirement = Counted(None, s.ConditionKind.HOLDING, s.After, 2)
     parts = (TickRange(1, 3, Expectation.NONE), TickRange(4, 4, Expectation.ALL))
-    assert window(rule, 1, 9, [False] * 10) == ObligationWindow(1, 9, parts)
+    assert window(requirement, 1, 9, [False] * 10) == ObligationWindow(1, 9, parts)

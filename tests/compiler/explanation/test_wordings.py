@@ -19,13 +19,13 @@ from fretish.units import NAMES, base_name, unit
 from tests.command import Fretc, write
 from tests.each import each
 from tests.effort import some
-from tests.monitoring import rule as plain
+from tests.monitoring import requirement as plain
 
 UNITS = (*(name for name in NAMES if name != "1"), "m/s^2", "km/h", "deg/s", "cm/s")
 NUMBERS = ("3.0", "0.50", "30", "1.5e-3")
 
 
-def rule(name: str, digits: str) -> FormalizedRequirement:
+def requirement(name: str, digits: str) -> FormalizedRequirement:
     """A sentence with a number in a unit, of a signal in another one of the kind."""
     found = unit(name)
     assert found is not None
@@ -42,7 +42,7 @@ def rule(name: str, digits: str) -> FormalizedRequirement:
         f"until x != {digits} {name} satisfy y > 2.50 | !(x <= {digits} {name})"
     )
     write("requirements/r.fret", f'+++\nid = "R1"\n+++\n{sentence}\n')
-    (one,) = load(["requirements/r.fret"], "requirements/bindings.toml").rules
+    (one,) = load(["requirements/r.fret"], "requirements/bindings.toml").formalized
     return one
 
 
@@ -63,7 +63,7 @@ def test_explanations_pictures_and_pages_use_the_numbers_of_the_sentence(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     digits = NUMBERS[UNITS.index(name) % len(NUMBERS)]
-    one = rule(name, digits)
+    one = requirement(name, digits)
     check(text(explanation(one)).partition("one run, drawn")[2], name, digits)
     check(unescape(svg(diagram(one))), name, digits)
     found = re.findall(r'"(?:label|response)":("[^"]*")', html([one], (), ()))
@@ -79,7 +79,7 @@ def test_explanations_pictures_and_pages_use_the_numbers_of_the_sentence(
 def test_tests_are_shown_with_the_numbers_of_the_sentence(
     fretc: Fretc, name: str, digits: str
 ) -> None:
-    rule(name, digits)
+    requirement(name, digits)
     run = fretc("test", "--show", "R1")
     shown = run.out.partition("\n\n")[2]
     check("\n".join(line for line in shown.splitlines() if "(x" in line), name, digits)

@@ -23,7 +23,7 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def copy(copied: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A copy of the program, of which the edition is told."""
+    """A copy of the program, of which the edition is reported."""
     monkeypatch.setattr(module, "_SITE", copied)
     return copied
 

@@ -1,4 +1,4 @@
-"""Commands that are shown are run by a shell, with names that a stranger has chosen."""
+"""Commands that are shown are run by a shell, with names that somebody else has chosen."""
 
 import hashlib
 import os

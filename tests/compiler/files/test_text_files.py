@@ -1,4 +1,4 @@
-"""Where outputs go: no link that lies in the present folder leads one elsewhere."""
+"""Where outputs go: no link that lies in the current folder leads one elsewhere."""
 
 import errno
 import os
@@ -16,7 +16,7 @@ from tests.command import Fretc
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A present folder within another one, with a file outside that must stay as it is."""
+    """A current folder within another one, with a file outside that must stay as it is."""
     (tmp_path / "here").mkdir()
     (tmp_path / "precious").write_text("precious")
     (tmp_path / "elsewhere").mkdir()

@@ -11,7 +11,7 @@ from fretc.verification.monitor.verifying import verified
 from tests.each import each
 from tests.effort import FULL, pairwise, some
 from tests.meaning import SCOPES
-from tests.monitoring import emitted, monitor, rule, steps
+from tests.monitoring import emitted, monitor, requirement, steps
 from tests.spot_monitors import Ltl3
 from tests.strategies import Template, few_templates
 
@@ -43,7 +43,7 @@ def check(sentence: str, made: FormalizedRequirement, names: tuple[str, ...], co
 @pytest.mark.slow
 @each("template", few_templates())
 def test_each_template_is_decided_at_the_earliest_tick(template: Template) -> None:
-    check(template.sentence, rule(template.sentence), template.columns, 12)
+    check(template.sentence, requirement(template.sentence), template.columns, 12)
 
 
 # Parts that share atoms -------------------------------------------------------------------------
@@ -95,7 +95,7 @@ def test_parts_that_share_atoms_are_decided_at_the_earliest_tick() -> None:
     cases = pairwise(SCOPES, WHEN, [*counted()], draws)
     for scope, condition, (timing, n), draw in some(cases, 3):
         sentence = sharing(scope, condition, timing, n, f"{scope} {condition} {timing} {n} {draw}")
-        check(sentence, rule(sentence), ("a", "b"), 6)
+        check(sentence, requirement(sentence), ("a", "b"), 6)
 
 
 @pytest.mark.slow
@@ -105,7 +105,7 @@ def test_long_durations_over_shared_atoms_are_decided_at_the_earliest_tick() -> 
         if n == 25 and scope.startswith("only") and timing.startswith("after"):
             continue  # what it demands of each trigger is another: 2^25 states
         sentence = sharing(scope, condition, timing, n, f"{scope} {condition} {timing}")
-        found = verified(rule(sentence), emitted(sentence))
+        found = verified(requirement(sentence), emitted(sentence))
         assert found.result is Result.PROVED, (sentence, found)
 
 

@@ -39,9 +39,9 @@ def said(sentence: str, proposition: str, expr: str) -> tuple[Diagnostic, ...]:
     declared, wrong = read_bindings(Source("bindings.toml", bindings))
     assert wrong == ()
     text = f"the robot shall always satisfy {sentence}"
-    ((requirement,), _) = requirements(Source("r1.fret", text))
-    rule, remarks = formalize(requirement, declared)
-    assert (rule is None) == any(remark.is_error for remark in remarks)
+    ((entry,), _) = requirements(Source("r1.fret", text))
+    requirement, remarks = formalize(entry, declared)
+    assert (requirement is None) == any(remark.is_error for remark in remarks)
     return remarks
 
 
@@ -194,11 +194,11 @@ def test_a_word_in_the_place_of_a_mode_is_told_where_it_belongs() -> None:
     declared, _ = read_bindings(Source("bindings.toml", HEAD))
     assert declared is not None
     sentence = Source("r.fret", "in docking mode the robot shall always satisfy vx < 1")
-    ((requirement,), _) = requirements(sentence)
-    rule, _ = formalize(requirement, declared)
-    assert rule is not None
-    assert rule.declarations is not None
-    (missing,) = unbound(rule, rule.declarations)
+    ((entry,), _) = requirements(sentence)
+    requirement, _ = formalize(entry, declared)
+    assert requirement is not None
+    assert requirement.declarations is not None
+    (missing,) = unbound(requirement, requirement.declarations)
     assert missing.message == "`docking` of r has no binding in bindings.toml"
     assert missing.help == (
         "`docking` is a word of `state`: write `state = docking` (as a scope `while state = "
@@ -210,8 +210,8 @@ def test_a_comparison_of_a_signal_with_a_mistake_has_that_mistake_alone() -> Non
     text = HEAD.replace('path = "/state.data"', 'path = "TODO"')
     declared, wrong = read_bindings(Source("bindings.toml", text))
     assert declared is not None
-    ((requirement,), _) = requirements(Source("r.fret", "the robot shall satisfy state = docking"))
-    rule, _ = formalize(requirement, declared)
-    assert rule is not None
-    assert rule.declarations is not None
-    assert tuple(unbound(rule, rule.declarations)) == wrong
+    ((entry,), _) = requirements(Source("r.fret", "the robot shall satisfy state = docking"))
+    requirement, _ = formalize(entry, declared)
+    assert requirement is not None
+    assert requirement.declarations is not None
+    assert tuple(unbound(requirement, requirement.declarations)) == wrong

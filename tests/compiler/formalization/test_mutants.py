@@ -3,7 +3,7 @@
 Mistakes are put into the text that is generated, below its run time, and into the formulas that it
 is generated from. The proof refutes each, or its columns differ from its steps, or it is refused
 as something that is not generated; what is proved all the same must tell the same as the monitor
-without the mistake, and that the definition is told by that one is held in `test_telling`.
+without the mistake, and that the definition is reported by that one is held in `test_telling`.
 """
 
 import ast
@@ -29,7 +29,7 @@ from monitors.kernel.stepping import Standing
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from tests.effort import FULL
-from tests.monitoring import over, rule, with_step
+from tests.monitoring import over, requirement, with_step
 
 SENTENCES = (
     "the sw shall immediately satisfy q",
@@ -239,7 +239,7 @@ class Judge:
     """What is found of a monitor with a mistake."""
 
     def __init__(self, right: FormalizedRequirement) -> None:
-        self.rule = right
+        self.requirement = right
         self.machine = load("right.py", target.text(right))
         choose = random.Random(right.id)
         self.traces = [self._trace(choose, number) for number in range(16)]
@@ -257,7 +257,7 @@ class Judge:
 
     def kind(self, text: str) -> str:
         try:
-            outcome = verified(self.rule, text, MOST_STATES)
+            outcome = verified(self.requirement, text, MOST_STATES)
         except NotAMonitorError:
             return REFUSED
         match outcome.result:
@@ -340,7 +340,7 @@ def chosen(
 def test_a_mistake_in_a_text_is_found_or_changes_nothing(numbers: list[int]) -> None:
     found, met = Counter[str](), Counter[str]()
     for number in numbers:
-        made = rule(SENTENCES[number])
+        made = requirement(SENTENCES[number])
         judge = Judge(made)
         for kind, text in chosen(of_text(target.text(made)), met):
             result = judge.kind(text)
@@ -360,7 +360,7 @@ def test_a_mistake_in_a_formula_is_found_or_proved_to_change_nothing(numbers: li
     """What changes nothing is proved, or not checked: its columns are others, and seem to agree."""
     found, met = Counter[str](), Counter[str]()
     for number in numbers:
-        made = rule(SENTENCES[number])
+        made = requirement(SENTENCES[number])
         judge = Judge(made)
         wrong = ((kind, partial(_same, watch)) for kind, watch in of_watch(made.watch))
         for kind, watch in chosen(wrong, met):
@@ -379,12 +379,14 @@ def _same(watch: MonitorSpec) -> MonitorSpec:
 
 def test_the_sentences_have_every_kind_of_line_and_of_demand() -> None:
     """`released` and `released_between` come only where parts are no atoms of their own."""
-    own = "".join(text[text.index(MARK) :] for text in map(target.text, map(rule, SENTENCES)))
+    own = "".join(
+        text[text.index(MARK) :] for text in map(target.text, map(requirement, SENTENCES))
+    )
     cells = "youngest_1 oldest_1 since_1 before_1 first differ_1 agree_1 Window".split()
     columns = "previous weak_previous once historically since since_from since_between".split()
     for name in (*cells, *(f"{column}(" for column in columns)):
         assert f" {name}" in own, name
-    sentences = [rule(sentence).sentence for sentence in SENTENCES]
+    sentences = [requirement(sentence).sentence for sentence in SENTENCES]
     assert {type(sentence.timing) for sentence in sentences} == {*get_args(s.Timing)}
     assert {x.scope.kind for x in sentences if x.scope} == {*s.ScopeKind}
     assert {x.condition.kind for x in sentences if x.condition} == {*s.ConditionKind}

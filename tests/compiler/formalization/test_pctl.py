@@ -11,11 +11,11 @@ from compiler.logic.spot import same_language
 from tests import meaning
 from tests.each import each
 from tests.effort import some
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 
 def pctl(sentence: str) -> str:
-    formula = rule(sentence).pctl
+    formula = requirement(sentence).pctl
     assert formula is not None
     return printing.pctl(formula)
 
@@ -129,7 +129,7 @@ def test_all_templates_are_there() -> None:
 @pytest.mark.slow
 @each("sentence", some(ALL, 5))
 def test_without_its_probabilities_it_is_the_future_time_formula(sentence: str) -> None:
-    formula = printing.future(rule(sentence).ft_infinite)
+    formula = printing.future(requirement(sentence).ft_infinite)
     assert same_language(without_probabilities(pctl(sentence)), formula)
 
 
@@ -155,6 +155,6 @@ def test_every_path_is_within_a_probability(sentence: str) -> None:
 @pytest.mark.slow
 @each("sentence", some(templates(""), 5))
 def test_a_sentence_without_a_probability_has_none(sentence: str) -> None:
-    formalized = rule(sentence)
+    formalized = requirement(sentence)
     assert formalized.pctl is None
     assert formulas(formalized)["pctl"] is None

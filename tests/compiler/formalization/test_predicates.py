@@ -23,7 +23,7 @@ from tests import fret_notation as fret
 from tests import meaning, monitoring
 from tests.each import each
 from tests.effort import FULL, pairwise, some
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.strategies import templates
 
 TABLE = Path(__file__).parents[2] / "data/fret_templates.json"
@@ -80,13 +80,13 @@ def test_all_traces_of_two_ticks_are_four() -> None:
 @pytest.mark.slow
 @each("row", with_a("ft_inf"))
 def test_the_formula_of_infinite_traces_says_what_that_of_fret_says(row: dict[str, Any]) -> None:
-    assert same_language(printing.future(rule(row["fretish"]).ft_infinite), row["ft_inf"])
+    assert same_language(printing.future(requirement(row["fretish"]).ft_infinite), row["ft_inf"])
 
 
 @pytest.mark.slow
 @each("row", [row for row in with_a("ft_fin") if not has_no_end(row)])
 def test_the_formula_of_finite_traces_says_what_that_of_fret_says(row: dict[str, Any]) -> None:
-    ours = fret.parse(printing.future(rule(row["fretish"]).ft_finite))
+    ours = fret.parse(printing.future(requirement(row["fretish"]).ft_finite))
     theirs = fret.parse(row["ft_fin"])
     for word, length, full in words(row["variables"]):
         at_start = fret.values(ours, word, length, full)[0]
@@ -96,7 +96,7 @@ def test_the_formula_of_finite_traces_says_what_that_of_fret_says(row: dict[str,
 @pytest.mark.slow
 @each("row", with_a("pt"))
 def test_the_past_time_formula_says_what_that_of_fret_says(row: dict[str, Any]) -> None:
-    ours, theirs = fret.parse(printing.past(rule(row["fretish"]).pt)), fret.parse(row["pt"])
+    ours, theirs = fret.parse(printing.past(requirement(row["fretish"]).pt)), fret.parse(row["pt"])
     for word, length, full in words(row["variables"]):
         at_end = fret.values(ours, word, length, full)[-1]
         assert at_end == fret.values(theirs, word, length, full)[-1], length
@@ -135,7 +135,7 @@ HARMLESS = ("P.ft.persists(2,p).before.whenever", "P.ft.occurs(2,p).notin.whenev
 @each("row", [row for row in with_a("ft_fin") if has_no_end(row)])
 def test_a_finite_trace_is_judged_without_what_follows_it(row: dict[str, Any]) -> None:
     """FRET's formula of the same sentence does depend on it."""
-    ours = printing.future(rule(row["fretish"]).ft_finite)
+    ours = printing.future(requirement(row["fretish"]).ft_finite)
     for length in (1, 2, 3):
         word, full = every_trace(tuple(row["variables"]), length)
         alone = fret.values(fret.parse(ours), word, length, full)[0]
@@ -298,7 +298,7 @@ def rows(trace: Trace) -> list[dict[str, bool]]:
 def test_a_predicate_that_looks_back_means_what_it_says(case: tuple[str, str, str]) -> None:
     text, scope, place = case
     sentence = f"{SCOPES[scope]} {PLACES[place][0].format(text)}"
-    formula = rule(sentence).pt
+    formula = requirement(sentence).pt
     for trace in traces():
         verdict = holds(formula, rows(trace), len(trace["q"]) - 1)
         assert verdict == meant(trace, scope, place, BACK[text]), (sentence, trace)
@@ -309,7 +309,7 @@ def test_a_predicate_that_looks_back_means_what_it_says(case: tuple[str, str, st
 def test_a_predicate_that_looks_ahead_means_what_it_says(case: tuple[str, str, str]) -> None:
     text, scope, place = case
     sentence = f"{SCOPES[scope]} {PLACES[place][0].format(text)}"
-    formula = rule(sentence).ft_finite
+    formula = requirement(sentence).ft_finite
     for trace in traces():
         verdict = holds(formula, rows(trace), 0)
         assert verdict == meant(trace, scope, place, AHEAD[text]), (sentence, trace)
@@ -362,7 +362,7 @@ def test_the_first_tick_within_a_scope_is_that_of_the_run(case: tuple[str, str])
     for place, template in enumerate(some(of_scope[number % 3 :: 3], 3, number % 3)):
         begun = template.sentence.index("mode") + len("mode")
         sentence = f"{WHILE[scope].format(text)}{template.sentence[begun:]}"
-        made = rule(sentence)
+        made = requirement(sentence)
         machine = monitoring.monitor(sentence) if place % 4 == 0 else None
         names = {*template.columns, "m"}
         for trace in traces()[place % 10 :: 10]:
@@ -418,14 +418,14 @@ def test_no_monitor_asks_whether_it_is_the_first_tick(case: tuple[str, str]) -> 
 )
 def test_a_monitor_refuses_what_would_be_asked_of_the_first_tick(text: str) -> None:
     for sentence in ("whenever {} sw shall satisfy q", "while {} sw shall satisfy q"):
-        refused = target.refuse(rule(sentence.format(text)))
+        refused = target.refuse(requirement(sentence.format(text)))
         assert refused is not None
         assert refused.code is Code.NOT_EXPRESSIBLE
         assert "`FTP`" in refused.message
 
 
 def test_within_a_scope_a_previous_value_of_the_first_tick_is_refused_too() -> None:
-    refused = target.refuse(rule("while preBool(false, FTP) sw shall satisfy q"))
+    refused = target.refuse(requirement("while preBool(false, FTP) sw shall satisfy q"))
     assert refused is not None
     assert "`FTP`" in refused.message
 
@@ -443,7 +443,7 @@ def test_the_first_tick_is_no_number(text: str) -> None:
 
 @pytest.mark.parametrize("text", ["persists(2,p)", "occurs(1,3,p)", "nextOcc(p,r)"])
 def test_a_predicate_that_looks_ahead_stays_in_the_past_time_formula(text: str) -> None:
-    formalized = rule(f"the sw shall always satisfy {text}")
+    formalized = requirement(f"the sw shall always satisfy {text}")
     assert printing.past(formalized.pt) == f"(H {text})"
     assert text not in printing.future(formalized.ft_finite)
 
@@ -452,14 +452,14 @@ def test_a_predicate_that_looks_ahead_stays_in_the_past_time_formula(text: str) 
     "text", ["persisted(2,p)", "occurred(1,3,p)", "prevOcc(p,r)", "preBool(FALSE,p)"]
 )
 def test_a_predicate_that_looks_back_stays_in_the_future_time_formulas(text: str) -> None:
-    formalized = rule(f"the sw shall always satisfy {text.replace('FALSE', 'false')}")
+    formalized = requirement(f"the sw shall always satisfy {text.replace('FALSE', 'false')}")
     assert printing.future(formalized.ft_finite) == f'(LAST R "{text}")'
     assert printing.future(formalized.ft_infinite) == f'(G "{text}")'
     assert text not in printing.past(formalized.pt)
 
 
 def test_the_first_tick_stays_in_the_future_time_formulas() -> None:
-    formalized = rule("the sw shall always satisfy FTP -> q")
+    formalized = requirement("the sw shall always satisfy FTP -> q")
     assert printing.future(formalized.ft_infinite).replace('"', "") == "(G (FTP -> q))"
     assert printing.past(formalized.pt) == "(H ((Z FALSE) -> q))"
 
@@ -469,17 +469,17 @@ def test_the_first_tick_stays_in_the_future_time_formulas() -> None:
     ["persisted(n,p)", "persisted(1.5,p)", "occurred(1,n,p)", "occurred(3,1,p)", "persisted(p)"],
 )
 def test_a_bound_that_is_no_whole_number_leaves_the_past_predicate_alone(text: str) -> None:
-    assert printing.past(rule(f"the sw shall always satisfy {text}").pt) == f"(H {text})"
+    assert printing.past(requirement(f"the sw shall always satisfy {text}").pt) == f"(H {text})"
 
 
 @pytest.mark.parametrize("text", ["persists(n,p)", "occurs(2.0,p)", "occurs(3,1,p)", "occurs(p)"])
 def test_a_bound_that_is_no_whole_number_leaves_the_future_predicate_alone(text: str) -> None:
-    formula = rule(f"the sw shall always satisfy {text}").ft_infinite
+    formula = requirement(f"the sw shall always satisfy {text}").ft_infinite
     assert printing.future(formula) == f'(G "{text}")'
 
 
 def test_other_functions_stay() -> None:
-    formula = rule("the sw shall always satisfy f(p,q)").pt
+    formula = requirement("the sw shall always satisfy f(p,q)").pt
     assert printing.past(formula) == "(H f(p,q))"
 
 
@@ -497,11 +497,11 @@ def test_other_functions_stay() -> None:
 )
 def test_a_predicate_in_a_scope_looks_over_the_whole_trace(scope: str, formula: str) -> None:
     """`prevOcc` asks for an occurrence there, and `preBool` is left alone."""
-    assert printing.past(rule(f"{scope} the sw shall always satisfy q").pt) == formula
+    assert printing.past(requirement(f"{scope} the sw shall always satisfy q").pt) == formula
 
 
 def test_a_following_occurrence_in_a_scope_must_exist() -> None:
-    formula = rule("while nextOcc(p,r) the sw shall always satisfy q").ft_finite
+    formula = requirement("while nextOcc(p,r) the sw shall always satisfy q").ft_finite
     never_again = [{"p": True, "r": True, "q": False}, {"p": False, "r": True, "q": False}]
     comes = [{"p": False, "r": False, "q": False}, {"p": True, "r": True, "q": True}]
     wrong = [{"p": False, "r": True, "q": False}, {"p": True, "r": False, "q": True}]
@@ -510,7 +510,7 @@ def test_a_following_occurrence_in_a_scope_must_exist() -> None:
 
 def test_a_predicate_in_a_scope_does_not_begin_with_its_own_interval() -> None:
     """P since tick 0, and the interval begins at tick 0 only if the past is not cut at it."""
-    formula = rule("while persisted(2,p) & m the sw shall immediately satisfy q").pt
+    formula = requirement("while persisted(2,p) & m the sw shall immediately satisfy q").pt
     trace = [
         {"m": False, "p": True, "q": False},
         {"m": False, "p": True, "q": False},

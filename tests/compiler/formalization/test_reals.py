@@ -1,4 +1,4 @@
-"""Numbers make a valuation or they do not: held against Fourier and Motzkin, and against a grid."""
+"""Numbers make a valuation or they do not: compared with Fourier and Motzkin, and with a grid."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from compiler.logic.orders import Exclusion
 from fretc.testing.generation import batch
 from fretc.verification.monitor.verifying import verified
 from fretish.bindings.declarations import Variable
-from tests.monitoring import emitted, rule
+from tests.monitoring import emitted, requirement
 
 _COMPARE = {"<": lt, "<=": le, ">": gt, ">=": ge, "=": eq, "!=": ne}
 _DENIED = {"<": ">=", "<=": ">", ">": "<=", ">=": "<", "=": "!=", "!=": "="}
@@ -89,8 +89,8 @@ def _has_solution(bounds: Sequence[Bound]) -> bool:
 
 
 def asked(some: Sequence[Linear]) -> tuple[FormalizedRequirement, dict[str, Linear]]:
-    """A rule that compares them, and which of its atoms each one is."""
-    made = rule(f"the sw shall satisfy {' | '.join(f'({each.text})' for each in some)}")
+    """A requirement that compares them, and which of its atoms each one is."""
+    made = requirement(f"the sw shall satisfy {' | '.join(f'({each.text})' for each in some)}")
     names = comparisons(made)
     assert len(names) == len(some)
     return made, dict(zip(names, some, strict=True))
@@ -167,13 +167,13 @@ def test_whole_numbers_are_those_of_a_grid(some: list[Linear]) -> None:
 def test_what_is_not_linear_is_decided_or_said_not_to_be(
     texts: Sequence[str], answer: type[Possible | Impossible | Undecided]
 ) -> None:
-    made = rule(f"the sw shall satisfy {' & '.join(texts)}")
+    made = requirement(f"the sw shall satisfy {' & '.join(texts)}")
     assert isinstance(Reals(made).answer(dict.fromkeys(comparisons(made), True)), answer)
 
 
 def test_a_question_that_takes_too_long_is_not_decided(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("compiler.formalization.numbers.reals.MOST_QUESTIONS", 0)
-    made = rule("the sw shall satisfy 2 * x > 6 & x < 2")
+    made = requirement("the sw shall satisfy 2 * x > 6 & x < 2")
     assert Reals(made).answer({}) == Undecided()
     found = explanation(made)
     assert "whether numbers make these comparisons true and false so was not decided" in found.notes
@@ -193,7 +193,7 @@ SENTENCES = (
 @settings(max_examples=12)
 @given(several(3, 3), st.sampled_from(SENTENCES))
 def test_numbers_make_every_trace_of_an_explanation(some: list[Linear], sentence: str) -> None:
-    made = rule(sentence.format(*(f"({each.text})" for each in some)))
+    made = requirement(sentence.format(*(f"({each.text})" for each in some)))
     by_name = {name: each for each in some for name in comparisons(asked([each])[0])}
     found = examples(made)
     used = [name for name in by_name if name in found.atoms]
@@ -206,13 +206,13 @@ def test_numbers_make_every_trace_of_an_explanation(some: list[Linear], sentence
 
 
 def test_explanations_say_what_numbers_cannot_be() -> None:
-    never = explanation(rule("the sw shall always satisfy 2 * x > 6 & x < 2"))
+    never = explanation(requirement("the sw shall always satisfy 2 * x > 6 & x < 2"))
     assert {each.satisfied for each in never.traces} == {False}
     assert never.notes[:2] == (
         ROUNDED,
         "no run that goes on satisfies the sentence, computed exactly",
     )
-    other = explanation(rule("the sw shall always satisfy 2 * x > 2 & x < 2"))
+    other = explanation(requirement("the sw shall always satisfy 2 * x > 2 & x < 2"))
     assert {each.satisfied for each in other.traces} == {False, True}
     assert not any("computed" in note for note in other.notes)
 
@@ -223,7 +223,7 @@ ALWAYS = "the sw shall always satisfy "
 def test_a_counterexample_has_numbers_where_another_one_serves() -> None:
     """The first valuation on which they differ is the one that no numbers make: neither is true."""
     wrong = ALWAYS + "(2 * x > 2 & x < 3) | (!(2 * x > 2) & !(x < 3))"
-    outcome = verified(rule(ALWAYS + "2 * x > 2 | x < 3"), emitted(wrong))
+    outcome = verified(requirement(ALWAYS + "2 * x > 2 | x < 3"), emitted(wrong))
     assert outcome.result is Result.COUNTEREXAMPLE
     assert outcome.trace is not None
     assert outcome.trace.names == ("((2 * x) > 2)", "(x < 3)")
@@ -233,7 +233,7 @@ def test_a_counterexample_has_numbers_where_another_one_serves() -> None:
 
 def test_a_monitor_that_differs_by_rounded_numbers_only_stays_refuted() -> None:
     wrong = ALWAYS + "!(2 * x > 6 & x < 2 & p)"
-    outcome = verified(rule(ALWAYS + "!(2 * x > 6 & x < 2)"), emitted(wrong))
+    outcome = verified(requirement(ALWAYS + "!(2 * x > 6 & x < 2)"), emitted(wrong))
     assert outcome.result is Result.COUNTEREXAMPLE
     assert outcome.detail.endswith(f"; no other trace was found that shows it, and {ROUNDED}")
 
@@ -272,7 +272,7 @@ def test_another_counterexample_is_shown_where_numbers_make_one_and_none_is_lost
 
 @pytest.mark.slow
 def test_numbers_make_every_test_of_a_requirement() -> None:
-    made = batch(rule(SENTENCES[0].format("2 * x > 6", "x < 2")), (), 60)
+    made = batch(requirement(SENTENCES[0].format("2 * x > 6", "x < 2")), (), 60)
     assert made.tests
     rows = [row.values for test in made.tests for row in test.rows]
     assert not any(row["((2 * x) > 6)"] and row["(x < 2)"] for row in rows)

@@ -34,7 +34,7 @@ from fretish import syntax as s
 from fretish.syntax import ConditionKind, ScopeKind
 from tests import meaning
 from tests.effort import FULL, some
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.strategies import COUNTS, Template, some_templates, templates, traces
 
 SMALL = (0, 1, 2, 3)
@@ -46,7 +46,7 @@ Valuation = tuple[bool, ...]
 
 @cache
 def counted(sentence: str) -> Counted:
-    made = rule(sentence)
+    made = requirement(sentence)
     return template(made.sentence, made.ticks or 0)
 
 
@@ -173,16 +173,16 @@ def test_the_automaton_has_the_language_of_the_infinite_formula(scope: str) -> N
         letters = letters_of(drawn.columns)
         automaton = explore(counted(drawn.sentence), letters.values())
         graph = as_spot(automaton, letters, drawn.columns)
-        assert spot.are_equivalent(graph, in_spot(rule(drawn.sentence))), drawn
+        assert spot.are_equivalent(graph, in_spot(requirement(drawn.sentence))), drawn
 
 
 def test_the_comparison_with_spot_sees_a_difference_of_one_tick() -> None:
     sentence = "whenever p the sw shall within {} ticks satisfy q"
     letters = letters_of("pq")
     graph = as_spot(explore(counted(sentence.format(3)), letters.values()), letters, "pq")
-    assert spot.are_equivalent(graph, in_spot(rule(sentence.format(3))))
-    assert not spot.are_equivalent(graph, in_spot(rule(sentence.format(2))))
-    assert not spot.are_equivalent(graph, in_spot(rule(sentence.format(4))))
+    assert spot.are_equivalent(graph, in_spot(requirement(sentence.format(3))))
+    assert not spot.are_equivalent(graph, in_spot(requirement(sentence.format(2))))
+    assert not spot.are_equivalent(graph, in_spot(requirement(sentence.format(4))))
 
 
 # Infinite traces: the instants of the verdicts ------------------------------------------------
@@ -252,7 +252,7 @@ def test_verdicts_come_at_the_earliest_instant(scope: str) -> None:
     for drawn in every(scope, SEVERAL):
         letters = letters_of(drawn.columns)
         automaton = explore(counted(drawn.sentence), letters.values())
-        formula = in_spot(rule(drawn.sentence))
+        formula = in_spot(requirement(drawn.sentence))
         assert_decides_as_early_as_spot(automaton, letters, drawn.columns, formula)
 
 
@@ -299,7 +299,7 @@ def test_verdicts_come_at_the_earliest_instant_where_expressions_share_variables
     sentence: str,
 ) -> None:
     for n in (SMALL if FULL else (0, 2)) if "{n}" in sentence else (0,):
-        made = rule(sentence.format(n=n))
+        made = requirement(sentence.format(n=n))
         names = made.propositions
         letters = meanings(made.sentence, names)
         automaton = explore(template(made.sentence, n), letters.values())
@@ -309,7 +309,7 @@ def test_verdicts_come_at_the_earliest_instant_where_expressions_share_variables
 
 def verdict(sentence: str, word: str) -> Verdict:
     """After the letters of the word, each a valuation of p such as `-` (false) or `p`."""
-    made = rule(sentence)
+    made = requirement(sentence)
     letters = meanings(made.sentence, ("p",))
     automaton = explore(template(made.sentence, made.ticks or 0), letters.values())
     state = 0
@@ -461,5 +461,5 @@ def test_the_template_of_a_sentence() -> None:
 
 
 def test_a_timing_that_counts_nothing_has_no_ticks() -> None:
-    sentence = rule("the sw shall always satisfy q").sentence
+    sentence = requirement("the sw shall always satisfy q").sentence
     assert template(sentence, 5) == Counted(None, None, s.Always, 0)

@@ -34,12 +34,12 @@ def stated(response: str) -> dict[str, tuple[str, Aggregate]] | list[Diagnostic]
     """The propositions that a sentence adds to the bindings, or its mistakes."""
     declared, mistakes = read_bindings(Source("bindings.toml", BINDINGS))
     assert declared is not None, mistakes
-    ((requirement,), _) = requirements(Source("r.fret", f"the agv shall always satisfy {response}"))
-    rule, remarks = formalize(requirement, declared)
-    if rule is None:
+    ((entry,), _) = requirements(Source("r.fret", f"the agv shall always satisfy {response}"))
+    requirement, remarks = formalize(entry, declared)
+    if requirement is None:
         return [*remarks]
-    assert rule.declarations is not None
-    own = rule.declarations.propositions
+    assert requirement.declarations is not None
+    own = requirement.declarations.propositions
     return {
         name: (expression(own[name].expression), own[name].aggregate)
         for name in own

@@ -13,7 +13,7 @@ from compiler.logic.definition import holds
 from compiler.logic.printing import DIALECTS, FRET, LATEX, NUSMV, PLAIN, SPOT
 from compiler.logic.spot import same_language
 from tests.each import each
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 a, b, c = f.Atom("a"), f.Atom("b"), f.Atom("c")
 FAST = f.Atom("(arm_x >= 3)")
@@ -97,24 +97,24 @@ def test_the_first_tick(dialect: printing.Dialect, text: str) -> None:
     ],
 )
 def test_a_name_in_quotes_is_one_proposition_to_spot(sentence: str) -> None:
-    formula = rule(sentence).ft_infinite
+    formula = requirement(sentence).ft_infinite
     assert same_language(printing.text(formula, SPOT), printing.future(formula))
 
 
 @pytest.mark.parametrize("dialect", [FRET, NUSMV])
 def test_a_name_in_quotes_is_spelt_without_them(dialect: printing.Dialect) -> None:
     """In formulas a space is `_SPC_`, a dot `_DOT_`: those tools have no quotes for a name."""
-    formula = rule('the sw shall always satisfy "two words" + arm.x > 3').ft_infinite
+    formula = requirement('the sw shall always satisfy "two words" + arm.x > 3').ft_infinite
     assert printing.text(formula, dialect) == "G((two_SPC_words + arm_DOT_x) > 3)"
 
 
 def test_a_name_that_ends_like_a_call_is_a_name() -> None:
-    formula = rule('the sw shall always satisfy "speed (m)"').ft_infinite
+    formula = requirement('the sw shall always satisfy "speed (m)"').ft_infinite
     assert re.fullmatch(r"G speed_SPC_\w+", printing.readable(formula))
 
 
 def test_two_names_stay_two() -> None:
-    formula = rule('the sw shall always satisfy "a-b" & ! "a+b"').ft_infinite
+    formula = requirement('the sw shall always satisfy "a-b" & ! "a+b"').ft_infinite
     assert not same_language(printing.text(formula, SPOT), "0")
 
 
@@ -223,7 +223,9 @@ def test_latex_closes_every_brace(formula: f.Formula) -> None:
 @pytest.mark.parametrize("name", ["a{b", "a}b", "50%", "a_b", "a\\b", "a#b", "$x$", "{", "a & b"])
 def test_latex_survives_any_name(name: str) -> None:
     for response in (f'"{name}"', f'"{name}" > 3', f'f("{name}")'):
-        text = printing.text(rule(f"the sw shall always satisfy {response}").ft_infinite, LATEX)
+        text = printing.text(
+            requirement(f"the sw shall always satisfy {response}").ft_infinite, LATEX
+        )
         assert balanced(text), text
         assert not re.search(r"(?<!\\)[#$%&~]|(?<!\\)_(?!\{)", text), text
 

@@ -16,7 +16,7 @@ from monitors.kernel import Monitor
 from monitors.kernel.verdicts import Truth, truth
 from tests.effort import FULL
 from tests.meaning import SCOPES
-from tests.monitoring import monitor, of_formula, over, packed, rule, steps
+from tests.monitoring import monitor, of_formula, over, packed, requirement, steps
 from tests.strategies import (
     few_templates,
     future,
@@ -192,7 +192,7 @@ def test_the_future_at_the_first_tick_is_the_past_at_the_last(scope: str) -> Non
     for template in few_templates((0, 2, 5)):
         if template.scope != scope:
             continue
-        made, machine = rule(template.sentence), monitor(template.sentence)
+        made, machine = requirement(template.sentence), monitor(template.sentence)
         columns = drawn(template.columns, 24, choose)
         outcome = steps(machine, columns)
         for ticks in range(1, 25):

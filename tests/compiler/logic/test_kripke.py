@@ -1,4 +1,4 @@
-"""All runs of a graph against a formula: Spot's answer is held against the definition."""
+"""All runs of a graph against a formula: Spot's answer is compared with the definition."""
 
 import pytest
 from hypothesis import example, given, settings

@@ -1,4 +1,4 @@
-"""What comparisons cannot be together, held against numbers and against a circle search."""
+"""What comparisons cannot be together, compared with numbers and against a circle search."""
 
 from __future__ import annotations
 

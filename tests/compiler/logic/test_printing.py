@@ -14,7 +14,7 @@ from compiler.logic.formula import endless
 from compiler.logic.spot import same_language
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.parser import parse
 from fretish.syntax import Sentence
 from tests import fret_notation as fret
@@ -216,8 +216,10 @@ def test_two_names_are_two_propositions(one: str, two: str) -> None:
 )
 def test_two_names_that_formulas_would_spell_alike_are_refused(one: str, two: str) -> None:
     text = f"the sw shall always satisfy {one} -> {two}"
-    rule, diagnostics = formalize(Requirement("R1", Source("r.fret", text).span()), None)
-    assert rule is None
+    requirement, diagnostics = formalize(
+        RequirementEntry("R1", Source("r.fret", text).span()), None
+    )
+    assert requirement is None
     assert [d.code for d in diagnostics] == [Code.NAME_CLASH]
 
 

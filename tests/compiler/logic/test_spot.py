@@ -34,10 +34,10 @@ def sentences(scopes: tuple[str, ...]) -> Iterator[str]:
 
 def formulas(sentence: str) -> tuple[f.Formula, f.Formula]:
     """On infinite and on finite traces."""
-    ((requirement,), _) = requirements(Source("r.fret", sentence))
-    rule, diagnostics = formalize(requirement, None)
-    assert rule is not None, diagnostics
-    return rule.ft_infinite, rule.ft_finite
+    ((entry,), _) = requirements(Source("r.fret", sentence))
+    requirement, diagnostics = formalize(entry, None)
+    assert requirement is not None, diagnostics
+    return requirement.ft_infinite, requirement.ft_finite
 
 
 def steps(text: str) -> int:

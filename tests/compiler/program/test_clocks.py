@@ -10,7 +10,7 @@ from compiler.program.instructions import Advance, Choose, Count
 from compiler.program.interpreter import initial, step
 from compiler.program.lowering import program
 from compiler.program.values import Literal
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.strategies import templates
 
 WITHIN = "whenever p the sw shall within 3 ticks satisfy q"
@@ -20,7 +20,7 @@ WITHIN = "whenever p the sw shall within 3 ticks satisfy q"
 def test_a_clock_is_as_old_as_the_open_demand() -> None:
     choose, found = random.Random(0), 0
     for template in templates((0, 1, 2, 3)):
-        one = rule(template.sentence)
+        one = requirement(template.sentence)
         plain = program({"R1": one.watch})
         known = clocks(plain)
         if known:
@@ -40,7 +40,7 @@ def test_a_clock_is_as_old_as_the_open_demand() -> None:
 
 
 def test_a_counter_that_starts_again_is_no_clock() -> None:
-    plain = program({"R1": rule(WITHIN).watch})
+    plain = program({"R1": requirement(WITHIN).watch})
     assert clocks(plain) == {"R1": "oldest_1"}
     blocks = {block.name: block for block in plain.blocks}
     (choice,) = blocks["oldest_1"].instructions

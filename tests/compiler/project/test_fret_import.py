@@ -11,7 +11,7 @@ from compiler.project.folder import Project, load
 from fretish import documents
 from fretish.diagnostics.diagnostic import Code
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from tests.command import Fretc, Run, write
 
 
@@ -34,11 +34,11 @@ def project(folder: str = "requirements") -> Project:
     return found
 
 
-def requirements(folder: str = "requirements") -> list[Requirement]:
+def requirements(folder: str = "requirements") -> list[RequirementEntry]:
     return list(project(folder).requirements)
 
 
-def imported(fretc: Fretc, content: Any) -> list[Requirement]:
+def imported(fretc: Fretc, content: Any) -> list[RequirementEntry]:
     run = fretc("import", export(content))
     assert run.status == 0, run.err
     return requirements()
@@ -156,7 +156,7 @@ def test_an_object_has_variables_too(fretc: Fretc) -> None:
 def test_what_was_written_is_read_without_an_error(fretc: Fretc) -> None:
     fretc("import", export({"requirements": [ROVER, FREE], "variables": [STOPPED, SPEED]}))
     found = project()
-    assert [rule.id for rule in found.rules] == ["R-1"]
+    assert [requirement.id for requirement in found.formalized] == ["R-1"]
     assert [failed.diagnostic.code for failed in found.failed] == [Code.FREE_TEXT]
     assert found.declarations is not None
     stopped = found.declarations.variables["stopped"]
@@ -226,7 +226,7 @@ def test_null_and_lists_stand_where_there_is_no_text(fretc: Fretc) -> None:
         "status": None,
     }
     (found,) = imported(fretc, {"requirements": [record(**empty)], "variables": None})
-    assert found == Requirement("R1", found.wording)
+    assert found == RequirementEntry("R1", found.wording)
 
 
 def test_null_in_variables_is_nothing(fretc: Fretc) -> None:
@@ -410,14 +410,17 @@ def test_a_name_of_two_components_is_two_variables(fretc: Fretc) -> None:
     run = fretc("import", export(content))
     assert "F530" not in run.err
     assert run.err.endswith("imported 3 requirements, 2 variables\n")
-    rover, arm, hand = project().rules
-    assert [rule.glossary["speed"].role for rule in (rover, arm, hand)] == [
+    rover, arm, hand = project().formalized
+    assert [requirement.glossary["speed"].role for requirement in (rover, arm, hand)] == [
         "internal",
         "input",
         "internal",
     ]
-    assert [rule.glossary["speed"].type for rule in (rover, arm)] == ["double", "integer"]
-    values = [str(rule.ft_infinite) for rule in (rover, arm, hand)]
+    assert [requirement.glossary["speed"].type for requirement in (rover, arm)] == [
+        "double",
+        "integer",
+    ]
+    values = [str(requirement.ft_infinite) for requirement in (rover, arm, hand)]
     assert "3.0" in values[0]
     assert "3.0" in values[2]
     assert "3.0" not in values[1]
@@ -487,7 +490,7 @@ def test_files_that_are_there_are_not_overwritten(fretc: Fretc) -> None:
     assert fretc("import", path) == Run(
         2,
         "",
-        "F905 `requirements/bindings.toml` is there already\n"
+        "F905 `requirements/bindings.toml` already exists\n"
         "help: name another folder with `-o`, or write over it with `--force`\n",
     )
     assert written() == {"bindings.toml": "mine"}

@@ -8,15 +8,15 @@ from hypothesis import strategies as st
 
 from compiler.project.parent_graph import cycles, unknown_parents, without_hazard
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 NAMES = ("A", "B", "C", "D", "E")
 
 
-def written(parents: Mapping[str, str]) -> list[Requirement]:
+def written(parents: Mapping[str, str]) -> list[RequirementEntry]:
     """Requirements by their ids, each with the letters of its parents."""
     place = Source("r.fret", "x").span()
-    return [Requirement(id, place, parents=tuple(above)) for id, above in parents.items()]
+    return [RequirementEntry(id, place, parents=tuple(above)) for id, above in parents.items()]
 
 
 def messages(parents: Mapping[str, str]) -> list[str]:

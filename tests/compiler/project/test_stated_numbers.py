@@ -28,14 +28,14 @@ SENTENCE = "whenever near & battery < 20 the agv shall within 5 seconds satisfy 
 
 def codes(title: str = "", text: str = "", params: str = "") -> list[tuple[str, str]]:
     header = f'+++\nid = "R"\ntitle = "{title}"\ntext = "{text}"\nparams = {{{params}}}\n+++\n'
-    ((requirement,), wrong) = requirements(Source("r.fret", header + SENTENCE))
+    ((entry,), wrong) = requirements(Source("r.fret", header + SENTENCE))
     declared, mistakes = read_bindings(Source("bindings.toml", BINDINGS))
     assert not wrong
     assert not mistakes
-    rule, _ = formalize(requirement, declared)
-    assert rule is not None
-    assert rule.declarations is not None
-    diagnostics = check_stated_numbers(rule, rule.declarations)
+    requirement, _ = formalize(entry, declared)
+    assert requirement is not None
+    assert requirement.declarations is not None
+    diagnostics = check_stated_numbers(requirement, requirement.declarations)
     return [(each.code.name, each.span.text if each.span else "") for each in diagnostics]
 
 
@@ -76,10 +76,10 @@ def test_a_parameter_belongs_to_a_proposition_or_to_a_signal() -> None:
 
 def test_the_first_unit_of_a_project_is_noted_and_bare_numbers_are_not() -> None:
     def note(sentence: str) -> str | None:
-        ((requirement,), _) = requirements(Source("r.fret", sentence))
-        rule, _ = formalize(requirement, read_bindings(Source("bindings.toml", BINDINGS))[0])
-        assert rule is not None
-        found = first_unit([rule])
+        ((entry,), _) = requirements(Source("r.fret", sentence))
+        requirement, _ = formalize(entry, read_bindings(Source("bindings.toml", BINDINGS))[0])
+        assert requirement is not None
+        found = first_unit([requirement])
         return found.span.text if found is not None and found.span is not None else None
 
     assert note(SENTENCE) is None

@@ -22,14 +22,14 @@ from compiler.situations.situations import MEANINGS, Situation, situations
 from compiler.situations.thresholds import Place, places, written
 from fretish import expressions as e
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.printer import expression
 from fretish.printer import sentence as printed
 from fretish.syntax import Sentence
 from monitors.kernel.columns import Column
-from tests.bound_rules import bound_rule
+from tests.bound_requirements import bound_requirement
 from tests.effort import FULL
-from tests.emitting import rule
+from tests.emitting import requirement
 from tests.strategies import sentences
 
 PARTS = {"mode": 0, "condition": 1, "response": 2, "stop": 3}
@@ -52,10 +52,10 @@ class Judged:
     """A sentence of independent atoms, by its letters."""
 
     def __init__(self, sentence: str) -> None:
-        self.rule = rule(sentence)
-        self.atoms = tuple(sorted(self.rule.propositions))
-        self.letters = meanings(self.rule.sentence, self.atoms)
-        self.counted = reference.template(self.rule.sentence, self.rule.ticks or 0)
+        self.requirement = requirement(sentence)
+        self.atoms = tuple(sorted(self.requirement.propositions))
+        self.letters = meanings(self.requirement.sentence, self.atoms)
+        self.counted = reference.template(self.requirement.sentence, self.requirement.ticks or 0)
 
     def letter(self, row: Mapping[str, bool]) -> tuple[bool, bool, bool, bool]:
         return self.letters[tuple(row[name] for name in self.atoms)]
@@ -89,7 +89,7 @@ class Judged:
 @pytest.mark.parametrize("sentence", COMPOUND)
 def test_an_operand_decides_alone_where_its_opposite_leads_elsewhere(sentence: str) -> None:
     judged = Judged(sentence)
-    listed = {each.key: each for each in situations(judged.rule)}
+    listed = {each.key: each for each in situations(judged.requirement)}
     choose, seen = random.Random(sentence), set[str]()
     alone = {key for key in listed if key.startswith("alone-")}
     for number in range(500):
@@ -119,7 +119,7 @@ def test_an_unknown_decides_where_both_values_may_lead_elsewhere(sentence: str) 
     """The formula holds for certain, though the atom that it is about is unknown."""
     judged = Judged(sentence)
     choose, seen = random.Random(sentence), set[str]()
-    listed = [each for each in situations(judged.rule) if each.unknown is not None]
+    listed = [each for each in situations(judged.requirement) if each.unknown is not None]
     assert {each.unknown for each in listed} == {*judged.atoms}
     for each, number in product(listed, range(300)):
         assert each.unknown is not None
@@ -143,7 +143,7 @@ def test_an_unknown_decides_where_both_values_may_lead_elsewhere(sentence: str) 
 @pytest.mark.slow
 @given(sentences)
 def test_keys_are_unique_and_in_the_order_of_the_list(sentence: Sentence) -> None:
-    made, _ = formalize(Requirement("R1", Source("r.fret", printed(sentence)).span()), None)
+    made, _ = formalize(RequirementEntry("R1", Source("r.fret", printed(sentence)).span()), None)
     if made is None:
         return
     listed = situations(made)
@@ -180,7 +180,7 @@ expr = "abs(speed) < 0.010 m/s for 200 ms"
 
 
 def bound(sentence: str) -> FormalizedRequirement:
-    return bound_rule(sentence, BINDINGS)
+    return bound_requirement(sentence, BINDINGS)
 
 
 def thresholds(made: FormalizedRequirement) -> list[Situation]:

@@ -13,12 +13,12 @@ from fretish import expressions as e
 from fretish import syntax as s
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.parser import parse
 from fretish.printer import canonical
 from fretish.printer import sentence as printed
 from tests.effort import examples, some
-from tests.emitting import rule
+from tests.emitting import requirement
 from tests.strategies import sentences, templates
 
 CLOCK = """
@@ -34,7 +34,7 @@ max_age = "1 s"
 
 
 def formalized(sentence: str) -> FormalizedRequirement | None:
-    found, _ = formalize(Requirement("R1", Source("r.fret", sentence).span()), None)
+    found, _ = formalize(RequirementEntry("R1", Source("r.fret", sentence).span()), None)
     return found
 
 
@@ -42,7 +42,7 @@ def timed(sentence: str) -> FormalizedRequirement:
     """With a clock and a signal."""
     declarations, _ = read_bindings(Source("bindings.toml", CLOCK))
     found, diagnostics = formalize(
-        Requirement("R1", Source("r.fret", sentence).span()), declarations
+        RequirementEntry("R1", Source("r.fret", sentence).span()), declarations
     )
     assert found is not None, diagnostics
     return found
@@ -50,18 +50,18 @@ def timed(sentence: str) -> FormalizedRequirement:
 
 def assert_others(original: FormalizedRequirement, found: tuple[Mutant, ...]) -> None:
     """Each is a sentence of its own, that its text says; keys are unique, and in order."""
-    texts = [canonical(each.rule.written) for each in found]
+    texts = [canonical(each.requirement.written) for each in found]
     assert len({*texts, canonical(original.written)}) == len(texts) + 1
     assert len({each.key for each in found}) == len(found)
     order = [[*OPERATORS].index(each.key.partition(":")[0]) for each in found]
     assert order == sorted(order)
     for each in found:
-        read = parse(each.rule.requirement.wording)
+        read = parse(each.requirement.entry.wording)
         assert isinstance(read, s.Sentence)
-        assert read == each.rule.written
-        assert each.rule.id == original.id
-        assert each.rule.requirement.params == original.requirement.params
-        assert {*each.rule.variables} <= {*original.variables}
+        assert read == each.requirement.written
+        assert each.requirement.id == original.id
+        assert each.requirement.entry.params == original.entry.params
+        assert {*each.requirement.variables} <= {*original.variables}
 
 
 @pytest.mark.slow
@@ -76,17 +76,17 @@ def test_no_two_mutants_say_the_same_and_each_says_what_its_text_says(sentence: 
 @pytest.mark.slow
 def test_every_template_has_mutants_of_its_own() -> None:
     for drawn in some(templates((2,)), 17):  # each scope, condition and timing is among them
-        original = rule(drawn.sentence)
+        original = requirement(drawn.sentence)
         assert_others(original, mutants(original))
 
 
 def keys(sentence: str) -> list[str]:
-    return [each.key for each in mutants(rule(sentence))]
+    return [each.key for each in mutants(requirement(sentence))]
 
 
 def test_the_mutants_of_a_sentence() -> None:
-    original = rule("in m mode upon p & x < 1.20 the sw shall within 4 ticks satisfy q")
-    assert [(each.key, each.rule.requirement.wording.text) for each in mutants(original)] == [
+    original = requirement("in m mode upon p & x < 1.20 the sw shall within 4 ticks satisfy q")
+    assert [(each.key, each.requirement.entry.wording.text) for each in mutants(original)] == [
         (key, f"{scope}{condition} sw shall {timing} satisfy {response}".strip())
         for key, scope, condition, timing, response in EXPECTED
     ]
@@ -156,7 +156,7 @@ def test_an_operator_finds_its_place(sentence: str, expected: str) -> None:
 
 def test_a_bound_keeps_its_unit_where_it_can_and_a_threshold_its_own() -> None:
     made = mutants(timed("whenever person < 120 cm the sw shall within 1 second satisfy q"))
-    texts = {each.key: each.rule.requirement.wording.text for each in made}
+    texts = {each.key: each.requirement.entry.wording.text for each in made}
     assert "within 1100 milliseconds" in texts["bound:+1"]
     assert "within 2 seconds" in texts["bound:double"]
     assert "person < 121 cm" in texts["threshold:condition:person<121cm"]
@@ -164,8 +164,8 @@ def test_a_bound_keeps_its_unit_where_it_can_and_a_threshold_its_own() -> None:
 
 def test_a_mutant_keeps_what_its_requirement_states() -> None:
     made = timed("whenever person < 1.2 m the sw shall within 1 second satisfy q")
-    assert all(each.rule.declarations is not None for each in mutants(made))
-    assert all(each.rule.clock == made.clock for each in mutants(made))
+    assert all(each.requirement.declarations is not None for each in mutants(made))
+    assert all(each.requirement.clock == made.clock for each in mutants(made))
 
 
 def test_of_a_large_expression_no_part_is_changed_alone() -> None:

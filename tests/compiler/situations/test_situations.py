@@ -14,12 +14,11 @@ from compiler.logic.evaluation import evaluate
 from compiler.situations.demands import of_demand
 from compiler.situations.situations import Situation, situations
 from compiler.situations.tick_predicates import facts
-from fretc.analysis.arena.counters import Counter
-from fretc.analysis.arena.memory import Memory, Past
+from fretc.analysis.arena.memory import Counter, Memory, Past
 from fretc.analysis.arena.transition import Transition
 from tests import meaning
 from tests.compiler.situations.by_index import At, kind
-from tests.emitting import rule
+from tests.emitting import requirement
 from tests.strategies import Template, few_templates
 
 
@@ -53,7 +52,7 @@ def shown(listed: Sequence[Situation], columns: Mapping[str, Sequence[bool]]) ->
 def test_a_formula_says_what_its_words_say(scope: str) -> None:
     """Exactly, for recorded runs; for a search, demands may be left out once a deadline passed."""
     for drawn in of(scope):
-        made = rule(drawn.sentence)
+        made = requirement(drawn.sentence)
         recorded, searched = timed(made, exact=True), timed(made)
         assert [each.key for each in recorded] == [each.key for each in searched]
         if drawn.scope != "null" and "m" not in made.propositions:
@@ -126,19 +125,19 @@ def impossible(drawn: Template) -> set[str]:
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_each_situation_is_come_by_or_cannot_be(scope: str) -> None:
     for drawn in of(scope):
-        listed = situations(rule(drawn.sentence))
+        listed = situations(requirement(drawn.sentence))
         missing = {each.key for each in listed if not Search(each.formula).is_reached()}
         assert missing == impossible(drawn), drawn
 
 
 def test_no_key_is_given_twice() -> None:
     for drawn in few_templates((0, 2)):
-        keys = [key for key, _ in of_demand(facts(rule(drawn.sentence)))]
+        keys = [key for key, _ in of_demand(facts(requirement(drawn.sentence)))]
         assert len({*keys}) == len(keys), drawn
 
 
 def test_what_a_sentence_does_not_read_is_in_none_of_its_situations() -> None:
-    made = rule("only after m mode the sw shall immediately satisfy q")
+    made = requirement("only after m mode the sw shall immediately satisfy q")
     assert [each.key for each in situations(made)] == [
         "answered-at-once",
         "missed-by-one",
@@ -147,12 +146,12 @@ def test_what_a_sentence_does_not_read_is_in_none_of_its_situations() -> None:
 
 
 def test_a_sentence_that_looks_ahead_has_none() -> None:
-    assert situations(rule("whenever p the sw shall always satisfy occurs(2, q)")) == ()
+    assert situations(requirement("whenever p the sw shall always satisfy occurs(2, q)")) == ()
 
 
 def test_a_predicate_that_looks_back_is_read_as_it_is() -> None:
     """The condition holds from tick 2 on, where p has held for three ticks."""
-    made = rule("whenever persisted(2, p) the sw shall within 1 tick satisfy q")
+    made = requirement("whenever persisted(2, p) the sw shall within 1 tick satisfy q")
     listed = {each.key: each.formula for each in situations(made)}
     at_last_tick = evaluate(listed["answered-at-last-tick"], {"p": 0b1111, "q": 0b1000}, 4)
     assert at_last_tick == 0b1000
@@ -164,5 +163,5 @@ def test_a_predicate_that_looks_back_is_read_as_it_is() -> None:
 @pytest.mark.parametrize("timing", ["within", "for", "after"])
 @pytest.mark.parametrize("scope", ["", "in m mode", "only in m mode"])
 def test_a_long_bound_costs_bits_and_not_ticks(scope: str, timing: str, condition: str) -> None:
-    made = rule(f"{scope} {condition} the sw shall {timing} 10000 ticks satisfy q")
+    made = requirement(f"{scope} {condition} the sw shall {timing} 10000 ticks satisfy q")
     assert max(Search(each.formula).bits for each in situations(made)) <= 3 * 14 + 10

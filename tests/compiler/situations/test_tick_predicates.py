@@ -14,7 +14,7 @@ from compiler.logic.evaluation import evaluate
 from compiler.situations.tick_predicates import TickPredicates, facts
 from fretish.syntax import ConditionKind
 from tests import meaning
-from tests.emitting import rule
+from tests.emitting import requirement
 from tests.strategies import Template, few_templates
 
 Row = Mapping[str, bool]
@@ -86,7 +86,7 @@ def changed(counted: reference.Template, tick: Tick, letter: str) -> bool:
 @pytest.mark.parametrize("scope", meaning.SCOPES)
 def test_facts_are_those_of_the_definition(scope: str) -> None:
     for drawn in (each for each in few_templates() if each.scope == scope):
-        made = rule(drawn.sentence)
+        made = requirement(drawn.sentence)
         counted = reference.template(made.sentence, made.ticks or 0)
         for known in (facts(made), facts(made, exact=True)):
             distances = [distance(known, counted, back) for back in range(counted.ticks + 2)]
@@ -162,7 +162,7 @@ def assert_distances(
 
 
 def test_a_condition_that_cannot_trigger_again_is_not_asked_for() -> None:
-    known = facts(rule("upon p the sw shall within 2 ticks satisfy q"))
+    known = facts(requirement("upon p the sw shall within 2 ticks satisfy q"))
     assert known.whole.condition is ConditionKind.TRIGGER
     rows = [{"m": False, "p": True, "q": True, "s": False}] * 3
     run = Run(known, rows)

@@ -14,7 +14,7 @@ from compiler.targets.comparison_names import comparison_names, definitions
 from compiler.targets.ltl import text
 from compiler.targets.target import Options
 from fretish.printer import expression
-from tests.bound_rules import bound_rule
+from tests.bound_requirements import bound_requirement
 
 BINDINGS = """\
 [clock]
@@ -43,16 +43,16 @@ NAMES = {
 }
 
 
-def rule(sentence: str = SENTENCE, bindings: str = BINDINGS) -> FormalizedRequirement:
-    return bound_rule(sentence, bindings, "A1")
+def requirement(sentence: str = SENTENCE, bindings: str = BINDINGS) -> FormalizedRequirement:
+    return bound_requirement(sentence, bindings, "A1")
 
 
 def emitted(target: str, sentence: str = SENTENCE) -> str:
-    return "\n".join(file.text for file in TARGETS[target].emit([rule(sentence)]))
+    return "\n".join(file.text for file in TARGETS[target].emit([requirement(sentence)]))
 
 
 def test_names_are_readable_and_no_other_s() -> None:
-    assert definitions(rule(), comparison_names(rule())) == NAMES
+    assert definitions(requirement(), comparison_names(requirement())) == NAMES
 
 
 @pytest.mark.parametrize("target", ["hoa", "dot", "smv", "prism", "dafny", "ajpf"])
@@ -67,10 +67,10 @@ def test_each_language_has_the_same_names_with_their_definitions(target: str) ->
 
 @pytest.mark.parametrize("notation", ["spot", "nusmv"])
 def test_formulas_for_tools_have_them_too(notation: str) -> None:
-    told = text(rule(), Options(notation=notation))
+    told = text(requirement(), Options(notation=notation))
     assert re.search(r"G ?\(+battery_lt_20 & speed_gt_2\)? -> F", told)
     assert re.search(r"^  speed_gt_2_2 +speed > 2 m/s$", told, re.M)
-    assert "(battery < 20)" in text(rule())
+    assert "(battery < 20)" in text(requirement())
 
 
 def test_an_agent_believes_a_comparison_that_an_adapter_derives() -> None:
@@ -85,7 +85,9 @@ def test_what_no_numbers_make_stands_in_the_file() -> None:
 
 
 def test_a_name_does_not_depend_on_the_target_nor_on_where_it_stands() -> None:
-    turned = rule("whenever speed > 2 the agv shall immediately satisfy battery < 20 | speed_gt_2")
+    turned = requirement(
+        "whenever speed > 2 the agv shall immediately satisfy battery < 20 | speed_gt_2"
+    )
     names = comparison_names(turned)
     assert {*names.values()} == {"speed_gt_2_2", "battery_lt_20"}
 
@@ -94,7 +96,7 @@ def test_a_name_does_not_depend_on_the_target_nor_on_where_it_stands() -> None:
 
 
 def exclusions(sentence: str, bindings: str = BINDINGS) -> set[frozenset[tuple[str, bool]]]:
-    return {frozenset(each) for each in excluded(rule(sentence, bindings))}
+    return {frozenset(each) for each in excluded(requirement(sentence, bindings))}
 
 
 BOTH = "the agv shall always satisfy battery < 20 | battery > 30"
@@ -124,7 +126,7 @@ def test_no_trace_of_an_explanation_is_impossible() -> None:
             f"{word} battery < 20 the agv shall {timing} satisfy battery > 30 & mode = drive"
             " | mode = docking"
         )
-        asked = rule(sentence)
+        asked = requirement(sentence)
         found, never = examples(asked), excluded(asked)
         assert never
         assert found.violated
@@ -148,11 +150,11 @@ def test_no_trace_of_an_explanation_is_impossible() -> None:
     ],
 )
 def test_what_comparisons_make_constant_is_found(sentence: str, parts: set[bool]) -> None:
-    assert {value for _, value in constant_parts(rule(sentence))} == parts
+    assert {value for _, value in constant_parts(requirement(sentence))} == parts
 
 
 def test_the_greatest_constant_part_is_named() -> None:
     told = "the agv shall always satisfy speed > 1 & battery < 2 & (battery > 3 | battery > 4)"
-    ((part, value),) = constant_parts(rule(told))
+    ((part, value),) = constant_parts(requirement(told))
     assert not value
     assert expression(part) == "speed > 1 & battery < 2 & (battery > 3 | battery > 4)"

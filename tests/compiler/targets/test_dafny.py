@@ -19,10 +19,10 @@ from compiler.targets.dafny_claims import claims
 from fretish.bindings.declarations import Declarations, Form, Interception
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from monitors import interceptor as core
 from monitors.interceptor import Velocity
-from tests.bound_rules import declared
+from tests.bound_requirements import declared
 from tests.dafny_reader import Reader
 from tests.each import each
 from tests.effort import FULL, pairwise
@@ -85,8 +85,8 @@ def bound(text: str = BINDINGS) -> Declarations:
     return declared(text)
 
 
-def rule(sentence: str, declarations: Declarations | None = None) -> FormalizedRequirement:
-    requirement = Requirement("R1", Source("r.fret", sentence).span())
+def requirement(sentence: str, declarations: Declarations | None = None) -> FormalizedRequirement:
+    requirement = RequirementEntry("R1", Source("r.fret", sentence).span())
     made, diagnostics = formalize(requirement, declarations)
     assert made is not None, diagnostics
     return made
@@ -94,7 +94,7 @@ def rule(sentence: str, declarations: Declarations | None = None) -> FormalizedR
 
 def emitted(sentence: str, bindings: str | None = BINDINGS) -> str:
     declarations = bound(bindings) if bindings else None
-    made = rule(sentence, declarations)
+    made = requirement(sentence, declarations)
     assert TARGET.refuse(made) is None
     return text(made, declarations)
 
@@ -111,7 +111,7 @@ def test_the_step_and_the_definition_are_those_of_the_reference(
     kind: tuple[str, tuple[str, int]],
 ) -> None:
     condition, (timing, n) = kind
-    made = rule(f"{condition}robot shall {timing.format(n=n)} satisfy q")
+    made = requirement(f"{condition}robot shall {timing.format(n=n)} satisfy q")
     read = Reader(text(made, None))
     ticks = (n,) if "{n}" in timing else ()
     names = re.findall(r"(\w+): bool", re.findall(r"datatype Tick = .*", text(made, None))[0])
@@ -165,7 +165,7 @@ def interceptor_text(options: core.Options) -> str:
         form=Form.EVENT if options.event_driven else Form.TIMER,
         latching=options.latching,
     )
-    made = rule("robot shall eventually satisfy q")
+    made = requirement("robot shall eventually satisfy q")
     return text(made, replace(declarations, interceptor=node))
 
 
@@ -343,7 +343,9 @@ def test_a_lost_message_costs_the_time_to_the_next(requests: str, reach: str | N
     bindings = BINDINGS.replace("lost    = 1", f"lost = 2\n{requests}")
     found = emitted("whenever p robot shall eventually satisfy q", bindings)
     declarations = bound(bindings)
-    lines = claims(rule("whenever p robot shall eventually satisfy q", declarations), declarations)
+    lines = claims(
+        requirement("whenever p robot shall eventually satisfy q", declarations), declarations
+    )
     if reach is None:
         assert lines[-1].unshown is not None
         assert lines[-1].unshown.endswith("([assume] requests, lost and no heartbeat)")
@@ -373,7 +375,7 @@ def test_a_declared_delay_above_the_bound_is_not_claimed() -> None:
     ],
 )
 def test_what_has_no_proof_is_refused(sentence: str, message: str) -> None:
-    found = TARGET.refuse(rule(sentence))
+    found = TARGET.refuse(requirement(sentence))
     assert found is not None
     assert render(found).startswith(f"F601 Dafny cannot express {message}\n")
 
@@ -392,4 +394,6 @@ def test_the_command_writes_the_file(fretc: Callable[..., object], tmp_path: Pat
     )
     fretc("r1.fret", "--emit", "dafny")
     project = load(["r1.fret"])
-    assert (tmp_path / "build/r1.dfy").read_text() == text(project.rules[0], project.declarations)
+    assert (tmp_path / "build/r1.dfy").read_text() == text(
+        project.formalized[0], project.declarations
+    )

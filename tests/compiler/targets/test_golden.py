@@ -29,7 +29,7 @@ def test_the_papers_requirement(
     if target == "ajpf-bundle":  # compared in test_bundle.py: `run.py` is no golden file
         return
     options = Options(declarations=project.declarations, attribution=project.attribution)
-    for artifact in TARGETS[target].emit(project.rules, options):
+    for artifact in TARGETS[target].emit(project.formalized, options):
         if target.startswith("ros") and artifact.path.name in SHARED:
             continue
         golden(f"{target}/{artifact.path}", artifact.text)

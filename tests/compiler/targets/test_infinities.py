@@ -1,7 +1,7 @@
 """What an infinite number means, to all that read numbers; written from docs/bindings.md.
 
-In C, Rust and JavaScript, and live, samples are held against `sample` with every `invalid`, by
-`test_signals` of each language and `test_perception`; here `sample` is held against the page.
+In C, Rust and JavaScript, and live, samples are compared with `sample` with every `invalid`, by
+`test_signals` of each language and `test_perception`; here `sample` is compared with the page.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from compiler.targets.python import monitor as python
 from fretc.logs.signals.signals import sample
 from fretc.logs.stream import End, Stream
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from monitors.kernel.variable_tables import read_variables
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
@@ -92,7 +92,7 @@ class Bound:
 
 def rule_of(bound: Bound) -> FormalizedRequirement:
     source = Source("r.fret", SENTENCE)
-    found, wrong = formalize(Requirement("R1", source.span()), declare(bound.text))
+    found, wrong = formalize(RequirementEntry("R1", source.span()), declare(bound.text))
     assert found is not None, wrong
     return found
 

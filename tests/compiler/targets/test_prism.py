@@ -15,7 +15,7 @@ from tests import meaning
 from tests.compiler.formalization.test_pctl import CONDITIONS, SCOPES, TIMINGS, templates
 from tests.each import each
 from tests.effort import some
-from tests.emitting import MANY, PROBABLE, emitted, refused, rule
+from tests.emitting import MANY, PROBABLE, emitted, refused, requirement
 from tests.programs import package
 
 
@@ -78,7 +78,7 @@ ALL = list(templates("with probability >= 0.9"))
 @pytest.mark.slow
 @each("sentence", some(ALL, 7))
 def test_without_its_probabilities_it_is_the_future_time_formula(sentence: str) -> None:
-    formula = printing.future(rule(sentence).ft_infinite)
+    formula = printing.future(requirement(sentence).ft_infinite)
     assert same_language(without_probabilities(property_of(sentence)), formula)
 
 

@@ -35,7 +35,7 @@ from tests import c_monitors, node, rust_monitors
 from tests.command import Fretc, write
 from tests.each import each
 from tests.effort import FULL, some
-from tests.emitting import emitted, rule
+from tests.emitting import emitted, requirement
 from tests.monitoring import monitor
 from tests.programs import installed, needs, package
 
@@ -73,8 +73,8 @@ def _code(text: str) -> str:
 
 
 def about(names: Sequence[str], id: str = "R1") -> FormalizedRequirement:
-    """A rule that is broken where none of the names is true."""
-    return rule(f"the sw shall always satisfy {disjunction(names)}", id)
+    """A requirement that is broken where none of the names is true."""
+    return requirement(f"the sw shall always satisfy {disjunction(names)}", id)
 
 
 def disjunction(names: Sequence[str]) -> str:
@@ -115,7 +115,7 @@ def breaks(told: Sequence[Sequence[c_monitors.Outcome]]) -> list[int]:
 @pytest.mark.slow
 @every_name
 def test_python_runs_it(chunk: tuple[str, ...]) -> None:
-    machine = monitor(" ".join(about(chunk).requirement.wording.text.split()))
+    machine = monitor(" ".join(about(chunk).entry.wording.text.split()))
     rows = one_by_one(len(chunk))
     assert [*machine.PROPOSITIONS] == [*chunk]
     assert breaks([*c_monitors.of_python(machine, rows)]) == [len(chunk)]
@@ -185,7 +185,7 @@ def test_storm_reads_it(chunk: tuple[str, ...], tmp_path: Path) -> None:
         path.write_text(files["r1.prism"])
         program = stormpy.parse_prism_program(str(path))
         (asked,) = stormpy.parse_properties(files["r1.props"], program)
-        for name, new in TARGETS["prism"].names(rule(sentence)).items():
+        for name, new in TARGETS["prism"].names(requirement(sentence)).items():
             assert program.has_label(new), name
             assert f'"{new}"' in str(asked), name
 
@@ -196,7 +196,7 @@ def test_dafny_reads_it(tmp_path: Path) -> None:
     names = {*some(taken(), 8), *TABLES["Dafny"].words.intersection(taken())}
     with (tmp_path / "all.dfy").open("w") as file:
         for place, chunk in enumerate(parts(sorted(names), 200)):
-            (text,) = emitted("dafny", about(chunk).requirement.wording.text).values()
+            (text,) = emitted("dafny", about(chunk).entry.wording.text).values()
             file.write(f"module Chunk{place} {{\n{text}\n}}\n")
     command = [installed("dafny"), "/noVerify", "/compile:0", "all.dfy"]
     subprocess.run(command, cwd=tmp_path, check=True)
@@ -242,7 +242,7 @@ def test_nusmv_s_grammar_has_each_as_an_identifier() -> None:
 @pytest.mark.slow
 def test_ajpf_s_grammar_has_each_as_a_functor() -> None:
     for names in parts(taken(), 60):
-        (text,) = emitted("ajpf", about(names).requirement.wording.text).values()
+        (text,) = emitted("ajpf", about(names).entry.wording.text).values()
         assert not isinstance(psl.read(Source("r1.psl", text)), Diagnostic)
         for name, new in identifiers("ajpf", names).items():
             assert re.fullmatch(r"[a-z][A-Za-z0-9_]*", new), name
@@ -265,7 +265,7 @@ def test_lustre_has_no_assignment_with_its_own_words() -> None:
 def test_what_is_not_reserved_keeps_its_name(kind: str, names: list[str]) -> None:
     """And no two names become one, whatever the user calls the others."""
     sentence = f"the sw shall with probability >= 0.5 always satisfy {' | '.join(names)}"
-    subject = rule(sentence) if kind == "prism" else about(names)
+    subject = requirement(sentence) if kind == "prism" else about(names)
     found = TARGETS[kind].names(subject)
     assert len({found[name] for name in names}) == len(names)
     if kind in ("c", "rust", "smv", "prism"):
@@ -343,7 +343,7 @@ def test_a_monitor_with_such_names_is_proved(fretc: Fretc, names: tuple[str, ...
 
 def test_comments_and_json_give_the_map_back() -> None:
     sentence = "whenever T & class & int the sw shall eventually satisfy init"
-    assert renamed(rule(sentence)) == {
+    assert renamed(requirement(sentence)) == {
         "monitor": {"class": "class_"},
         "c": {"class": "class_2", "int": "int_2"},
         "ajpf": {"T": "v_T"},

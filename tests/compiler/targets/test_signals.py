@@ -26,7 +26,7 @@ from fretish.diagnostics.source import Source
 from fretish.units import ONE
 from monitors.kernel.verdicts import Truth
 from tests.effort import FULL
-from tests.emitting import rule
+from tests.emitting import requirement
 from tests.signal_policies import Case, audited_truth, collected, edge_cases, numbered
 from tests.signal_programs import LANGUAGES, Language, c, packed
 
@@ -63,8 +63,8 @@ OPTIMIZED = (
 @pytest.mark.parametrize("language", [*LANGUAGES, *(OPTIMIZED if FULL else ())], ids=str)
 def test_samples_say_what_they_say_in_an_audit(language: Language, tmp_path: Path) -> None:
     cases = [case for case, _ in audited()]
-    rules = [numbered(case, i) for i, case in enumerate(cases)]
-    run = language.runner(tmp_path, rules, language.cases(cases))
+    requirements = [numbered(case, i) for i, case in enumerate(cases)]
+    run = language.runner(tmp_path, requirements, language.cases(cases))
     rows = chain.from_iterable(row for case in cases for row in case.rows)
     records = struct.iter_unpack("=dQBdQBB", run(b"".join(map(packed, rows))))
     for case, expected in audited():
@@ -112,9 +112,9 @@ def of_words() -> Declarations:
 @pytest.mark.parametrize("language", LANGUAGES, ids=str)
 def test_words_durations_and_the_instants_of_a_tick(language: Language, tmp_path: Path) -> None:
     declarations = of_words()
-    subjects = [rule(f"the sw shall always satisfy {p.name}", p.name) for p in PROPOSITIONS]
-    rules = [replace(each, declarations=declarations) for each in subjects]
-    run = language.runner(tmp_path, rules, language.tick)
+    subjects = [requirement(f"the sw shall always satisfy {p.name}", p.name) for p in PROPOSITIONS]
+    requirements = [replace(each, declarations=declarations) for each in subjects]
+    run = language.runner(tmp_path, requirements, language.tick)
     choose = random.Random(7)
     ticks = [
         [

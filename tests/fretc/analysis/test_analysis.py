@@ -18,7 +18,7 @@ from fretc.analysis.verdicts import Completeness
 from fretish.bindings.declarations import Role
 from tests.each import each
 from tests.effort import FULL
-from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, roles, rule, staged
+from tests.requirement_sets import ROLES, analyzed, conflicts, drawn, requirement, roles, staged
 from tests.requirement_sets import named as named_true
 
 REALIZABLE, UNREALIZABLE = Verdict.REALIZABLE, Verdict.UNREALIZABLE
@@ -54,7 +54,7 @@ def published(
             sentence = record["fretish"]
             for name, value in (constants or {}).items():
                 sentence = re.sub(rf"\b{name}\b", str(value), sentence)
-            found.append(rule(record["id"], sentence))
+            found.append(requirement(record["id"], sentence))
     return sorted(found, key=lambda each: each.id)
 
 

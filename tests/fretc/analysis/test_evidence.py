@@ -55,17 +55,17 @@ def rules_of(
     (folder / "r.fret").write_text("\n".join(texts))
     (folder / "bindings.toml").write_text(tables)
     project = load([str(folder / "r.fret")])
-    assumed, mistakes = assumptions(project.rules, project.declarations)
+    assumed, mistakes = assumptions(project.formalized, project.declarations)
     assert mistakes == ()
-    return project.rules, assumed
+    return project.formalized, assumed
 
 
 def analyzed(
-    rules: tuple[FormalizedRequirement, ...], assumed: tuple[FormalizedRequirement, ...]
+    requirements: tuple[FormalizedRequirement, ...], assumed: tuple[FormalizedRequirement, ...]
 ) -> Document:
-    chosen = roles([*rules, *assumed])
+    chosen = roles([*requirements, *assumed])
     assert not isinstance(chosen, tuple)
-    return document(rules, assumed, analyze(rules, chosen, assumed), as_fret=False)
+    return document(requirements, assumed, analyze(requirements, chosen, assumed), as_fret=False)
 
 
 @pytest.fixture(scope="module")

@@ -13,14 +13,17 @@ from fretc.analysis.findings import Analysis, Inconsistency
 from fretc.analysis.games.squaring import IterativeSquaring
 from fretc.analysis.implications import inconsistencies
 from tests.effort import FULL, some
-from tests.requirement_sets import analyzed, drawn, rules, staged, terse
+from tests.requirement_sets import analyzed, drawn, requirements, staged, terse
 
 SETS = range(50) if FULL else range(33, 48)
 
 
 def formulas(sentences: Sequence[str]) -> dict[str, str]:
     """The future-time formula of each, by its id."""
-    return {rule.id: f"({printing.future(rule.ft_infinite)})" for rule in rules(*sentences)}
+    return {
+        requirement.id: f"({printing.future(requirement.ft_infinite)})"
+        for requirement in requirements(*sentences)
+    }
 
 
 def possible(parts: Iterable[str]) -> bool:

@@ -10,8 +10,8 @@ from fretc.analysis.findings import Analysis, Repair, Verdict
 from fretish.bindings.declarations import Role
 from fretish.clock import Clock
 from tests.effort import FULL
-from tests.monitoring import rule as timed
-from tests.requirement_sets import ROLES, analyzed, rule, rules, synthesized, terse
+from tests.monitoring import requirement as timed
+from tests.requirement_sets import ROLES, analyzed, requirement, requirements, synthesized, terse
 
 ONE_AT_A_TIME = (
     "upon a the sw shall immediately satisfy x",
@@ -120,11 +120,13 @@ def changed(
     sentences: Sequence[str], repair: Repair
 ) -> tuple[list[FormalizedRequirement], list[FormalizedRequirement]]:
     """The requirements of its conflict and the assumptions, as the repair has them."""
-    mine = [each for each in rules(*sentences) if each.id in repair.conflict]
+    mine = [each for each in requirements(*sentences) if each.id in repair.conflict]
     if repair.requirement is None:
-        return mine, [rule(f"A{i}", each) for i, each in enumerate(repair.sentences)]
+        return mine, [requirement(f"A{i}", each) for i, each in enumerate(repair.sentences)]
     (sentence,) = repair.sentences
-    return [rule(each.id, sentence) if each.id == repair.requirement else each for each in mine], []
+    return [
+        requirement(each.id, sentence) if each.id == repair.requirement else each for each in mine
+    ], []
 
 
 @pytest.mark.slow
@@ -142,8 +144,8 @@ def test_spot_proves_each_suggestion() -> None:
 
 def test_comparisons_of_the_environment_can_be_assumed_apart() -> None:
     given = [
-        rule("R1", "whenever t > 30 the sw shall immediately satisfy x"),
-        rule("R2", "whenever p < 2 the sw shall immediately satisfy !x"),
+        requirement("R1", "whenever t > 30 the sw shall immediately satisfy x"),
+        requirement("R2", "whenever p < 2 the sw shall immediately satisfy !x"),
     ]
     roles = {"t": Role.INPUT, "p": Role.INPUT, "x": Role.OUTPUT}
     (found,) = analyze(given, roles).repairs

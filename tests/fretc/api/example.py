@@ -9,10 +9,10 @@ import fretc
 
 def everything(folder: str, log: str) -> list[str]:
     project: fretc.Project = fretc.read_project(folder)
-    rule: fretc.FormalizedRequirement = fretc.formalize("the rover shall always satisfy p")
-    assert_type(fretc.formulas(rule), fretc.Formulas)
-    assert_type(fretc.formulas(rule).past, str | None)
-    monitor = fretc.load_monitor(*project.rules, rule)
+    requirement: fretc.FormalizedRequirement = fretc.formalize("the rover shall always satisfy p")
+    assert_type(fretc.formulas(requirement), fretc.Formulas)
+    assert_type(fretc.formulas(requirement).past, str | None)
+    monitor = fretc.load_monitor(*project.formalized, requirement)
     assert_type(monitor, fretc.Monitor)
     monitor.step(p=True)
     stream = fretc.Stream(project)
@@ -26,7 +26,7 @@ def everything(folder: str, log: str) -> list[str]:
     try:
         return [
             fretc.make_report(project).html,
-            fretc.monitor_text(rule),
+            fretc.monitor_text(requirement),
             *verdicts,
             str((ticks, proofs)),
         ]

@@ -34,7 +34,7 @@ def test_a_type_checker_sees_the_names_that_python_sees() -> None:
 
 
 def test_no_name_is_that_of_a_module() -> None:
-    """Whoever imported the module would find it in the place of the name."""
+    """Anyone who imported the module would find it in the place of the name."""
     modules = {module.name for module in pkgutil.iter_modules(fretc.__path__)}
     assert modules.isdisjoint(fretc.__all__)
 

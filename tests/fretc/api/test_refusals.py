@@ -28,15 +28,19 @@ CALLS: dict[str, tuple[Code, Callable[[fretc.Project], object]]] = {
         Code.TOO_DEEP,
         lambda _: fretc.formalize(f"r shall always satisfy {'!' * 3000}p"),
     ),
-    "no notation": (Code.BAD_USAGE, lambda p: fretc.formulas(p.rules[0], "prose")),
+    "no notation": (Code.BAD_USAGE, lambda p: fretc.formulas(p.formalized[0], "prose")),
     "no rule": (Code.NOTHING_TO_DO, lambda _: fretc.load_monitor()),
     "one id": (
         Code.DUPLICATE_ID,
-        lambda p: fretc.monitor_text(p.rules[0], fretc.formalize("r shall satisfy p", id="r1")),
+        lambda p: fretc.monitor_text(
+            p.formalized[0], fretc.formalize("r shall satisfy p", id="r1")
+        ),
     ),
     "two clocks": (
         Code.BAD_USAGE,
-        lambda p: fretc.monitor_text(p.rules[0], fretc.formalize("r shall satisfy p", id="R2")),
+        lambda p: fretc.monitor_text(
+            p.formalized[0], fretc.formalize("r shall satisfy p", id="R2")
+        ),
     ),
     "seconds without a clock": (
         Code.NO_CLOCK,

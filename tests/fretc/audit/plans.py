@@ -1,4 +1,4 @@
-"""What is planned for the project in the present folder."""
+"""What is planned for the project in the current folder."""
 
 from functools import cache
 from pathlib import Path

@@ -32,7 +32,7 @@ from tests.traces import MISSION, part
 ROOT = Path(__file__).parents[3]
 LOGS = [f"{number:02}.mcap" for number in range(12 if FULL else 6)]
 LONG = 300
-"""Seconds, of the clock: whoever waits so long for what is on its way waits in vain."""
+"""Seconds, of the clock: anyone who waits so long for what is on its way waits in vain."""
 
 pytestmark = pytest.mark.filterwarnings("ignore")  # Dask's own
 

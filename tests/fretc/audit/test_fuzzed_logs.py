@@ -135,7 +135,10 @@ class Bench:
         (folder / "bindings.toml").write_text(BINDINGS, "utf-8")
         self.project = project.load([str(folder / "r.fret")], str(folder / "bindings.toml"))
         assert not self.project.diagnostics
-        monitors = [load(f"{rule.id}_monitor", text(rule)) for rule in self.project.rules]
+        monitors = [
+            load(f"{requirement.id}_monitor", text(requirement))
+            for requirement in self.project.formalized
+        ]
         self.watched = [MonitoredRequirement(monitor, {}) for monitor in monitors]
         self.known = cache(self._known)
 

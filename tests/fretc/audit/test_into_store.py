@@ -175,7 +175,9 @@ def test_the_command_says_what_is_known_and_shows_all(fretc: Fretc) -> None:
     whole = fretc("audit", *LOGS)
     again = fretc("audit", *LOGS)
     assert (again.status, untimed(again.out)) == (whole.status, untimed(whole.out))
-    assert again.err == f"3 of 3 logs are unchanged: their results are known\n{whole.err}"
+    assert (
+        again.err == f"3 of 3 logs are unchanged: their earlier results are used again\n{whole.err}"
+    )
     fewer = fretc("audit", *LOGS[:2])
     assert "\n1 log of the store is not named this time: its results leave it\n" in fewer.err
 
@@ -343,7 +345,7 @@ def test_a_command_is_stopped_and_goes_on(fretc: Fretc, stop: signal.Signals) ->
     resumed = fretc("audit", *logs)
     assert resumed.status == 0
     if count:  # what a killed one has written counts only where it came to say so
-        told = f"{count} of 6 logs are unchanged: their results are known\n"
+        told = f"{count} of 6 logs are unchanged: their earlier results are used again\n"
         assert resumed.err.startswith(told)
     store = opened(str(STORE))
     assert isinstance(store, Store)
@@ -362,7 +364,9 @@ def test_two_audits_do_not_share_a_store(fretc: Fretc) -> None:
 # Somebody else's ---------------------------------------------------------------------------------
 
 
-FOREIGN = f"`{STORE}` was not written by you in this place: nothing of it is used\n"
+FOREIGN = (
+    f"`{STORE}` was written by another user or in another folder: its results are not used again\n"
+)
 
 
 @pytest.mark.slow

@@ -497,9 +497,9 @@ def recorded(
 @cache
 def monitor(sentence: str, clock: str) -> Monitor:
     read, _ = requirements(Source("R1.fret", sentence))
-    rule, diagnostics = formalize(read[0], declared(f"{clock}\n{BOUND}"))
-    assert rule is not None, diagnostics
-    return load("monitor", text(rule))
+    requirement, diagnostics = formalize(read[0], declared(f"{clock}\n{BOUND}"))
+    assert requirement is not None, diagnostics
+    return load("monitor", text(requirement))
 
 
 def declared(bindings: str) -> Declarations:

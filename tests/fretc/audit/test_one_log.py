@@ -60,11 +60,11 @@ def audited(
     sentence: str, recording: Recording, declarations: Declarations | None = None
 ) -> RunResult:
     bindings = declarations or declare(BINDINGS)
-    ((requirement,), _) = requirements(Source("R1.fret", sentence))
-    rule, diagnostics = formalize(requirement, bindings)
-    assert rule is not None, diagnostics
+    ((entry,), _) = requirements(Source("R1.fret", sentence))
+    requirement, diagnostics = formalize(entry, bindings)
+    assert requirement is not None, diagnostics
     watched = MonitoredRequirement(
-        load("monitor", text(rule)), HASHES | {"sentence": rule.fingerprint}
+        load("monitor", text(requirement)), HASHES | {"sentence": requirement.fingerprint}
     )
     (evidence,) = audit(recording, bindings, [watched])
     return evidence
@@ -193,13 +193,13 @@ def test_a_number_is_at_a_threshold_by_its_rounded_value_where_the_comparison_de
 ) -> None:
     bindings = declare(BINDINGS)
     sentence = "whenever near the rover shall immediately satisfy still"
-    ((requirement,), _) = requirements(Source("R1.fret", sentence))
-    rule, _ = formalize(requirement, bindings)
-    assert rule is not None
+    ((entry,), _) = requirements(Source("R1.fret", sentence))
+    requirement, _ = formalize(entry, bindings)
+    assert requirement is not None
     watched = MonitoredRequirement(
-        load("monitor", text(rule)),
-        HASHES | {"sentence": rule.fingerprint},
-        situations=situations(rule),
+        load("monitor", text(requirement)),
+        HASHES | {"sentence": requirement.fingerprint},
+        situations=situations(requirement),
     )
 
     def places(speed: float) -> dict[str, list[str]]:

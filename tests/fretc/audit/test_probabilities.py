@@ -123,7 +123,8 @@ def test_many_answers_support_it(fretc: Fretc) -> None:
         " all runs, with probability >= 0.9\n"
         "  ✔ supported     it lies between 0.9022 and 1.0000, so >= 0.9\n"
         "    33 of 33 triggers answered, 0 failed, 0 open, in 33 logs\n"
-        "    estimate 1.0000; bounds, by whole logs, at 95 % each: 0.9022 to 1.0000\n"
+        "    estimate 1.0000; bounds (the logs are the independent units) at 95 % each: 0.9022 "
+        "to 1.0000\n"
         f"    {AVERAGE}\n"
         "2 of 20 situations seen, 18 never: `fretc coverage` lists them\n"
         "33 runs \N{MULTIPLICATION SIGN} 1 requirement: 1 supported over all runs, "
@@ -459,7 +460,7 @@ def test_the_report_shows_the_interval_and_the_bound(fretc: Fretc) -> None:
     (section,) = content["requirements"]
     assert section["mark"]["word"] == section["probability"]["mark"]["word"] == "supported"
     assert section["probability"]["text"] == (
-        "Estimate 1.0000; bounds, by whole logs, 0.5109 to 1.0000; "
+        "Estimate 1.0000; bounds (the logs are the independent units) 0.5109 to 1.0000; "
         "the bound of the sentence is 0.5."
     )
     assert content["reservations"] == [f"R7 is supported: {AVERAGE}.", "R7 is a draft."]

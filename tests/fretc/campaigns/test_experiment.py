@@ -50,14 +50,14 @@ FREE = scan(*[INF] * 8)
 def test_the_requirements_of_the_mission_are_read_without_errors() -> None:
     read = project()
     assert not has_errors(read.diagnostics)
-    assert sorted(int(rule.id[1:]) for rule in read.rules) == list(range(1, 16))
-    assert all(requirement.parents for requirement in read.requirements)
+    assert sorted(int(requirement.id[1:]) for requirement in read.formalized) == list(range(1, 16))
+    assert all(entry.parents for entry in read.requirements)
 
 
 def test_they_use_at_least_six_templates() -> None:
     templates = set()
-    for rule in project().rules:
-        sentence = rule.sentence
+    for requirement in project().formalized:
+        sentence = requirement.sentence
         scope = sentence.scope.kind if sentence.scope else None
         condition = sentence.condition and sentence.condition.kind
         templates.add((scope, condition, type(sentence.timing)))

@@ -82,7 +82,7 @@ def realizable(found: dict[str, Any]) -> None:
         ),
         (
             lambda found: found["conflicts"].append(found["conflicts"][0]),
-            "✘     differs: a conflict is told twice\n",
+            "✘     differs: a conflict appears twice\n",
         ),
         (
             lambda found: found["terms"].pop(),

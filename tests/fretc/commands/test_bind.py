@@ -49,7 +49,7 @@ def test_a_draft_goes_to_a_file_and_never_over_one(fretc: Fretc) -> None:
     assert refused == Run(
         2,
         "",
-        "F905 `new/bindings.toml` is there already\n"
+        "F905 `new/bindings.toml` already exists\n"
         "help: name another file with `-o`, or write over it with `--force`\n",
     )
     assert Path("new/bindings.toml").read_text("utf-8") == "mine"

@@ -113,7 +113,7 @@ TOLD: dict[str, tuple[dict[str, str], list[str], list[str]]] = {
         ["F525"],
     ),
 }
-"""Edits of the requirement, what is told then, and what is not."""
+"""Edits of the requirement, what is reported then, and what is not."""
 
 
 @each("kind", TOLD)

@@ -110,7 +110,7 @@ def test_nothing_is_written_where_anything_is_there(fretc: Fretc, there: str) ->
     put(f"requirements/{there}", "mine")
     before = states()
     run = fretc("init")
-    assert (run.status, run.err.splitlines()[0]) == (2, "F905 `requirements` is there already")
+    assert (run.status, run.err.splitlines()[0]) == (2, "F905 `requirements` already exists")
     assert states() == before
 
 

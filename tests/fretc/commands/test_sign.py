@@ -181,7 +181,7 @@ def test_evidence_with_another_byte_is_not_signed(project: Fretc, data: st.DataO
 def test_a_statement_that_says_something_else_than_its_evidence_does_not_count(
     project: Fretc, lie: Any
 ) -> None:
-    """Whoever signs may sign anything; only what fretc makes of this evidence is taken."""
+    """Anyone who signs may sign anything; only what fretc makes of this evidence is taken."""
     from fretc.attestation.keys import private_key, signed_envelope
 
     assert project("sign", EVIDENCE, "--key", "ada").status == 0

@@ -201,7 +201,7 @@ def test_a_result_that_was_taken_out_is_found(audited: Fretc) -> None:
 def test_a_result_that_is_told_twice_is_found(audited: Fretc) -> None:
     results = json.loads(Path("build/evidence.json").read_text())["results"]
     changed(results=[*results, results[0]])
-    assert "✘ r1  differs: it is told twice\n" in audited("verify-evidence").out
+    assert "✘ r1  differs: it appears twice\n" in audited("verify-evidence").out
 
 
 def test_the_name_of_a_run_cannot_write_on_the_terminal(audited: Fretc) -> None:

@@ -1,4 +1,4 @@
-"""What a driver is told, from the tests of `fretc test`."""
+"""What a driver is reported, from the tests of `fretc test`."""
 
 from __future__ import annotations
 

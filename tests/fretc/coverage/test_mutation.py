@@ -31,7 +31,7 @@ from monitors.kernel.verdicts import Truth, Verdict
 from monitors.loading import load
 from tests.each import each
 from tests.effort import FULL, some
-from tests.emitting import rule
+from tests.emitting import requirement
 from tests.monitoring import packed
 from tests.strategies import Template, templates
 
@@ -80,11 +80,12 @@ def seen(found: Judgement) -> tuple[object, ...]:
 @pytest.mark.slow
 @each("sentence", some(SENTENCES, 2))
 def test_all_mutants_in_one_monitor_are_judged_as_each_by_its_own(sentence: str) -> None:
-    of = suspects(rule(sentence))
+    of = suspects(requirement(sentence))
     assert of.mutants
     assert not of.refused
     alone, *of_mutants = [
-        load("own", target.text(one)) for one in (rule(sentence), *(m.rule for m in of.mutants))
+        load("own", target.text(one))
+        for one in (requirement(sentence), *(m.requirement for m in of.mutants))
     ]
     for number, run in enumerate([*runs(sentence, 0.0), *runs(sentence, 0.15)]):
         trace, intact = trace_of(run, run[0] if number % 2 else None), number != 1
@@ -97,7 +98,7 @@ def test_all_mutants_in_one_monitor_are_judged_as_each_by_its_own(sentence: str)
 @pytest.mark.slow
 @each("template", [*templates((2,))][:: 30 if FULL else 90])
 def test_a_difference_is_there_whatever_the_unknown_values_were(template: Template) -> None:
-    of = suspects(rule(template.sentence))
+    of = suspects(requirement(template.sentence))
     for run in runs(template.sentence, 0.0):
         holes = [
             {**row, name: None} if tick == len(run) // 2 else row
@@ -119,7 +120,7 @@ def test_a_difference_is_there_whatever_the_unknown_values_were(template: Templa
 
 @pytest.mark.slow
 def test_known_runs_differ_where_verdicts_or_violated_ticks_do() -> None:
-    of = suspects(rule(SENTENCES[0]))
+    of = suspects(requirement(SENTENCES[0]))
     noticed = set[str]()
     for bits in product((False, True), repeat=6):
         values = [
@@ -136,7 +137,7 @@ def test_known_runs_differ_where_verdicts_or_violated_ticks_do() -> None:
 
 
 def test_what_is_unknown_notices_nothing() -> None:
-    of = suspects(rule(SENTENCES[3]))
+    of = suspects(requirement(SENTENCES[3]))
     own, *others = together(of, trace_of([dict.fromkeys("pq")] * 3))
     stuck = {"stuck:response-false", "stuck:response-true"}
     for mutant, other in zip(of.mutants, others, strict=True):
@@ -146,7 +147,7 @@ def test_what_is_unknown_notices_nothing() -> None:
 
 
 def surveyed() -> MutationResult:
-    of = suspects(rule(SENTENCES[3]))
+    of = suspects(requirement(SENTENCES[3]))
     first, second, *_ = of.mutants
     apart = {
         ("R1", first.key): (0, Difference("satisfied", "violated", 3)),
@@ -179,7 +180,7 @@ def test_what_no_run_notices_is_printed_with_its_sentence() -> None:
 
 
 def test_runs_without_a_verdict_say_so() -> None:
-    of = suspects(rule(SENTENCES[3]))
+    of = suspects(requirement(SENTENCES[3]))
     nothing = MutationResult(("a.mcap",), (of,), frozenset(), {}, ())
     (head, *_) = lines(nothing, {}, every=False)
     assert head[0].endswith("noticed; no run has a verdict on it")

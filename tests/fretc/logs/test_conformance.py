@@ -1,4 +1,4 @@
-"""All files of the MCAP conformance suite: each message is read, and no damage is told of."""
+"""All files of the MCAP conformance suite: each message is read, and no damage is reported."""
 
 import hashlib
 import struct

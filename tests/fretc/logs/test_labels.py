@@ -1,4 +1,4 @@
-"""Labels of a run: from its metadata, its path and the command; a stranger's texts stay texts."""
+"""Labels of a run: from its metadata, its path and the command; an untrusted texts stay texts."""
 
 from __future__ import annotations
 

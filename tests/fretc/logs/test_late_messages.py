@@ -71,7 +71,7 @@ def written(path: Path, some: list[Row], metadata: Mapping[str, dict[str, str]] 
 def test_a_proposition_is_unknown_where_a_message_was_late_and_else_what_it_is(
     tmp_path: Path, some: list[Row], lateness: int, unknown: str
 ) -> None:
-    """Held against the definition, message by message and tick by tick."""
+    """Compared with the definition, message by message and tick by tick."""
     path, on_unknown = written(tmp_path, some), f"on_unknown = {unknown}" if unknown else ""
     timely = bindings(unknown=on_unknown)
     waiting = bindings(f'lateness = "{lateness} ms"', on_unknown)

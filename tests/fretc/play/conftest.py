@@ -12,7 +12,7 @@ import pytest
 from fretc.play.page import html
 from fretc.play.starts import Start
 from tests.browsing import Visits
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.play_pages import HOSTILE, Open
 
 if TYPE_CHECKING:
@@ -31,9 +31,9 @@ def opened(visits: Visits, tmp_path: Path) -> Open:
         **options: Any,
     ) -> Page:
         path = tmp_path / f"{next(numbers)}.html"
-        rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences, 1)]
+        requirements = [requirement(sentence, f"R{i}") for i, sentence in enumerate(sentences, 1)]
         path.write_text(
-            html(rules, [(HOSTILE, HOSTILE)], starts, before, [HOSTILE]), encoding="utf-8"
+            html(requirements, [(HOSTILE, HOSTILE)], starts, before, [HOSTILE]), encoding="utf-8"
         )
         return visits.open(path, **options)
 

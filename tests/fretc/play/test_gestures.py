@@ -15,7 +15,7 @@ from fretc.play.page import html
 from fretish.diagnostics.diagnostic import has_errors
 from monitors.loading import load
 from tests.effort import FULL
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.play_pages import Open, everything, expected_to, told
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ class Model:
             for name, row in zip(("near", "stopped"), self.rows, strict=True)
         }
         for number, sentence in enumerate(SENTENCES, 1):
-            machine: Any = load("m.py", monitor_text(rule(sentence)))
+            machine: Any = load("m.py", monitor_text(requirement(sentence)))
             ends = found[f"R{number} if it ended here"] = []
             for row in zip(*self.rows, strict=True):
                 values = dict(zip(("near", "stopped"), row, strict=True))
@@ -144,7 +144,7 @@ def test_odd_words_stay_what_they_are(visits: Visits, tmp_path: Path) -> None:
     project = project_of([str(tmp_path / "r.fret")])
     assert not has_errors(project.diagnostics), project.diagnostics
     path = tmp_path / "p.html"
-    path.write_text(html(project.rules, [], []), encoding="utf-8")
+    path.write_text(html(project.formalized, [], []), encoding="utf-8")
     page = visits.open(path, address=f"#ticks={len(ODD)}")
     assert page.title() == "Play: r"
     page.locator("#grid td").first.focus()

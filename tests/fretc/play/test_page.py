@@ -32,7 +32,7 @@ from monitors.loading import load
 from tests.browsing import Visits, serious
 from tests.effort import some
 from tests.meaning import SCOPES
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.play_pages import HOSTILE, Open, address, everything, expected_to, lane, told
 from tests.strategies import templates
 
@@ -75,7 +75,7 @@ def test_the_verdicts_are_those_of_the_automaton(opened: Open, scope: str) -> No
     found = everything(opened(*[each.sentence for each in chosen], address=address(rows)))
     letters = [(m, p, q, s) for m, p, q, s in product((False, True), repeat=4)]
     for place, each in enumerate(chosen, 1):
-        subject = rule(each.sentence)
+        subject = requirement(each.sentence)
         counted = explore(template(subject.sentence, subject.ticks or 0), letters)
         known = [{n: row[n] for n in each.columns} for row in rows]
         expected = [*judged(counted, known)]
@@ -222,7 +222,7 @@ def test_a_saved_table_is_judged_alike_by_the_monitor(opened: Open, tmp_path: Pa
     assert path.name == "r1.csv"
     download.value.save_as(path)
     header, *rows = path.read_text("utf-8").splitlines()
-    machine: Any = load("monitor.py", monitor_text(rule(BATTERY)))
+    machine: Any = load("monitor.py", monitor_text(requirement(BATTERY)))
     assert header == ",".join(machine.VARIABLES)
     expected = []
     for row in rows:
@@ -242,7 +242,7 @@ def test_saved_tests_pass_with_the_monitor_and_give_the_trace_again(
     opened: Open, tmp_path: Path
 ) -> None:
     rows = [{"near": t in (1, 6), "stopped": None if t == 2 else t > 8} for t in range(12)]
-    rules = [rule(BATTERY, "R1"), rule(WITHIN, "R2")]
+    requirements = [requirement(BATTERY, "R1"), requirement(WITHIN, "R2")]
     page = opened(BATTERY, WITHIN, address=address(rows) + "&v.battery=0*4_20.5_u_19.75*6")
     shown = everything(page)
     with page.expect_download() as download:
@@ -252,7 +252,7 @@ def test_saved_tests_pass_with_the_monitor_and_give_the_trace_again(
     suite = read(str(path))
     assert isinstance(suite, Suite)
     assert [test.requirement for test in suite.tests] == ["R1", "R2"]
-    made, left = files(suite, rules, Form.PYTEST)
+    made, left = files(suite, requirements, Form.PYTEST)
     assert not left
     folder = tmp_path / "tests"
     folder.mkdir()
@@ -260,7 +260,7 @@ def test_saved_tests_pass_with_the_monitor_and_give_the_trace_again(
         (folder / each.path).write_text(each.text, encoding="utf-8")
     run = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(folder)]
     assert "2 passed" in subprocess.run(run, check=True, capture_output=True, text=True).stdout
-    again = opened(BATTERY, WITHIN, starts=[*of_suite(suite, rules)])
+    again = opened(BATTERY, WITHIN, starts=[*of_suite(suite, requirements)])
     again.locator("#which").select_option("")
     assert everything(again) == shown
     for beyond in ("inf", "1e20"):  # JSON has no infinite number, and no other writing of 1e20
@@ -282,7 +282,9 @@ def test_both_versions_stand_side_by_side(opened: Open) -> None:
     rows = [{"near": t in (1, 7), "stopped": t == 4} for t in range(14)]
     later = WITHIN.replace("2 ticks", "4 ticks")
     page = opened(later, WITHIN, before={"R1": "R2"}, address=address(rows))
-    machines = [load(f"{n}.py", monitor_text(rule(text))) for n, text in enumerate((later, WITHIN))]
+    machines = [
+        load(f"{n}.py", monitor_text(requirement(text))) for n, text in enumerate((later, WITHIN))
+    ]
     expected = []
     for row in rows:
         for machine in machines:

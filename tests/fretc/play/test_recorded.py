@@ -15,7 +15,7 @@ from fretc.play.starts import MOST, Start
 from monitors.kernel import Column, Monitor
 from monitors.loading import load
 from tests.effort import FULL
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.strategies import Template, templates
 
 TICKS = 400
@@ -31,7 +31,7 @@ def run_of(sentence: str, columns: dict[str, list[bool | None]]) -> Run:
         )
         for name, values in columns.items()
     }
-    subject = rule(sentence)
+    subject = requirement(sentence)
     return Run(subject, {name: made[name] for name in subject.watched}, times, "run.mcap")
 
 
@@ -61,7 +61,7 @@ def test_each_tick_of_a_window_is_judged_as_in_the_whole_run() -> None:
     for template in choose.sample([*templates((0, 2))], 60 if FULL else 30):
         columns = noise(template, choose)
         made = run_of(template.sentence, columns)
-        machine: Monitor = load("m.py", emitted.text(rule(template.sentence)))
+        machine: Monitor = load("m.py", emitted.text(requirement(template.sentence)))
         names = [*machine.PROPOSITIONS]
         whole = signals(machine, [{n: columns[n][t] for n in names} for t in range(TICKS)])
         for start in made.starts():

@@ -19,7 +19,7 @@ from fretc.play.versions import Side, Versions, side_by_side, versions
 from fretc.testing.runs import Absence, Difference, difference
 from fretish.diagnostics.diagnostic import has_errors
 from monitors.loading import load as monitor
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.strategies import Template, templates
 
 SECONDS = 60.0
@@ -45,7 +45,7 @@ def test_a_shortest_run_tells_two_sentences_apart_or_none_does() -> None:
         one = choose.choice(every)
         like = [e for e in every if (e.scope, e.condition) == (one.scope, one.condition)]
         other = choose.choice([each for each in like if each != one])
-        found = difference(rule(one.sentence), rule(other.sentence, "R2"), SECONDS)
+        found = difference(requirement(one.sentence), requirement(other.sentence, "R2"), SECONDS)
         assert not isinstance(found, Absence) or not found.why
         fates.add(type(found))
         length = 2 if isinstance(found, Absence) else min(2, found.word.ticks - 1)
@@ -64,8 +64,8 @@ def test_a_shortest_run_tells_two_sentences_apart_or_none_does() -> None:
 
 
 def named(sentence: str, id: str) -> FormalizedRequirement:
-    found = rule(sentence)
-    return replace(found, requirement=replace(found.requirement, id=id))
+    found = requirement(sentence)
+    return replace(found, entry=replace(found.entry, id=id))
 
 
 WITHIN = "whenever near the robot shall within {} ticks satisfy stopped"
@@ -113,7 +113,7 @@ def test_a_proof_about_numbers_says_that_floats_round() -> None:
         finite.append(machine.standings()[0].finite)
     assert finite == [True, False]
     (pair,) = versions(Side([new], {}, None), Side([old], {}, None), SECONDS).pairs
-    assert pair.note.endswith("proved, of exact numbers; floats round, which is not seen")
+    assert pair.note.endswith("proved, of exact numbers; rounding of floats is not modelled")
 
 
 def test_an_id_that_is_taken_gets_a_mark() -> None:
@@ -172,7 +172,7 @@ def test_what_reads_other_bindings_is_neither_the_same_nor_proved(
         (place / "bindings.toml").write_text(BINDINGS.format(**values))
         project = load([str(place / "r.fret")])
         assert not has_errors(project.diagnostics), project.diagnostics
-        sides.append(Side(project.rules, {}, project.declarations))
+        sides.append(Side(project.formalized, {}, project.declarations))
     found = versions(sides[0], sides[1], SECONDS)
     assert found.pairs == ()
     (note,) = found.notes
@@ -183,8 +183,10 @@ def test_what_reads_other_bindings_is_neither_the_same_nor_proved(
 
 
 def test_what_no_monitor_can_be_made_of_is_neither_new_nor_gone() -> None:
-    rules = [named(SAME, "A")]
-    found = versions(Side(rules, {"B": "why"}, None), Side([], {"A": "that", "B": "why"}, None), 1)
+    requirements = [named(SAME, "A")]
+    found = versions(
+        Side(requirements, {"B": "why"}, None), Side([], {"A": "that", "B": "why"}, None), 1
+    )
     assert found.notes == (
         "A: no monitor can be made of what it was: that",
         "B: no monitor can be made of what it was: why",

@@ -253,16 +253,23 @@ SITUATIONS = [
 
 def evidence(known: Project, *results: Mapping[str, Any]) -> dict[str, Any]:
     """A whole evidence file."""
-    bound = {rule.id: basis(known, rule.id)[BINDINGS_PART] for rule in known.rules}
+    bound = {
+        requirement.id: basis(known, requirement.id)[BINDINGS_PART]
+        for requirement in known.formalized
+    }
     measured = {each["requirement"] for each in results if "situations" in each}
     return {
         "schema": "fretc-evidence-1",
         "fretc": "0.1.0",
         "bindings": {"file": "bindings.toml", "sha256": of_all(bound)},
         "requirements": [
-            {"id": rule.id, "sentence": wording(rule.requirement), "sha256": rule.fingerprint}
-            | ({"situations": SITUATIONS} if rule.id in measured else {})
-            for rule in known.rules
+            {
+                "id": requirement.id,
+                "sentence": wording(requirement.entry),
+                "sha256": requirement.fingerprint,
+            }
+            | ({"situations": SITUATIONS} if requirement.id in measured else {})
+            for requirement in known.formalized
         ],
         "results": list(results),
     }

@@ -220,7 +220,7 @@ def forms(build: ReportBuild, results: Sequence[dict[str, Any]], known: Project)
     assert build.report is not None, build.diagnostics[0].message
     assert build.details is not None
     whole = build.report
-    log = json.loads(sarif(whole, build.details, known.rules, []))["runs"][0]["results"]
+    log = json.loads(sarif(whole, build.details, known.formalized, []))["runs"][0]["results"]
     return {
         "marks": {v.id: (v.mark.word, v.mark.suspect) for v in whole.requirements},
         "status": _status(whole),

@@ -11,7 +11,7 @@ from fretc.analysis.analysis import Options, analyze
 from fretc.analysis.evidence import Document, document
 from fretc.reproduction.outcome import Finding
 from fretc.reproduction.sets import compared
-from tests.requirement_sets import ROLES, rule, rules
+from tests.requirement_sets import ROLES, requirement, requirements
 
 SENTENCES = (
     "whenever a the sw shall within 2 ticks satisfy x",
@@ -20,7 +20,7 @@ SENTENCES = (
     "when a & b & !a the sw shall immediately satisfy y",
     "the sw shall always satisfy y | !y",
 )
-ASSUMED = (rule("A1", "whenever a the man shall at the next timepoint satisfy !a"),)
+ASSUMED = (requirement("A1", "whenever a the man shall at the next timepoint satisfy !a"),)
 
 
 def changes(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
@@ -49,7 +49,7 @@ def changes(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def test_no_change_of_an_analysis_stands() -> None:
-    members = rules(*SENTENCES)
+    members = requirements(*SENTENCES)
     now = analyze(members, ROLES, ASSUMED, Options(60))
     assert now.conflicts
     assert now.vacuous

@@ -15,7 +15,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from fretc.testing.conformance.conformance_run import ConformanceRun
 from fretc.testing.conformance.findings import Conformance
 from fretc.testing.conformance.program import Program
-from tests.requirement_sets import roles, rule, rules
+from tests.requirement_sets import requirement, requirements, roles
 
 SENTENCES = (
     "upon start the line shall within 3 ticks satisfy run",
@@ -25,8 +25,8 @@ SENTENCES = (
 INPUTS, OUTPUTS = ("start", "stop"), ("alarm", "run")
 PROMISE = "whenever start the plant shall for 3 ticks satisfy !stop"
 """Without it the first two fight."""
-ASSUMED = rule("A1", PROMISE)
-RULES: Mapping[str, FormalizedRequirement] = {each.id: each for each in rules(*SENTENCES)}
+ASSUMED = requirement("A1", PROMISE)
+RULES: Mapping[str, FormalizedRequirement] = {each.id: each for each in requirements(*SENTENCES)}
 RIGHT = """\
 import sys
 

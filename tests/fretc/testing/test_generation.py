@@ -1,4 +1,4 @@
-"""The tests that are made of a requirement, held against words that are listed one by one."""
+"""The tests that are made of a requirement, compared with words that are listed one by one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from fretc.testing.suite import Fate, Met, Obligation, Polarity, Test
 from fretc.testing.words import Word, defined, judged, letters
 from tests.each import each
 from tests.effort import FULL, some
-from tests.requirement_sets import rules
+from tests.requirement_sets import requirements
 
 SENTENCES = (
     "upon a the sw shall within 2 ticks satisfy x",
@@ -41,7 +41,7 @@ MOST = 1 << (12 if FULL else 8)
 @cache
 def made(*sentences: str) -> Batch:
     """The tests of the first sentence, which keep the others."""
-    first, *others = rules(*sentences)
+    first, *others = requirements(*sentences)
     return batch(first, others, 60)
 
 
@@ -74,12 +74,15 @@ def comes_by(word: Word, situation: Situation, last: int) -> bool:
 
 
 def manner(
-    rule: FormalizedRequirement, situation: Situation, word: Word, ending: tuple[int | None, bool]
+    requirement: FormalizedRequirement,
+    situation: Situation,
+    word: Word,
+    ending: tuple[int | None, bool],
 ) -> int | None:
     """How well a word shows a situation, 0 best; None: it does not show it.
 
     Args:
-        rule: the requirement.
+        requirement: the requirement.
         situation: one of it.
         word: it.
         ending: where the word breaks the requirement, and whether it is accepted.
@@ -89,7 +92,7 @@ def manner(
     if not comes_by(word, situation, last):
         return None
     if accepted:
-        return evaluate(rule.watch.owed, word.columns, word.ticks) >> last & 1
+        return evaluate(requirement.watch.owed, word.columns, word.ticks) >> last & 1
     if broken is None:
         return 2
     return 0 if broken == last and comes_by(word, situation, broken) else 1
@@ -98,17 +101,17 @@ def manner(
 Need = tuple[str, Polarity]
 
 
-def listed(rule: FormalizedRequirement) -> tuple[Mapping[Need, Mapping[int, int]], int]:
+def listed(requirement: FormalizedRequirement) -> tuple[Mapping[Need, Mapping[int, int]], int]:
     """Of each situation and polarity the length of a shortest word of each manner."""
     found: dict[Need, dict[int, int]] = {}
-    known = [each for each in situations(rule) if each.unknown is None]
+    known = [each for each in situations(requirement) if each.unknown is None]
     ticks = 0
-    for word in words(rule.watched):
+    for word in words(requirement.watched):
         ticks = word.ticks
-        ending = defined(rule, letters(rule, word))
+        ending = defined(requirement, letters(requirement, word))
         polarity = Polarity.KEPT if ending[1] else Polarity.BROKEN
         for situation in known:
-            how = manner(rule, situation, word, ending)
+            how = manner(requirement, situation, word, ending)
             if how is not None:
                 found.setdefault((situation.key, polarity), {}).setdefault(how, ticks)
     return found, ticks
@@ -118,11 +121,11 @@ def listed(rule: FormalizedRequirement) -> tuple[Mapping[Need, Mapping[int, int]
 @each("sentence", some(SENTENCES, 3))
 def test_no_shorter_word_shows_the_same(sentence: str) -> None:
     """What is impossible has no word among those that are listed, what is met no shorter one."""
-    (rule,) = rules(sentence)
+    (requirement,) = requirements(sentence)
     found = made(sentence)
     tests = {test.name: test for test in found.tests}
-    shortest, most = listed(rule)
-    by_key = {each.key: each for each in situations(rule)}
+    shortest, most = listed(requirement)
+    by_key = {each.key: each for each in situations(requirement)}
     for obligation in found.obligations:
         need = obligation.situation, obligation.polarity
         if obligation.polarity is Polarity.UNKNOWN:
@@ -134,7 +137,15 @@ def test_no_shorter_word_shows_the_same(sentence: str) -> None:
         assert obligation.outcome is Met.MET
         shown = [word_of(tests[name]) for name in obligation.tests]
         manners = [
-            (manner(rule, by_key[need[0]], word, defined(rule, letters(rule, word))), word.ticks)
+            (
+                manner(
+                    requirement,
+                    by_key[need[0]],
+                    word,
+                    defined(requirement, letters(requirement, word)),
+                ),
+                word.ticks,
+            )
             for word in shown
         ]
         best, length = min((how, ticks) for how, ticks in manners if how is not None)
@@ -148,7 +159,7 @@ def test_no_shorter_word_shows_the_same(sentence: str) -> None:
 @each("sentence", SENTENCES)
 def test_verdicts_are_those_of_the_formula(sentence: str) -> None:
     """The formula of finite traces, evaluated as it is defined, shares nothing with the search."""
-    (rule,) = rules(sentence)
+    (requirement,) = requirements(sentence)
     for test in made(sentence).tests:
         if test.polarity is Polarity.UNKNOWN:
             assert test.finite is None
@@ -158,54 +169,59 @@ def test_verdicts_are_those_of_the_formula(sentence: str) -> None:
             for row in test.rows
             for _ in range(row.count)
         ]
-        assert holds(rule.ft_finite, trace) is test.finite
+        assert holds(requirement.ft_finite, trace) is test.finite
 
 
 @pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_a_mutant_is_killed_or_judges_all_words_alike(sentence: str) -> None:
-    (rule,) = rules(sentence)
+    (requirement,) = requirements(sentence)
     found = made(sentence)
     tests = {test.name: word_of(test) for test in found.tests}
-    wrong = {each.key: each.rule for each in mutants(rule)}
+    wrong = {each.key: each.requirement for each in mutants(requirement)}
     for mutant in found.mutants:
         other = wrong[mutant.key]
-        atoms = tuple(dict.fromkeys([*rule.watched, *other.watched]))
+        atoms = tuple(dict.fromkeys([*requirement.watched, *other.watched]))
         if mutant.outcome is Fate.KILLED:
             assert any(
-                defined(rule, letters(rule, tests[name]))
+                defined(requirement, letters(requirement, tests[name]))
                 != defined(other, letters(other, tests[name]))
                 for name in mutant.tests
             )
         else:
             assert mutant.outcome is Fate.EQUIVALENT
             for word in words(atoms):
-                own, theirs = letters(rule, word), letters(other, word)
-                assert defined(rule, own)[1] is defined(other, theirs)[1]
+                own, theirs = letters(requirement, word), letters(other, word)
+                assert defined(requirement, own)[1] is defined(other, theirs)[1]
 
 
 @pytest.mark.slow
 @each("sentence", SENTENCES)
 def test_what_is_unknown_decides_and_no_shorter_run_depends_on_it(sentence: str) -> None:
     """Both values are tried at the tick; shorter words are listed, with each tick in turn."""
-    (rule,) = rules(sentence)
+    (requirement,) = requirements(sentence)
     found = made(sentence)
     tests = {test.name: test for test in found.tests}
-    by_key = {each.key: each for each in situations(rule)}
+    by_key = {each.key: each for each in situations(requirement)}
     for obligation in found.obligations:
         situation = by_key[obligation.situation]
         if situation.unknown is None:
             continue
         (name,) = obligation.tests
         least = next(
-            (word.ticks for word in words(rule.watched) if depends(rule, situation, word)), None
+            (
+                word.ticks
+                for word in words(requirement.watched)
+                if depends(requirement, situation, word)
+            ),
+            None,
         )
         assert least is None or least == tests[name].ticks
         assert tests[name].finite is None
         assert sum(row.values[situation.unknown] is None for row in tests[name].rows) == 1
 
 
-def depends(rule: FormalizedRequirement, situation: Situation, word: Word) -> bool:
+def depends(requirement: FormalizedRequirement, situation: Situation, word: Word) -> bool:
     """Whether the verdict of a word depends on an atom at a tick of the situation."""
     atom = situation.unknown
     assert atom is not None
@@ -213,13 +229,13 @@ def depends(rule: FormalizedRequirement, situation: Situation, word: Word) -> bo
     for tick in range(word.ticks):
         other = {**word.columns, atom: word.columns[atom] ^ 1 << tick}
         opposite = Word(word.rows, other, word.ticks)
-        if column >> tick & 1 and verdict(rule, word) is not verdict(rule, opposite):
+        if column >> tick & 1 and verdict(requirement, word) is not verdict(requirement, opposite):
             return True
     return False
 
 
-def verdict(rule: FormalizedRequirement, word: Word) -> bool:
-    return defined(rule, letters(rule, word))[1]
+def verdict(requirement: FormalizedRequirement, word: Word) -> bool:
+    return defined(requirement, letters(requirement, word))[1]
 
 
 def test_a_threshold_is_met_by_its_number() -> None:
@@ -247,7 +263,7 @@ def test_the_other_requirements_are_kept() -> None:
     found = made(*sentences)
     for test in found.tests:
         word = word_of(test)
-        assert all(not judged(other, word).breach for other in rules(*sentences)[1:])
+        assert all(not judged(other, word).breach for other in requirements(*sentences)[1:])
 
 
 @pytest.mark.slow
@@ -290,7 +306,7 @@ def test_what_has_no_counter_is_not_searched() -> None:
 
 
 def test_time_that_is_over_is_said() -> None:
-    first, *_ = rules("upon a the sw shall within 2 ticks satisfy x")
+    first, *_ = requirements("upon a the sw shall within 2 ticks satisfy x")
     found = batch(first, [], 1e-9)
     assert found.tests == ()
     assert all("not answered within" in each.why for each in found.obligations)

@@ -1,4 +1,4 @@
-"""Each of FRET's templates: what its tests show, held against two definitions of their own."""
+"""Each of FRET's templates: what its tests show, compared with two definitions of their own."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from fretc.testing.generation import batch
 from fretc.testing.suite import Fate, Met, Polarity
 from tests.each import each
 from tests.effort import some
-from tests.requirement_sets import rule
+from tests.requirement_sets import requirement
 from tests.strategies import Template, few_templates
 
 TRIED = some(few_templates((0, 1, 2, 3)), 5)
@@ -53,10 +53,10 @@ def accept_the_same(one: FormalizedRequirement, other: FormalizedRequirement) ->
 @pytest.mark.slow
 @each("template", TRIED)
 def test_all_is_met_or_impossible_and_killed_or_equivalent(template: Template) -> None:
-    subject = rule("R1", template.sentence)
+    subject = requirement("R1", template.sentence)
     found = batch(subject, [], 60)
     assert {each.outcome for each in found.obligations} <= {Met.MET, Met.IMPOSSIBLE}
-    wrong = {each.key: each.rule for each in mutants(subject)}
+    wrong = {each.key: each.requirement for each in mutants(subject)}
     for mutant in found.mutants:
         same = accept_the_same(subject, wrong[mutant.key])
         assert mutant.outcome is (Fate.EQUIVALENT if same else Fate.KILLED), mutant

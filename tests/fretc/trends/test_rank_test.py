@@ -1,4 +1,4 @@
-"""The test is exact: it is held against its definition, against scipy, and against chance."""
+"""The test is exact: it is compared with its definition, against scipy, and against chance."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from fretc.verification.ajpf_results import ajpf_proofs, merged, read
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from tests.command import Fretc
-from tests.compiler.targets.ajpf.test_bundle import R1, rule
+from tests.compiler.targets.ajpf.test_bundle import R1, requirement
 from tests.compiler.targets.ajpf.test_runner import ENDING, RECORDED, Mcapl
 from tests.effort import some
 from tests.proofs import outcome
@@ -67,7 +67,9 @@ def ran(ran_once: Mcapl, tmp_path: Path) -> Mcapl:
 
 
 def only(mcapl: Mcapl, other: FormalizedRequirement | None = None) -> Proof:
-    (proof,), diagnostics = ajpf_proofs([other or rule(R1)], [str(mcapl.bundle / "result.json")])
+    (proof,), diagnostics = ajpf_proofs(
+        [other or requirement(R1)], [str(mcapl.bundle / "result.json")]
+    )
     assert not diagnostics
     return proof
 
@@ -137,11 +139,11 @@ def test_a_result_about_other_texts_is_stale(ran: Mcapl, name: str) -> None:
 
 @pytest.mark.slow
 def test_a_result_of_the_requirement_as_it_was_is_stale(ran: Mcapl) -> None:
-    now = rule(R1.replace("whenever", "upon"))
+    now = requirement(R1.replace("whenever", "upon"))
     result = outcome(only(ran, now))
     assert result.result is Result.NOT_CHECKED
     assert "SIF.psl" in result.detail
-    gone = rule(R1.replace("eventually", "always"))
+    gone = requirement(R1.replace("eventually", "always"))
     result = outcome(only(ran, gone))
     assert result.result is Result.NOT_CHECKED
     assert result.detail.startswith("no bundle is made of R1 any more: F614 ")
@@ -255,7 +257,9 @@ def test_a_wrong_shape_within_is_refused(ran: Mcapl, change: Change) -> None:
 
 
 def test_a_result_about_another_requirement_is_told_and_does_not_count(ran: Mcapl) -> None:
-    lines, (diagnostic,) = ajpf_proofs([rule(R1, id="R2")], [str(ran.bundle / "result.json")])
+    lines, (diagnostic,) = ajpf_proofs(
+        [requirement(R1, id="R2")], [str(ran.bundle / "result.json")]
+    )
     assert lines == ()
     assert diagnostic.code is Code.FOREIGN_AJPF_RESULT
     assert not diagnostic.is_error
@@ -278,7 +282,7 @@ def test_what_a_file_of_proofs_says_of_ajpf_gives_way_to_the_result_itself(ran: 
 
 @pytest.mark.slow
 def test_a_weaker_property_does_not_show_the_requirement(ran: Mcapl) -> None:
-    formalized = rule("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
+    formalized = requirement("whenever too_close agilex_agent shall within 3 ticks satisfy stopped")
     for artifact in emit([formalized], Options(weaken=True)):
         ran.write(ran.folder / artifact.path, artifact.text)
     assert ran.run().returncode == 0

@@ -41,19 +41,19 @@ def declared(**values: str) -> tuple[Declarations | None, tuple[Diagnostic, ...]
 def outcome(text: str, **values: str) -> FormalizedRequirement | tuple[Diagnostic, ...]:
     declarations, wrong = declared(**values)
     assert declarations is not None, wrong
-    ((requirement,), _) = requirements(Source("r.fret", f"the agv shall always satisfy {text}"))
-    rule, said = formalize(requirement, declarations)
-    return tuple(each for each in said if each.is_error) if rule is None else rule
+    ((entry,), _) = requirements(Source("r.fret", f"the agv shall always satisfy {text}"))
+    requirement, said = formalize(entry, declarations)
+    return tuple(each for each in said if each.is_error) if requirement is None else requirement
 
 
-def rule(text: str, **values: str) -> FormalizedRequirement:
+def requirement(text: str, **values: str) -> FormalizedRequirement:
     found = outcome(text, **values)
     assert isinstance(found, FormalizedRequirement), found
     return found
 
 
 def judged(text: str, **values: str) -> str:
-    whole = printed(rule(text, **values).sentence)
+    whole = printed(requirement(text, **values).sentence)
     return whole.removeprefix("the agv shall always satisfy ")
 
 
@@ -84,7 +84,7 @@ def test_a_name_stands_for_its_value(text: str, values: dict[str, str], whole: s
 
 
 def test_what_was_written_stays_and_places_are_in_the_sentence() -> None:
-    found = rule("speed < limit", limit="1.5 m/s")
+    found = requirement("speed < limit", limit="1.5 m/s")
     assert printed(found.written) == "the agv shall always satisfy speed < limit"
     assert found.watched == ("(speed < 5.4)",)
     wrong = outcome("speed < limit", limit="1.5 m")
@@ -96,9 +96,9 @@ def test_what_was_written_stays_and_places_are_in_the_sentence() -> None:
 
 
 def test_another_value_is_another_requirement() -> None:
-    first, second = rule("a & m", m="b | c"), rule("a & m", m="b & c")
+    first, second = requirement("a & m", m="b | c"), requirement("a & m", m="b & c")
     assert first.fingerprint != second.fingerprint
-    assert first.fingerprint == rule("a & m", m="b | c", unused="x").fingerprint
+    assert first.fingerprint == requirement("a & m", m="b | c", unused="x").fingerprint
 
 
 def test_the_kind_of_a_value_is_that_of_its_place() -> None:
@@ -117,7 +117,7 @@ def test_the_kind_of_a_value_is_that_of_its_place() -> None:
 def test_a_circle_is_shown(values: dict[str, str], names: str) -> None:
     declarations, (mistake,) = declared(**values)
     assert declarations is None
-    assert mistake.message == f"the values of variables lead in a circle: {names}"
+    assert mistake.message == f"the values of variables form a cycle: {names}"
 
 
 @pytest.mark.parametrize("name", ["speed", "FTP"])

@@ -38,10 +38,10 @@ def messages(text: str) -> list[str]:
     ]
     declarations, said = read_bindings(Source("bindings.toml", "".join(tables)))
     assert declarations is not None, said
-    ((requirement,), _) = requirements(Source("r.fret", f"the sw shall always satisfy {text}"))
-    rule, remarks = formalize(requirement, declarations)
+    ((entry,), _) = requirements(Source("r.fret", f"the sw shall always satisfy {text}"))
+    requirement, remarks = formalize(entry, declarations)
     mistakes = [each for each in remarks if each.is_error]
-    assert (rule is None) == bool(mistakes)
+    assert (requirement is None) == bool(mistakes)
     assert all(each.code is Code.VARIABLE_TYPE for each in mistakes)
     return [each.message for each in mistakes]
 

@@ -29,13 +29,15 @@ def diagnostics_of(kind: str, declared: str, example: str) -> list[Diagnostic]:
         assert beside is not None, wrong
     written, diagnostics = requirements(Source("r.fret", example.strip("\n")))
     found: list[Diagnostic] = [*diagnostics, *duplicate_ids(written).values()]
-    for requirement in written:
-        rule, remarks = formalize(requirement, beside)
+    for entry in written:
+        requirement, remarks = formalize(entry, beside)
         found.extend(remarks)
         found.extend(
-            check_stated_numbers(rule, rule.declarations) if rule and rule.declarations else ()
+            check_stated_numbers(requirement, requirement.declarations)
+            if requirement and requirement.declarations
+            else ()
         )
-        remark = monitor.remark(rule) if rule else None
+        remark = monitor.remark(requirement) if requirement else None
         found.extend([remark] if remark else [])
     return found
 

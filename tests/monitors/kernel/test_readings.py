@@ -1,4 +1,4 @@
-"""Words and truth values of a tick; numbers are held against an audit with the comparisons."""
+"""Words and truth values of a tick; numbers are compared with an audit with the comparisons."""
 
 import numpy as np
 import pytest

@@ -18,7 +18,7 @@ from monitors.kernel.outcomes import stepped as run_by_steps
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
 from tests.effort import FULL
-from tests.monitoring import emitted, monitor, packed, rule, step
+from tests.monitoring import emitted, monitor, packed, requirement, step
 
 WINDOW = "sw shall always satisfy (p | occurred(2, 5, q))"
 SENTENCES = (
@@ -379,7 +379,7 @@ def test_a_monitor_goes_on_from_its_state(unknown: float) -> None:
 
 
 def monitor_of(*named: tuple[str, str], clock: Clock | None = None) -> Monitor:
-    return load("m", target.text(*(rule(text, id, clock) for id, text in named)))
+    return load("m", target.text(*(requirement(text, id, clock) for id, text in named)))
 
 
 A = ("A", "whenever p sw shall within 5 ticks satisfy q")

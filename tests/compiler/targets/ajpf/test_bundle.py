@@ -18,12 +18,12 @@ from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from tests.bound_rules import bound_rule
+from tests.bound_requirements import bound_requirement
 from tests.command import Fretc
 from tests.programs import installed, needs
 
 ROOT = Path(__file__).parents[4]
-rule = bound_rule
+requirement = bound_requirement
 R1 = "whenever too_close agilex_agent shall eventually satisfy stopped"
 WEAKEN = Options(weaken=True)
 
@@ -40,7 +40,7 @@ def plans(files: dict[str, str], name: str = "SIF.gwen") -> list[str]:
 
 
 def refused(sentence: str, bindings: str | None = None) -> Diagnostic:
-    diagnostic = refusal(rule(sentence, bindings=bindings))
+    diagnostic = refusal(requirement(sentence, bindings=bindings))
     assert diagnostic is not None
     assert diagnostic.help
     return diagnostic
@@ -51,7 +51,7 @@ def refused(sentence: str, bindings: str | None = None) -> Diagnostic:
 
 def test_the_bundle_of_the_papers_requirement(golden: Callable[[str, str], None]) -> None:
     bindings = (ROOT / "requirements/bindings.toml").read_text(encoding="utf-8")
-    files = bundle(rule(R1, bindings=bindings))
+    files = bundle(requirement(R1, bindings=bindings))
     assert sorted(files) == [
         f"r1_ajpf/{name}"
         for name in (
@@ -75,7 +75,7 @@ def test_the_bundle_of_the_papers_requirement(golden: Callable[[str, str], None]
 
 
 def test_what_is_emitted_is_what_the_paper_lists_apart_from_its_environment() -> None:
-    files = bundle(rule(R1))
+    files = bundle(requirement(R1))
     agent = gwendolen.read(Source("SIF.gwen", files["r1_ajpf/SIF.gwen"]))
     assert not isinstance(agent, Diagnostic)
     assert agent.name == "agilex_agent"
@@ -92,7 +92,7 @@ def test_what_is_emitted_is_what_the_paper_lists_apart_from_its_environment() ->
 
 
 def test_the_layer_shows_what_the_manifest_expects() -> None:
-    made = rule(R1)
+    made = requirement(R1)
     files = {path.partition("/")[2]: text for path, text in bundle(made).items()}
     found = agent_evidence(made, files, ["too_close"])
     assert [(line.requirement, line.result) for line in found] == [("R1", "proved")] * 4
@@ -144,14 +144,14 @@ def test_the_layer_shows_what_the_manifest_expects() -> None:
 def test_a_plan_for_each_event_that_can_make_the_condition_true(
     sentence: str, agent: list[str], mutant: list[str]
 ) -> None:
-    files = bundle(rule(sentence))
+    files = bundle(requirement(sentence))
     assert plans(files) == agent
     assert plans(files, "SIF_mutant.gwen") == mutant
 
 
 @pytest.mark.slow
 def test_an_agent_that_responds_too_often_says_so() -> None:
-    made = rule("whenever a & !b the ag shall eventually satisfy r")
+    made = requirement("whenever a & !b the ag shall eventually satisfy r")
     assert TARGET.remark is not None
     diagnostic = TARGET.remark(made)
     assert diagnostic is not None
@@ -161,8 +161,8 @@ def test_an_agent_that_responds_too_often_says_so() -> None:
     assert json.loads(files["r1_ajpf/manifest.json"])["over_responds"]
     assert "// It responds to every event" in files["r1_ajpf/SIF.gwen"]
     for sentence in ("whenever a & b the ag shall satisfy r", "whenever a the ag shall satisfy r"):
-        assert TARGET.remark(rule(sentence)) is None
-        files = bundle(rule(sentence))
+        assert TARGET.remark(requirement(sentence)) is None
+        files = bundle(requirement(sentence))
         assert not json.loads(files["r1_ajpf/manifest.json"])["over_responds"]
         assert "// It responds to every event" not in files["r1_ajpf/SIF.gwen"]
 
@@ -174,7 +174,7 @@ def test_where_neither_form_is_shown_to_keep_it_there_is_none() -> None:
 
 def test_a_response_that_is_an_action_is_that_action() -> None:
     modality = '[variable.halt]\nmodality = "D"\n'
-    files = bundle(rule("whenever a the ag shall satisfy halt", bindings=modality))
+    files = bundle(requirement("whenever a the ag shall satisfy halt", bindings=modality))
     assert plans(files) == ["+a : {True} <- halt;"]
     assert plans(files, "SIF_mutant.gwen") == ["+a : {True};"]
     assert "D(ag,halt)" in files["r1_ajpf/SIF.psl"]
@@ -182,7 +182,7 @@ def test_a_response_that_is_an_action_is_that_action() -> None:
 
 @pytest.mark.slow
 def test_the_mode_of_a_scope_is_drawn_too() -> None:
-    files = bundle(rule("after m mode whenever a the ag shall eventually satisfy r"))
+    files = bundle(requirement("after m mode whenever a the ag shall eventually satisfy r"))
     manifest = json.loads(files["r1_ajpf/manifest.json"])
     assert manifest["percepts"] == ["m", "a"]
     assert manifest["responses"] == ["r"]
@@ -192,10 +192,10 @@ def test_a_deadline_is_lost_only_where_that_is_asked_for() -> None:
     sentence = "whenever a the ag shall within 3 ticks satisfy r"
     assert refused(sentence).code is Code.NOT_EXPRESSIBLE
     assert TARGET.weak is not None
-    assert TARGET.weak.refuse(rule(sentence)) is None
-    manifest = json.loads(bundle(rule(sentence), WEAKEN)["r1_ajpf/manifest.json"])
+    assert TARGET.weak.refuse(requirement(sentence)) is None
+    manifest = json.loads(bundle(requirement(sentence), WEAKEN)["r1_ajpf/manifest.json"])
     assert manifest["weakened"].startswith("`within 3 ticks` has lost its bound")
-    assert json.loads(bundle(rule(R1))["r1_ajpf/manifest.json"])["weakened"] is None
+    assert json.loads(bundle(requirement(R1))["r1_ajpf/manifest.json"])["weakened"] is None
 
 
 @pytest.mark.parametrize(
@@ -252,7 +252,7 @@ def test_an_agent_that_would_break_its_requirement_is_not_emitted(sentence: str)
 
 
 def test_names_are_legal_in_every_language() -> None:
-    made = rule("whenever a the ag shall satisfy r", id="7-A.b/ü")
+    made = requirement("whenever a the ag shall satisfy r", id="7-A.b/ü")
     files = bundle(made)
     assert {path.split("/")[0] for path in files} == {"r7_a_b_ajpf"}
     assert "package r7_a_b_ajpf;" in files["r7_a_b_ajpf/Env.java"]
@@ -290,7 +290,7 @@ def test_the_environment_compiles_against_what_it_uses_of_mcapl(tmp_path: Path) 
     for name, text in STUBS.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
-    made = rule("whenever a & b the ag shall satisfy r", id="7-A")
+    made = requirement("whenever a & b the ag shall satisfy r", id="7-A")
     (tmp_path / "Env.java").write_text(bundle(made)["r7_a_ajpf/Env.java"], encoding="utf-8")
     done = subprocess.run(
         [
@@ -331,7 +331,7 @@ NAMED = '[variable.too_close]\n[variable.stopped]\naction = "{}"\n'
 
 
 def test_the_bindings_name_the_action_of_agent_and_mutant() -> None:
-    files = bundle(rule(R1, bindings=NAMED.format("stop_moving")))
+    files = bundle(requirement(R1, bindings=NAMED.format("stop_moving")))
     released = "-too_close : {True} <- undo_stopped, -stopped;"
     assert plans(files) == ["+too_close : {True} <- stop_moving, +stopped;", released]
     assert plans(files, "SIF_mutant.gwen") == ["+too_close : {True} <- stop_moving;", released]

@@ -22,7 +22,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic, Severity
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
 from fretish.printer import canonical
-from tests.bound_rules import bound_rule as rule
+from tests.bound_requirements import bound_requirement as requirement
 from tests.effort import FULL, examples, some
 from tests.strategies import Template, templates
 
@@ -39,7 +39,7 @@ def target(options: Options) -> Target:
 
 @lru_cache(maxsize=1024)
 def emitted(sentence: str, options: Options = DEFAULT, id: str = "R1", bindings: str = "") -> str:
-    made = rule(sentence, bindings, id)
+    made = requirement(sentence, bindings, id)
     diagnostic = target(options).refuse(made)
     assert diagnostic is None, diagnostic
     (file,) = target(options).emit([made], options)
@@ -47,7 +47,7 @@ def emitted(sentence: str, options: Options = DEFAULT, id: str = "R1", bindings:
 
 
 def refused(sentence: str, options: Options = DEFAULT) -> str:
-    diagnostic = target(options).refuse(rule(sentence))
+    diagnostic = target(options).refuse(requirement(sentence))
     assert diagnostic is not None
     assert diagnostic.code is Code.NOT_EXPRESSIBLE
     return render(diagnostic)
@@ -73,7 +73,7 @@ def unbelieved(formula: f.Formula) -> f.Formula:
 def expressible(options: Options = DEFAULT) -> list[Template]:
     """Every fifth; all with the full profile."""
     chosen = some(templates((2,)), 5)
-    return [t for t in chosen if target(options).refuse(rule(t.sentence)) is None]
+    return [t for t in chosen if target(options).refuse(requirement(t.sentence)) is None]
 
 
 # What is emitted ------------------------------------------------------------------------------
@@ -101,7 +101,7 @@ def test_every_template_is_emitted_or_refused_for_the_right_reason() -> None:
     """
     counts = {"emitted": 0, "constant": 0, "counts ticks": 0}
     for template in templates((2,)):
-        made = rule(template.sentence)
+        made = requirement(template.sentence)
         diagnostic = TARGETS["ajpf"].refuse(made)
         if diagnostic is None:
             counts["emitted"] += 1
@@ -120,7 +120,7 @@ def test_every_template_is_emitted_or_refused_for_the_right_reason() -> None:
 def test_every_property_has_the_language_of_the_formula() -> None:
     for template in expressible():
         found = properties(emitted(template.sentence))
-        assert equivalent(found["R1"], rule(template.sentence).ft_infinite), template
+        assert equivalent(found["R1"], requirement(template.sentence).ft_infinite), template
 
 
 def test_a_formula_of_the_requirement_without_x_is_emitted_as_it_is() -> None:
@@ -163,7 +163,7 @@ _sentences = st.builds(
 @examples(30)
 @given(_sentences)
 def test_compound_sentences_keep_their_language(sentence: s.Sentence) -> None:
-    made = rule(canonical(sentence))
+    made = requirement(canonical(sentence))
     diagnostic = TARGETS["ajpf"].refuse(made)
     if diagnostic is not None:
         assert diagnostic.message == "AJPF cannot express a formula that is constant of R1"
@@ -199,7 +199,7 @@ def test_every_grouping_survives(response: str) -> None:
         f"when p the sw shall until {response} satisfy q",
     ):
         found = properties(emitted(sentence))
-        assert equivalent(found["R1"], rule(sentence).ft_infinite), sentence
+        assert equivalent(found["R1"], requirement(sentence).ft_infinite), sentence
 
 
 _TOKENS = re.compile(r"\s*(->|\|\||<>|\[\]|[~&()\[\],.]|[A-Za-z_0-9]+)")
@@ -233,7 +233,7 @@ def test_ajpf_is_never_asked_for_its_own_grouping() -> None:
         "the sw shall always satisfy p & q & r & s",
         "the sw shall always satisfy !(p | q | r) xor (p <-> !q)",
     ):
-        for stated in ajpf.properties(rule(sentence)):
+        for stated in ajpf.properties(requirement(sentence)):
             assert fully_parenthesized(stated.text), stated
             assert "\n" not in stated.text
             assert stated.text.isascii()
@@ -305,7 +305,7 @@ def test_a_sentence_of_many_lines_is_one_comment() -> None:
 def test_controls_ask_for_the_trigger_the_response_and_the_stop(
     sentence: str, controls: dict[str, str]
 ) -> None:
-    first, *others = ajpf.properties(rule(sentence))
+    first, *others = ajpf.properties(requirement(sentence))
     assert (first.key, first.expected, first.why) == ("R1", "HOLDS", "the requirement")
     assert [stated.key for stated in others] == [f"R1_{name}" for name in controls]
     found = properties(emitted(sentence))
@@ -327,7 +327,7 @@ def test_controls_ask_for_the_trigger_the_response_and_the_stop(
     ],
 )
 def test_a_control_says_what_it_is_for(scope: str, why: str) -> None:
-    _, reach, *_ = ajpf.properties(rule(f"{scope}, sw shall eventually satisfy q"))
+    _, reach, *_ = ajpf.properties(requirement(f"{scope}, sw shall eventually satisfy q"))
     assert reach.why == why
 
 
@@ -494,10 +494,10 @@ def test_what_is_not_proved_is_not_emitted(monkeypatch: pytest.MonkeyPatch) -> N
         ("when p sw shall eventually satisfy q", DEFAULT),
         (LATE.replace("2 seconds", "2 ticks"), WEAKEN),
     ):
-        diagnostic = target(options).refuse(rule(sentence))
+        diagnostic = target(options).refuse(requirement(sentence))
         assert diagnostic is not None
         assert diagnostic.code is Code.NOT_PROVED
-    assert target(DEFAULT).refuse(rule(R1)) is None, "its own formula has no X"
+    assert target(DEFAULT).refuse(requirement(R1)) is None, "its own formula has no X"
 
 
 # Warnings -------------------------------------------------------------------------------------
@@ -525,7 +525,7 @@ def test_what_is_not_proved_is_not_emitted(monkeypatch: pytest.MonkeyPatch) -> N
     ],
 )
 def test_what_no_agent_can_do_is_warned_of(sentence: str, code: Code | None) -> None:
-    made = rule(sentence)
+    made = requirement(sentence)
     assert TARGETS["ajpf"].refuse(made) is None
     diagnostic = TARGETS["ajpf"].remark(made)
     assert (diagnostic.code if diagnostic else None) is code
@@ -547,7 +547,7 @@ def test_within_becomes_eventually_on_request_and_the_file_says_so() -> None:
         "# expected of R1: HOLDS (weaker than the requirement)",
         "R1: [] ((B(agilex_agent,too_close)) -> (<> (B(agilex_agent,stopped))))",
     ]
-    made = rule(LATE, bindings=BINDINGS)
+    made = requirement(LATE, bindings=BINDINGS)
     assert ajpf.weakened(made, WEAKEN) == loss
     assert ajpf.weakened(made) is None
     diagnostic = target(WEAKEN).remark(made)
@@ -560,7 +560,7 @@ def test_within_becomes_eventually_on_request_and_the_file_says_so() -> None:
 def test_what_is_weakened_is_implied_by_the_requirement_and_nothing_else_is_touched() -> None:
     weakened = 0
     for template in expressible(WEAKEN):
-        made = rule(template.sentence)
+        made = requirement(template.sentence)
         found = properties(emitted(template.sentence, WEAKEN))
         loss = ajpf.weakened(made, WEAKEN)
         if loss is None:

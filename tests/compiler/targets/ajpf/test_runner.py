@@ -28,7 +28,7 @@ from compiler.targets.ajpf.runner import (
     trace,
     verdict,
 )
-from tests.compiler.targets.ajpf.test_bundle import R1, rule
+from tests.compiler.targets.ajpf.test_bundle import R1, requirement
 from tests.each import each
 from tests.json_schemas import validate
 
@@ -75,12 +75,12 @@ EXPECTED = {
 
 
 class Mcapl:
-    """A folder of MCAPL with a Java beside it that says what it is told to say."""
+    """A folder of MCAPL with a Java beside it that says what it is reported to say."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.bundle = folder / "r1_ajpf"
-        for artifact in emit([rule(R1)]):
+        for artifact in emit([requirement(R1)]):
             self.write(folder / artifact.path, artifact.text)
         for jar in ("3rdparty/RunJPF.jar", "3rdparty/antlr-4.7.jar", "antlr-4.13.2-complete.jar"):
             self.write(folder / "mcapl/lib" / jar, "")

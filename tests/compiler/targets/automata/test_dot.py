@@ -14,7 +14,7 @@ from compiler.formalization.letters import atoms_of, meanings
 from compiler.targets.automata.chart import chart
 from tests.each import each
 from tests.effort import FULL
-from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, rule
+from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, requirement
 from tests.programs import installed, needs
 from tests.strategies import Template, few_templates
 
@@ -98,7 +98,7 @@ class Walk:
 
 
 def assert_walked_as_defined(sentence: str, traces: int) -> None:
-    made = rule(sentence)
+    made = requirement(sentence)
     picture, defined = read(text_of(sentence)), chart(made)
     kind, atoms = counters.template(made.sentence, made.ticks or 0), atoms_of(made.sentence)
     letters = meanings(made.sentence, atoms)

@@ -19,7 +19,7 @@ from compiler.logic.spot import same_language
 from compiler.targets.comparison_names import comparison_names
 from tests.each import each
 from tests.effort import FULL
-from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, rule
+from tests.emitting import LOOKING_BACK, MANY, PROBABLE, SHARING, emitted, refused, requirement
 from tests.strategies import Template, few_templates
 
 # The part of NuSMV's language that is used, from the grammar of its user manual (2.6, chapter 2
@@ -209,7 +209,7 @@ def read(text: str) -> Model:
 
 
 def assert_runs_as_defined(sentence: str, traces: int, length: int) -> None:
-    made = rule(sentence)
+    made = requirement(sentence)
     text = text_of(sentence)
     names = re.findall(r"^    (\w+) : boolean;(?:  -- (.*))?$", text.split("LTLSPEC")[0], re.M)
     compared = {name: atom for atom, name in comparison_names(made).items()}
@@ -281,7 +281,7 @@ def test_the_requirement_is_its_future_time_formula(template: Template) -> None:
     found = re.search(r"LTLSPEC NAME r1_ft :=\n  (.*);", text_of(template.sentence))
     assert found
     spelt = re.sub(r" \[(\d+),(\d+)\]", r"[\1:\2]", found[1]).replace(" V ", " R ")
-    expected = printing.future(rule(template.sentence).ft_infinite)
+    expected = printing.future(requirement(template.sentence).ft_infinite)
     assert same_language(spelt.replace("TRUE", "1").replace("FALSE", "0"), expected)
 
 

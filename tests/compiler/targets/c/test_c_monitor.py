@@ -32,7 +32,7 @@ from tests.c_monitors import (
 from tests.each import each
 from tests.effort import FULL
 from tests.emitting import refused
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.programs import installed
 from tests.strategies import COUNTS, few_templates, templates
 
@@ -84,19 +84,19 @@ def hold(machine: Monitor, program: Program, *traces: Rows, place: int = 0) -> N
 def of_requirements() -> list[FormalizedRequirement]:
     """Requirements of each form: a latch, counters, the tick before, a deadline, a ring."""
     return [
-        rule(WITHIN, "R1"),
-        rule("in m mode whenever p the sw shall eventually satisfy q", "R2"),
-        rule("only before m whenever p the sw shall for 3 ticks satisfy q", "R3"),
-        rule("upon p the sw shall after 2 ticks satisfy (p xor preBool(true, s))", "R4"),
-        rule("whenever p the sw shall immediately satisfy occurred(33, 35, q)", "R5"),
-        rule("whenever p the sw shall immediately satisfy persisted(2, 4, !q)", "R6"),
-        rule("the sw shall until s satisfy q", "R7"),
-        rule("the sw shall always satisfy true", "R8"),
+        requirement(WITHIN, "R1"),
+        requirement("in m mode whenever p the sw shall eventually satisfy q", "R2"),
+        requirement("only before m whenever p the sw shall for 3 ticks satisfy q", "R3"),
+        requirement("upon p the sw shall after 2 ticks satisfy (p xor preBool(true, s))", "R4"),
+        requirement("whenever p the sw shall immediately satisfy occurred(33, 35, q)", "R5"),
+        requirement("whenever p the sw shall immediately satisfy persisted(2, 4, !q)", "R6"),
+        requirement("the sw shall until s satisfy q", "R7"),
+        requirement("the sw shall always satisfy true", "R8"),
     ]
 
 
-def monitors(rules: list[FormalizedRequirement]) -> Monitor:
-    return load("monitors.py", text(*rules))
+def monitors(requirements: list[FormalizedRequirement]) -> Monitor:
+    return load("monitors.py", text(*requirements))
 
 
 def in_files(counts: tuple[int, ...] = COUNTS) -> list[list[str]]:
@@ -111,8 +111,8 @@ def in_files(counts: tuple[int, ...] = COUNTS) -> list[list[str]]:
 @each("sentences", in_files())
 def test_every_template_tells_the_same_at_each_tick(sentences: list[str], tmp_path: Path) -> None:
     """Several in one file, which computes what they share once."""
-    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
-    machine, source = monitors(rules), Source.of(*rules)
+    requirements = [requirement(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
+    machine, source = monitors(requirements), Source.of(*requirements)
     assert source.inputs == (*machine.PROPOSITIONS,)
     program, choose = compiled(tmp_path, "gcc", source), random.Random(sentences[0])
     width = len(source.inputs)
@@ -122,13 +122,13 @@ def test_every_template_tells_the_same_at_each_tick(sentences: list[str], tmp_pa
 def test_a_counter_that_requirements_share_tells_each_its_own_deadline(tmp_path: Path) -> None:
     """It goes on behind the earlier deadline: there `left` is -1, as where nothing is open."""
     within, after = (f"upon p the sw shall {t} 2 ticks satisfy q" for t in ("within", "after"))
-    rules = [rule(within, "R1"), rule(after, "R2")]
+    requirements = [requirement(within, "R1"), requirement(after, "R2")]
     flags = [*STRICT, *(CHECKED if FULL else ())]
-    program = compiled(tmp_path, "gcc", Source.of(*rules), flags=flags)
+    program = compiled(tmp_path, "gcc", Source.of(*requirements), flags=flags)
     trace = [(False, False), (True, False), *[(True, False)] * 4]
     told = program.run((0, trace))[1][0]
     assert [one.certain.left for one, _ in told] == [-1, 2, 1, 0, -1, -1]
-    hold(monitors(rules), program, trace)
+    hold(monitors(requirements), program, trace)
 
 
 _EXPRESSIONS = (
@@ -155,11 +155,11 @@ def drawn(choose: random.Random) -> Iterator[str]:
 @each("seed", range(2 if FULL else 1))
 def test_any_sentence_tells_the_same_at_each_tick(seed: int, tmp_path: Path) -> None:
     choose = random.Random(seed)
-    rules = [
-        rule(sentence, f"R{i}")
+    requirements = [
+        requirement(sentence, f"R{i}")
         for i, sentence in enumerate(islice(drawn(choose), 40 if FULL else 20))
     ]
-    machine, source = monitors(rules), Source.of(*rules)
+    machine, source = monitors(requirements), Source.of(*requirements)
     program = compiled(tmp_path, "gcc", source)
     width = len(source.inputs)
     hold(machine, program, *(rows(choose, width, choose.choice([20, 150, 300])) for _ in range(3)))
@@ -201,7 +201,7 @@ def clashing(id: str) -> Source:
     """A monitor whose propositions are called as what is generated is, and as key words are."""
     quoted = (name if re.fullmatch(r"x > 3", name) else f'"{name}"' for name in CLASHES)
     sentence = f"whenever p & !q the sw shall within 3 ticks satisfy {' | '.join(quoted)}"
-    return Source.of(rule(sentence, id))
+    return Source.of(requirement(sentence, id))
 
 
 DIALECTS = {
@@ -231,7 +231,7 @@ def test_every_dialect_takes_it_without_a_warning_and_needs_nothing_else(
 
 @each("name", ["1.main-x", "int", "G-2"])
 def test_any_id_gives_a_header_that_compiles(name: str, tmp_path: Path) -> None:
-    files = write(tmp_path, Source.of(rule(WITHIN, name)))
+    files = write(tmp_path, Source.of(requirement(WITHIN, name)))
     command = [installed("gcc"), *STRICT, "-fsyntax-only", *map(str, files)]
     subprocess.run(command, check=True)
 
@@ -255,7 +255,7 @@ def test_bounds_that_a_controller_cannot_keep_are_refused() -> None:
     ]
     sentence = "the sw shall immediately satisfy occurred(9000000, 9000001, q)"
     assert "more than 8388608 ticks ago" in refused("c", sentence)
-    assert TARGET.refuse(rule(f"the sw shall within {2**31 - 3} ticks satisfy q")) is None
+    assert TARGET.refuse(requirement(f"the sw shall within {2**31 - 3} ticks satisfy q")) is None
 
 
 def test_the_example_of_the_documentation_compiles(tmp_path: Path) -> None:
@@ -264,7 +264,9 @@ def test_the_example_of_the_documentation_compiles(tmp_path: Path) -> None:
     examples = re.findall(r"^    #include(?:.*\n(?=    |\n))+", section, re.MULTILINE)
     [example] = [each for each in examples if "r1_monitor.h" in each]
     assert "r1_step" in example
-    write(tmp_path, Source.of(rule("whenever too_close sw shall eventually satisfy stopped")))
+    write(
+        tmp_path, Source.of(requirement("whenever too_close sw shall eventually satisfy stopped"))
+    )
     tmp_path.joinpath("example.c").write_text(example, encoding="utf-8")
     subprocess.run([installed("gcc"), *STRICT, "-fsyntax-only", tmp_path / "example.c"], check=True)
 
@@ -273,7 +275,7 @@ def test_the_work_of_a_step_does_not_depend_on_the_bound() -> None:
     """What a step does is its text: it has no loop, and calls nothing but its own functions."""
 
     def work(n: int) -> tuple[str, int]:
-        texts = Source.of(rule(f"in m mode the sw shall within {n} ticks satisfy q")).texts
+        texts = Source.of(requirement(f"in m mode the sw shall within {n} ticks satisfy q")).texts
         header, source = texts["r1_monitor.h"], texts["r1_monitor.c"]
         operations = re.search(r"at most (\d+) operations", header)
         assert operations is not None

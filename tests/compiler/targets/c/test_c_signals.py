@@ -20,7 +20,7 @@ from fretish.units import ONE
 from tests.c_monitors import STRICT
 from tests.each import each
 from tests.effort import some
-from tests.emitting import rule
+from tests.emitting import requirement
 from tests.programs import installed
 
 ROOT = Path(__file__).parents[4]
@@ -41,7 +41,7 @@ def test_the_projects_of_this_repository_compile_without_a_warning(
     folder: str, command: list[str], tmp_path: Path
 ) -> None:
     project = load([str(path) for path in sorted(ROOT.joinpath(folder).glob("*.fret"))])
-    for file in TARGET.emit(project.rules, Options(one_file=True)):
+    for file in TARGET.emit(project.formalized, Options(one_file=True)):
         tmp_path.joinpath(str(file.path)).write_text(file.text, encoding="utf-8")
     compile_ = [installed(command[0]), *command[1:], "-c", "monitors_signals.c", "-o", "x.o"]
     done = subprocess.run(compile_, cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -51,7 +51,7 @@ def test_the_projects_of_this_repository_compile_without_a_warning(
 @each("flag", ["-ffast-math", "-ffinite-math-only", "-m32 -mno-sse -ffreestanding"])
 def test_inexact_arithmetic_is_no_text_that_compiles(flag: str, tmp_path: Path) -> None:
     project = load([str(ROOT / "requirements/r1.fret")])
-    for file in TARGET.emit(project.rules):
+    for file in TARGET.emit(project.formalized):
         tmp_path.joinpath(str(file.path)).write_text(file.text, encoding="utf-8")
     compile_ = [installed("gcc"), *flag.split(), "-c", "r1_signals.c", "-o", "x.o"]
     done = subprocess.run(compile_, cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -68,10 +68,10 @@ def test_names_of_one_requirement_are_no_names_of_another(tmp_path: Path) -> Non
     bound = {"p": Proposition("p", declared)}
     declarations = Declarations(Source("bindings.toml", ""), Clock(10**8), signals, bound)
     ids = ("R1", "R1_sample", "R1_sample_motor", "R1_sample_x_sample", "R1_step", "R1_samples")
-    subjects = [rule("the sw shall always satisfy p", id) for id in ids]
-    rules = [replace(subject, declarations=declarations) for subject in subjects]
-    apart = [file for alone in rules for file in TARGET.emit([alone])]
-    assert [*TARGET.emit(rules)] == apart
+    subjects = [requirement("the sw shall always satisfy p", id) for id in ids]
+    requirements = [replace(subject, declarations=declarations) for subject in subjects]
+    apart = [file for alone in requirements for file in TARGET.emit([alone])]
+    assert [*TARGET.emit(requirements)] == apart
     for file in apart:
         tmp_path.joinpath(str(file.path)).write_text(file.text, encoding="utf-8")
     headers = sorted(path.name for path in tmp_path.glob("*.h"))

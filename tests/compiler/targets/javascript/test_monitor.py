@@ -23,7 +23,7 @@ from tests.compiler.targets.c.test_c_monitor import in_files
 from tests.effort import FULL, some
 from tests.emitting import PROBABLE, SHARING, refused
 from tests.meaning import SCOPES
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.node import Row, needs_node, outcomes, run
 from tests.strategies import templates
 
@@ -84,24 +84,26 @@ def expected(
 
 def agree(folder: Path, sentences: Sequence[tuple[str, ...]], words: int, length: int) -> None:
     """Each group of sentences is one monitor; both languages judge the same words."""
-    rules = [[rule(s, f"R{i}") for i, s in enumerate(group, 1)] for group in sentences]
-    alike(folder, rules, words, length)
+    requirements = [
+        [requirement(s, f"R{i}") for i, s in enumerate(group, 1)] for group in sentences
+    ]
+    alike(folder, requirements, words, length)
 
 
 def alike(
-    folder: Path, rules: Sequence[Sequence[FormalizedRequirement]], words: int, length: int
+    folder: Path, requirements: Sequence[Sequence[FormalizedRequirement]], words: int, length: int
 ) -> None:
-    choose = random.Random(f"{[each.id for group in rules for each in group]}")
-    machines = [load("monitor.py", in_python(*each)) for each in rules]
+    choose = random.Random(f"{[each.id for group in requirements for each in group]}")
+    machines = [load("monitor.py", in_python(*each)) for each in requirements]
     judged = [
         (place, drawn(choose, tuple(machine.PROPOSITIONS), length))
         for place, machine in enumerate(machines)
         for _ in range(words)
     ]
-    texts = [target.text(*each) for each in rules]
+    texts = [target.text(*each) for each in requirements]
     for (place, word), told in zip(judged, outcomes(folder, texts, judged, "judge"), strict=True):
         for tick, row in enumerate(told_by_python(machines[place], word)):
-            assert list(map(reduced, told[tick])) == row, (rules[place], word[: tick + 1])
+            assert list(map(reduced, told[tick])) == row, (requirements[place], word[: tick + 1])
 
 
 def reduced(outcome: Mapping[str, Any]) -> dict[str, Any]:
@@ -139,16 +141,16 @@ def test_every_bound_of_a_window(tmp_path: Path) -> None:
         for each in bounds
         for made in (f.Since(a, b, each), f.Once(b, each), f.Historically(f.Not(a), each))
     ]
-    plain = rule("the sw shall satisfy q")
-    rules = [
+    plain = requirement("the sw shall satisfy q")
+    requirements = [
         replace(
             plain,
-            requirement=replace(plain.requirement, id=f"R{place}"),
+            entry=replace(plain.entry, id=f"R{place}"),
             watch=MonitorSpec(each, no, no, no, no, no, f.Not(each), None, renewed=False),
         )
         for place, each in enumerate(formulas)
     ]
-    alike(tmp_path, [rules], words=6, length=80)
+    alike(tmp_path, [requirements], words=6, length=80)
 
 
 @pytest.mark.slow
@@ -172,7 +174,9 @@ BATTERY = "whenever battery < 20 the agv shall within 1 ticks satisfy docking"
 def test_values_come_in_their_order_or_by_name(tmp_path: Path) -> None:
     by_name: list[Row] = [{"docking": False, "battery": 19.9}, {"battery": 20, "docking": False}]
     in_order: list[Row] = [[19.9, False], [20, False]]
-    one, other = outcomes(tmp_path, [target.text(rule(BATTERY))], [(0, by_name), (0, in_order)])
+    one, other = outcomes(
+        tmp_path, [target.text(requirement(BATTERY))], [(0, by_name), (0, in_order)]
+    )
     assert one == other
     assert [(row["verdict"], row["open"], row["deadline"]) for (row,) in one] == [
         ("pending", 0, 1),
@@ -195,7 +199,7 @@ def test_a_value_of_another_kind_is_refused_and_changes_nothing(
     tmp_path: Path, row: str, message: str
 ) -> None:
     path = tmp_path / "m.mjs"
-    path.write_text(target.text(rule(BATTERY)), encoding="utf-8")
+    path.write_text(target.text(requirement(BATTERY)), encoding="utf-8")
     script = f"""
 import {{ init, step }} from {path.as_uri()!r};
 const state = init(), before = JSON.stringify(state);
@@ -207,7 +211,7 @@ console.log(JSON.stringify(state) === before);
 
 def test_a_state_is_plain_and_can_be_copied(tmp_path: Path) -> None:
     path = tmp_path / "m.mjs"
-    path.write_text(target.text(rule(WINDOWS[0].format(n=3))), encoding="utf-8")
+    path.write_text(target.text(requirement(WINDOWS[0].format(n=3))), encoding="utf-8")
     script = f"""
 import {{ init, step }} from {path.as_uri()!r};
 const state = init(), rows = [[true, false], [false, null], [true, true], [false, false]];
@@ -226,4 +230,4 @@ def test_what_python_refuses_is_refused() -> None:
     assert "one run does not tell a probability" in refused("js", PROBABLE)
     deep = "(p & (q | " * 40 + "p" + "))" * 40
     refusal = refused("js", f"the sw shall always satisfy {deep}")
-    assert "JavaScript cannot express more than 60 operators within each other" in refusal
+    assert "JavaScript cannot express more than 60 nested operators" in refusal

@@ -31,7 +31,7 @@ from compiler.targets.python.monitor import text as in_python
 from fretish import expressions as e
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from monitors.loading import load
 from tests.compiler.targets.python.test_comparisons import (
     BINDINGS,
@@ -45,7 +45,7 @@ from tests.compiler.targets.python.test_comparisons import (
     with_units,
 )
 from tests.compiler.targets.python.test_past_values import COMPARISONS
-from tests.compiler.targets.python.test_past_values import rule as past_rule
+from tests.compiler.targets.python.test_past_values import requirement as past_rule
 from tests.node import needs_node, outcomes, run
 
 pytestmark = needs_node
@@ -199,16 +199,16 @@ def test_words_and_ticks_before_are_the_same(tmp_path: Path) -> None:
     for place, sentence in enumerate((*WORDS, *COMPARISONS)):
         if sentence in WORDS:
             source = Source("r.fret", sentence)
-            rule, _ = formalize(Requirement("R1", source.span()), declared)
-            assert rule is not None
+            requirement, _ = formalize(RequirementEntry("R1", source.span()), declared)
+            assert requirement is not None
         else:
-            rule = past_rule(sentence)
-        machine: Any = load("monitor.py", in_python(rule))
+            requirement = past_rule(sentence)
+        machine: Any = load("monitor.py", in_python(requirement))
         kinds = [each.kind for each in machine.VARIABLES.values()]
         word = [[choose.choice(values[kind]) for kind in kinds] for _ in range(60)]
         word[0] = [values[kind][0] for kind in kinds]
         (folder := tmp_path / str(place)).mkdir()
-        ((*told,),) = outcomes(folder, [text(rule)], [(0, word)])
+        ((*told,),) = outcomes(folder, [text(requirement)], [(0, word)])
         for row, (outcome,) in zip(word, told, strict=True):
             machine.take([row])
             (standing,) = machine.standings()

@@ -31,13 +31,13 @@ from fretish import expressions as e
 from fretish.bindings.declarations import Declarations, Signal, path
 from fretish.clock import Clock
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from fretish.units import unit
 from monitors.kernel import Monitor, readings
 from monitors.kernel.readings import number
 from monitors.kernel.verdicts import Truth
 from monitors.loading import load
-from tests.bound_rules import bound_rule
+from tests.bound_requirements import bound_requirement
 from tests.monitoring import emitted, monitor
 
 NAMES = ("x", "y", "z")
@@ -346,9 +346,9 @@ def test_what_is_compared_in_another_unit_is_converted() -> None:
     }
     declared = Declarations(Source("bindings.toml", ""), Clock(10**8), signals, {})
     source = Source("r.fret", "the sw shall always satisfy v <= w & v < 90")
-    rule, _ = formalize(Requirement("R1", source.span()), declared)
-    assert rule is not None
-    text = target.text(rule)
+    requirement, _ = formalize(RequirementEntry("R1", source.span()), declared)
+    assert requirement is not None
+    text = target.text(requirement)
     assert 'compared(in_base(v, exact("5/18")), "<=", in_base(w, exact("1")))' in text
     machine = load("monitor", text)
     assert step(machine, v=36, w=10) == "pending"
@@ -379,7 +379,7 @@ expr = "v <= 150 cm/s"
 
 
 def of(sentence: str) -> FormalizedRequirement:
-    return bound_rule(f"the sw shall always satisfy {sentence}", BINDINGS)
+    return bound_requirement(f"the sw shall always satisfy {sentence}", BINDINGS)
 
 
 @pytest.mark.slow
@@ -408,14 +408,16 @@ def of(sentence: str) -> FormalizedRequirement:
 def test_a_quantity_that_multiplies_is_one_in_audits_and_monitors(
     sentence: str, values: Mapping[str, float], expected: bool
 ) -> None:
-    rule = of(sentence)
-    assert rule.declarations is not None
-    (proposition,) = (rule.declarations.propositions[name] for name in rule.propositions)
-    signals = rule.declarations.signals
+    requirement = of(sentence)
+    assert requirement.declarations is not None
+    (proposition,) = (
+        requirement.declarations.propositions[name] for name in requirement.propositions
+    )
+    signals = requirement.declarations.signals
     numbers = {name: np.array([value]) for name, value in values.items()}
     scales = {name: signals[name].scale for name in values}
     (audited,) = truth_values(truth(proposition.expression, Scope(1, numbers, scales=scales)))
-    machine: Any = load("monitor", target.text(rule))
+    machine: Any = load("monitor", target.text(requirement))
     assert (audited, machine.truths(**values)) == (expected, (expected,))
 
 

@@ -33,7 +33,7 @@ from monitors.loading import executed, load
 from tests import fret_notation as fret
 from tests import meaning
 from tests.effort import FULL, pairwise, some
-from tests.monitoring import emitted, monitor, over, rule, steps
+from tests.monitoring import emitted, monitor, over, requirement, steps
 from tests.strategies import COUNTS, Template, some_templates, three_valued
 
 SCOPES = meaning.SCOPES
@@ -526,7 +526,7 @@ def test_no_topic_breaks_out_of_its_comment() -> None:
     [("R1", "r1_monitor.py"), ("HAZ-003.a", "haz_003_a_monitor.py"), ("7", "7_monitor.py")],
 )
 def test_a_monitor_is_named_after_its_requirement(id: str, path: str) -> None:
-    (file,) = TARGETS["monitor"].emit([rule("the sw shall satisfy q", id)])
+    (file,) = TARGETS["monitor"].emit([requirement("the sw shall satisfy q", id)])
     assert str(file.path) == path
     found = load(path, file.text).REQUIREMENTS[0].id
     assert found == id
@@ -534,22 +534,22 @@ def test_a_monitor_is_named_after_its_requirement(id: str, path: str) -> None:
 
 @pytest.mark.parametrize("id", ["Monitor", "monitor", "History", "7", "a.b", "_x-1", "class"])
 def test_any_id_gives_a_class_that_works(id: str) -> None:
-    made = target.text(rule("the sw shall always satisfy q", id.lstrip("_")))
+    made = target.text(requirement("the sw shall always satisfy q", id.lstrip("_")))
     assert over(load("r.py", made), {"q": [True]}).verdict == "satisfied"
 
 
 def test_a_duration_with_a_unit_needs_a_clock() -> None:
-    refused = TARGETS["monitor"].refuse(rule("the sw shall within 3 seconds satisfy q"))
+    refused = TARGETS["monitor"].refuse(requirement("the sw shall within 3 seconds satisfy q"))
     assert refused is not None
     assert refused.code is Code.NO_CLOCK
-    timed = rule("the sw shall within 3 seconds satisfy q", clock=Clock(10**9))
+    timed = requirement("the sw shall within 3 seconds satisfy q", clock=Clock(10**9))
     assert TARGETS["monitor"].refuse(timed) is None
 
 
 def test_a_probability_is_refused_and_not_dropped() -> None:
     """One run satisfies or violates; it has no probability."""
     refused = TARGETS["monitor"].refuse(
-        rule("the sw shall with probability >= 0.9 always satisfy q")
+        requirement("the sw shall with probability >= 0.9 always satisfy q")
     )
     assert refused is not None
     assert refused.code is Code.NOT_EXPRESSIBLE
@@ -579,7 +579,9 @@ def programs(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "long": "only after some_rather_long_mode_name, upon another_rather_long_name > 3 the sw "
         "shall until yet_another_rather_long_stop_name satisfy the_response_is_long_too",
     }
-    texts = {folder / f"{name}.py": target.text(rule(s, name)) for name, s in sentences.items()}
+    texts = {
+        folder / f"{name}.py": target.text(requirement(s, name)) for name, s in sentences.items()
+    }
     assert write(texts) is None
     return folder
 

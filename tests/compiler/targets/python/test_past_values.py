@@ -14,7 +14,7 @@ from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.traces import trace
 from monitors.kernel.columns import truths
 from monitors.loading import load
-from tests.bound_rules import bound_rule
+from tests.bound_requirements import bound_requirement
 
 BINDINGS = """
 [clock]
@@ -37,13 +37,13 @@ COMPARISONS = (
 
 
 @cache
-def rule(comparison: str) -> FormalizedRequirement:
-    return bound_rule(f"the r shall always satisfy {comparison}", BINDINGS)
+def requirement(comparison: str) -> FormalizedRequirement:
+    return bound_requirement(f"the r shall always satisfy {comparison}", BINDINGS)
 
 
 @cache
 def monitor(comparison: str) -> Any:
-    return load("monitor", text(rule(comparison)))
+    return load("monitor", text(requirement(comparison)))
 
 
 VALUES = st.lists(
@@ -56,13 +56,13 @@ VALUES = st.lists(
 def test_a_step_compares_as_a_tick_of_an_audit(
     comparison: str, values: list[float], kind: type[np.floating[Any]]
 ) -> None:
-    declarations = rule(comparison).declarations
+    declarations = requirement(comparison).declarations
     assert declarations is not None
     times = np.arange(len(values), dtype=np.int64) * 10
     samples = Samples(times, np.array(values, kind), declarations.signals["x"].scale)
     end, none = int(times[-1]), np.zeros(0, np.int64)
     log = Recording("log", "", 0, 0, end, {"x": samples}, none, (), {}, {}, (), True)
-    (name,) = rule(comparison).watched
+    (name,) = requirement(comparison).watched
     audited = truths(trace(declarations, log, [name]).columns[name], len(values))
     stepped = type(monitor(comparison))()
     broken = False

@@ -25,7 +25,7 @@ from fretish import expressions as e
 from fretish.bindings.declarations import Reduce, path
 from fretish.diagnostics.rendering import render
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from monitors.loading import executed
 from tests.effort import examples
 from tests.fretc.logs.logs import declare
@@ -58,20 +58,20 @@ messages = st.lists(
 )
 
 
-def rules(bindings: str, sentences: Sequence[str]) -> list[FormalizedRequirement]:
+def requirements(bindings: str, sentences: Sequence[str]) -> list[FormalizedRequirement]:
     found = []
     for i, sentence in enumerate(sentences):
-        requirement = Requirement(f"R{i}", Source("r.fret", sentence).span())
-        rule, wrong = formalize(requirement, declare(bindings))
-        assert rule is not None, wrong
-        found.append(rule)
+        entry = RequirementEntry(f"R{i}", Source("r.fret", sentence).span())
+        requirement, wrong = formalize(entry, declare(bindings))
+        assert requirement is not None, wrong
+        found.append(requirement)
     return found
 
 
 @cache
 def module(setting: Setting) -> tuple[Any, Any]:
     """The two emitted files: what is perceived, and the monitors."""
-    found = rules(setting.bindings, SENTENCES)
+    found = requirements(setting.bindings, SENTENCES)
     assert [render(no) for each in found if (no := perception.refuse(each)) is not None] == []
     return (
         executed(perception.text(found), "perception"),
@@ -127,7 +127,7 @@ def test_what_is_owed_on_arrival_is_what_a_watch_says(setting: Setting, some: li
 @cache
 def live_module() -> Any:
     slow = Setting(slow="y < 5")
-    return executed(perception.text(rules(slow.bindings, SENTENCES[:1])), "perception")
+    return executed(perception.text(requirements(slow.bindings, SENTENCES[:1])), "perception")
 
 
 @pytest.mark.slow
@@ -242,7 +242,7 @@ expr = "clearance < 5 cm"
 
 
 def test_the_text_is_of_python_3_10() -> None:
-    found = rules(Setting(slow="y < 5").bindings, SENTENCES[:1])
+    found = requirements(Setting(slow="y < 5").bindings, SENTENCES[:1])
     ast.parse(perception.text(found), feature_version=(3, 10))
 
 
@@ -257,14 +257,14 @@ def test_the_text_is_of_python_3_10() -> None:
     ],
 )
 def test_what_cannot_be_computed_live_is_refused(bindings: str, why: str) -> None:
-    subject = rules(bindings, ["whenever near the r shall immediately satisfy slow"])[0]
+    subject = requirements(bindings, ["whenever near the r shall immediately satisfy slow"])[0]
     refusal = perception.refuse(subject)
     assert refusal is not None
     assert why in refusal.message + (refusal.help or "")
 
 
 def test_the_way_out_of_a_comparison_is_a_signal() -> None:
-    subject = rules(Setting().bindings, ["the r shall always satisfy (level + 1 > 2)"])[0]
+    subject = requirements(Setting().bindings, ["the r shall always satisfy (level + 1 > 2)"])[0]
     refusal = perception.refuse(subject)
     assert refusal is not None
     assert refusal.help == (

@@ -21,7 +21,7 @@ from fretish.diagnostics.diagnostic import Code, Diagnostic
 from fretish.diagnostics.source import Source
 from fretish.documents import IDENTIFIER
 from tests.effort import examples, some
-from tests.emitting import rule
+from tests.emitting import requirement
 
 ROOT = Path(__file__).parents[4]
 
@@ -30,10 +30,10 @@ def described(path: str) -> p.Package:
     paths = listed([str(ROOT / path)])
     assert not isinstance(paths, Diagnostic)
     project = load(paths)
-    assert project.rules
-    assert [d for each in project.rules if (d := p.refuse(each))] == []
+    assert project.formalized
+    assert [d for each in project.formalized if (d := p.refuse(each))] == []
     options = Options(declarations=project.declarations, attribution=project.attribution)
-    return p.package(project.rules, options)
+    return p.package(project.formalized, options)
 
 
 def written(package: p.Package, folder: Path) -> Path:
@@ -113,9 +113,9 @@ def test_a_wrong_verdict_of_the_monitor_fails_the_tests_of_the_package(tmp_path:
 def test_a_name_is_legal_in_ros_and_is_no_word_of_python(
     ids: list[str], folders: list[str]
 ) -> None:
-    subject = rule("the sw shall satisfy p")
-    rules = [replace(subject, requirement=replace(subject.requirement, id=id)) for id in ids]
-    found = p.name(rules, Source(str(PurePosixPath(*folders, "bindings.toml")), ""))
+    subject = requirement("the sw shall satisfy p")
+    requirements = [replace(subject, entry=replace(subject.entry, id=id)) for id in ids]
+    found = p.name(requirements, Source(str(PurePosixPath(*folders, "bindings.toml")), ""))
     assert re.fullmatch(r"[a-z]([a-z0-9]|_(?!_))*[a-z0-9]", found)
     assert not keyword.iskeyword(found)
     assert found not in sys.stdlib_module_names
@@ -160,7 +160,7 @@ def test_what_no_node_can_subscribe_to_is_refused(
 def _one(bindings: str, folder: Path) -> FormalizedRequirement:
     (folder / "bindings.toml").write_text(bindings)
     (folder / "a.fret").write_text("the sw shall always satisfy p\n")
-    (subject,) = load([str(folder / "a.fret")]).rules
+    (subject,) = load([str(folder / "a.fret")]).formalized
     return subject
 
 

@@ -30,7 +30,8 @@ def files(path: str) -> dict[str, str]:
     project = load(paths)
     options = Options(declarations=project.declarations, attribution=project.attribution)
     return {
-        str(file.path): file.text for file in TARGETS["ros1-package"].emit(project.rules, options)
+        str(file.path): file.text
+        for file in TARGETS["ros1-package"].emit(project.formalized, options)
     }
 
 
@@ -77,7 +78,7 @@ def test_what_one_file_names_is_there(package: tuple[str, Mapping[str, str]]) ->
 def test_the_monitor_and_the_proved_interceptor_are_those_of_the_other_targets() -> None:
     texts = files("requirements/r1.fret")
     project = load([str(ROOT / "requirements/r1.fret")])
-    assert texts["r1_monitor/src/r1_monitor/monitor.py"] == monitor.text(*project.rules)
+    assert texts["r1_monitor/src/r1_monitor/monitor.py"] == monitor.text(*project.formalized)
     declared = project.declarations
     assert declared is not None
     assert declared.interceptor is not None

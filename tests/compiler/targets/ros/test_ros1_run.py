@@ -93,7 +93,7 @@ class Robot:
         self._process = here.start(DEBIANS_PYTHON, str(script), **pipes)
 
     def ask(self, what: str = "how") -> tuple[float, float, int]:
-        """What it is told; its clearance, its speed, and the count of its scans."""
+        """What it is reported; its clearance, its speed, and the count of its scans."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
         print(what, file=self._process.stdin, flush=True)
@@ -229,7 +229,9 @@ def test_node_watch_and_audit_say_one_thing(here: Ros, tmp_path: Path, fretc: Fr
     live = [line for line in watch.lines if line["type"] == "requirement"]
     for id in FOLDERS["halt"]:
         expected = {each["ns"] for each in audit[id]["triggers"]}
-        assert triggers(said, id) <= expected, id  # of two ticks judged at once the last is told
+        assert triggers(said, id) <= expected, (
+            id
+        )  # of two ticks judged at once the last is reported
         assert triggers(live, id) <= expected, id
         broken = audit[id]["violations"][0]["start_ns"]
         assert violated(said, id) == violated(live, id) == broken, id

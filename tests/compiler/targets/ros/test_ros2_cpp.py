@@ -107,7 +107,7 @@ def node(package: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def played(node: Path, *script: str) -> tuple[int, list[tuple[str, str]], str]:
-    """The exit status, what was said on which topic, and what was told to whoever started it."""
+    """The exit status, what was said on which topic, and what was told to anyone who started it."""
     ran = subprocess.run(
         [node], input="\n".join(script), capture_output=True, text=True, check=False
     )

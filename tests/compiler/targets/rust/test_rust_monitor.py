@@ -23,7 +23,7 @@ from tests.compiler.targets.c.test_c_monitor import (
 from tests.each import each
 from tests.effort import FULL, some
 from tests.emitting import refused
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.programs import installed
 from tests.rust_monitors import crate, fields, library, outcomes, write
 
@@ -33,8 +33,8 @@ WITHIN = "whenever p the sw shall within 100 ticks satisfy q"
 @pytest.mark.slow
 @each("sentences", in_files())
 def test_every_template_tells_the_same_at_each_tick(tmp_path: Path, sentences: list[str]) -> None:
-    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
-    machine, text = monitors(rules), library(crate(*rules))
+    requirements = [requirement(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
+    machine, text = monitors(requirements), library(crate(*requirements))
     choose = random.Random(sentences[0])
     traces = [rows(choose, len(machine.PROPOSITIONS), length) for length in (6, 12, 12, 60)]
     told = outcomes(tmp_path, [text], [(0, trace) for trace in traces])
@@ -46,7 +46,7 @@ def test_every_template_tells_the_same_at_each_tick(tmp_path: Path, sentences: l
 def test_any_sentence_tells_the_same_at_each_tick(tmp_path: Path) -> None:
     choose = random.Random("sentences")
     sentences = [
-        rule(sentence, f"R{i}")
+        requirement(sentence, f"R{i}")
         for i, sentence in enumerate(islice(drawn(choose), 40 if FULL else 20))
     ]
     alone = of_requirements()[: 4 if FULL else 1]
@@ -65,12 +65,12 @@ def test_any_sentence_tells_the_same_at_each_tick(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_clippy_finds_nothing_and_the_tests_of_crates_pass(tmp_path: Path) -> None:
     quoted = " | ".join(f'"{name}"' for name in (*CLASHES, "fn", "match", "Monitor", "Truth"))
-    odd = rule(f"whenever p & !q the sw shall within 3 ticks satisfy {quoted}", "fn")
+    odd = requirement(f"whenever p & !q the sw shall within 3 ticks satisfy {quoted}", "fn")
     installed("cargo-clippy")
     cargo = installed("cargo")
     write(tmp_path, crate(odd))
     write(tmp_path, crate(*of_requirements()))
-    write(tmp_path, crate(rule(WITHIN)))
+    write(tmp_path, crate(requirement(WITHIN)))
     members = ["fn_monitor", "monitors", "r1_monitor"]  # one run of cargo for all of them
     write(tmp_path, {"Cargo.toml": f'[workspace]\nmembers = {members}\nresolver = "2"\n'})
     command = [cargo, "clippy", "--offline", "--quiet", "--all-targets"]
@@ -99,16 +99,16 @@ def passes(cargo: str, folder: Path) -> bool:
 
 
 def test_words_reach_each_verdict_and_the_deadline() -> None:
-    found = {word.name: word for word in words(rule(WITHIN))}
+    found = {word.name: word for word in words(requirement(WITHIN))}
     assert [*found] == ["soonest_breach", "soonest_pending", "latest_state"]
     assert sum(ticks.count for ticks in found["latest_state"].ticks) == 100
     assert found["soonest_breach"].ticks[-1].verdict == "violated"
     assert sum(ticks.count for ticks in found["soonest_breach"].ticks) == 101
-    assert not words(rule("whenever persisted(3, p) the sw shall immediately satisfy q"))
+    assert not words(requirement("whenever persisted(3, p) the sw shall immediately satisfy q"))
 
 
 def test_a_bound_changes_nothing_but_numbers() -> None:
-    small, large = (library(crate(rule(WITHIN.replace("100", str(n))))) for n in (10, 10**6))
+    small, large = (library(crate(requirement(WITHIN.replace("100", str(n))))) for n in (10, 10**6))
     assert len(small.splitlines()) == len(large.splitlines())
     assert fields(small, "Inputs") == ["p", "q"]
     assert "#![no_std]" in small

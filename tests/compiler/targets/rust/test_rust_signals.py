@@ -23,10 +23,14 @@ ROOT = Path(__file__).parents[4]
 @each("folder", some(["", "requirements", "requirements/mission", "requirements/agv"], 4))
 def test_clippy_finds_nothing(folder: str, tmp_path: Path) -> None:
     if folder:
-        rules = load([str(path) for path in sorted(ROOT.joinpath(folder).glob("*.fret"))]).rules
+        requirements = load(
+            [str(path) for path in sorted(ROOT.joinpath(folder).glob("*.fret"))]
+        ).formalized
     else:
-        rules = tuple(numbered(case, i) for i, case in enumerate(collected(40 if FULL else 15)))
-    files = TARGET.emit(rules, Options(one_file=True))
+        requirements = tuple(
+            numbered(case, i) for i, case in enumerate(collected(40 if FULL else 15))
+        )
+    files = TARGET.emit(requirements, Options(one_file=True))
     write(tmp_path, {str(file.path): file.text for file in files})
     installed("cargo-clippy")
     command = [installed("cargo"), "clippy", "--offline", "--quiet", "--all-targets"]

@@ -20,10 +20,10 @@ def assert_same(template: Template) -> None:
     """Whatever the letters are, both break at the same tick, and accept the same states."""
     setting = staged(template.sentence, roles=ROLES)
     strict = staged(template.sentence, roles=ROLES, as_fret=True).arena.counters[0]
-    (counter,), (rule,) = setting.arena.counters, setting.rules
+    (counter,), (requirement,) = setting.arena.counters, setting.requirements
     names = template.columns
     atoms = {name: setting.arena.alphabet.atom(name) for name in names}
-    reference = template_of(rule.sentence, rule.ticks or 0)
+    reference = template_of(requirement.sentence, requirement.ticks or 0)
     transition = Transition([counter, strict])
     waiting = [(initial(reference), tuple(transition.start.items()))]
     seen = set(waiting)

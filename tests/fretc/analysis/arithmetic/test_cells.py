@@ -24,7 +24,7 @@ from fretc.analysis.verdicts import verdict
 from fretish.bindings.declarations import Variable
 from monitors.loading import load
 from tests.effort import FULL, some
-from tests.requirement_sets import analyzed, roles, rule, rules, staged
+from tests.requirement_sets import analyzed, requirement, requirements, roles, staged
 
 REALIZABLE, UNREALIZABLE = Verdict.REALIZABLE, Verdict.UNREALIZABLE
 ENDLESS = Budget(float("inf"))
@@ -45,7 +45,7 @@ SETS = range(16) if FULL else range(6, 16, 2)
 
 
 def whole(found: FormalizedRequirement) -> FormalizedRequirement:
-    """The rule, with all of its variables declared as whole numbers."""
+    """The requirement, with all of its variables declared as whole numbers."""
     declared = {name: Variable(name, type="integer") for name in found.variables}
     return replace(found, glossary=declared)
 
@@ -87,7 +87,7 @@ def synthesized(
     sentences: Sequence[str], meant: Mapping[str, str], links: str = "1", outputs: str = "ou"
 ) -> bool:
     """What Spot says, with each number as its bits."""
-    text = " & ".join(f"({printing.future(rule('R', s).ft_infinite)})" for s in sentences)
+    text = " & ".join(f"({printing.future(requirement('R', s).ft_infinite)})" for s in sentences)
     for name, comparison in meant.items():
         text = text.replace(name, f"({in_bits(comparison)})")
     bits = [f"{name}{k}" for name in outputs for k in range(SIZES[name])]
@@ -109,8 +109,8 @@ def in_bits(comparison: str) -> str:
 def staged_numbers(sentences: Sequence[str], meant: Mapping[str, str]) -> RealizabilityProblem:
     texts = [written(each, meant) for each in sentences]
     texts.append(f"the sw shall always satisfy {ranges('ou')}")
-    assumed = whole(rule("A1", f"the op shall always satisfy {ranges('ij')}"))
-    return stage([whole(each) for each in rules(*texts)], [assumed], ROLES)
+    assumed = whole(requirement("A1", f"the op shall always satisfy {ranges('ij')}"))
+    return stage([whole(each) for each in requirements(*texts)], [assumed], ROLES)
 
 
 def setting(seed: int) -> RealizabilityProblem:
@@ -189,7 +189,7 @@ def assert_won(found: RealizabilityProblem, choose: random.Random) -> None:
 
 def stepped(found: RealizabilityProblem, ticks: Sequence[Tick]) -> list[dict[str, str]]:
     """Tick by tick the verdicts of the requirements and of the promise."""
-    machine: Any = load("monitor.py", target.text(*found.rules, *found.assumptions))
+    machine: Any = load("monitor.py", target.text(*found.requirements, *found.assumptions))
     verdicts = []
     for tick in ticks:
         machine.step(**tick)
@@ -228,7 +228,7 @@ def test_a_long_play_has_numbers_as_a_short_one_has(ticks: int) -> None:
         f"whenever t > 20 the sw shall for {ticks + 1} ticks satisfy v <= 31",
     )
     named = roles(["t"], ["v"])
-    found = analyze(rules(*sentences), named, (), Options(repairs=False))
+    found = analyze(requirements(*sentences), named, (), Options(repairs=False))
     assert found.verdict is UNREALIZABLE
     assert found.complete
     (conflict,) = found.conflicts
@@ -258,7 +258,7 @@ def test_what_the_system_can_reach_depends_on_the_inputs(sum_: str, answer: Verd
 @pytest.mark.parametrize("type_", ["integer", "double"])
 def test_whole_numbers_stay_whole(type_: str) -> None:
     """Between 2 and 3 there is no whole number."""
-    found = rule("R1", "whenever a the sw shall immediately satisfy v > 2 & v < 3")
+    found = requirement("R1", "whenever a the sw shall immediately satisfy v > 2 & v < 3")
     declared = replace(found, glossary={"v": Variable("v", type=type_)})
     answer = analyze([declared], roles(["a"], ["v"])).verdict
     assert answer is (UNREALIZABLE if type_ == "integer" else REALIZABLE)

@@ -15,7 +15,7 @@ from fretc.analysis.games.replay import remembering
 from fretc.analysis.realizability_problem import stage
 from fretish.bindings.declarations import Role
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from tests.fretc.analysis.arithmetic.test_steps import TICK, declared
 
 ROLES = {"p0": Role.INPUT, "p1": Role.INPUT, "p2": Role.OUTPUT}
@@ -31,17 +31,17 @@ def made(ticks: int, within: int) -> list[FormalizedRequirement]:
         "whenever p0 the sw shall always satisfy !p2",
         f"whenever p1 the sw shall for {within // 2} ticks satisfy !p2",
     )
-    rules = []
+    requirements = []
     for number, sentence in enumerate(sentences, 1):
-        requirement = Requirement(f"R{number}", Source("r.fret", sentence).span())
-        rule, remarks = formalize(requirement, declarations)
-        assert rule is not None, remarks
-        rules.append(rule)
-    return rules
+        entry = RequirementEntry(f"R{number}", Source("r.fret", sentence).span())
+        requirement, remarks = formalize(entry, declarations)
+        assert requirement is not None, remarks
+        requirements.append(requirement)
+    return requirements
 
 
-def found(rules: list[FormalizedRequirement]) -> Analysis:
-    return analyze(rules, ROLES, (), Options(repairs=False))
+def found(requirements: list[FormalizedRequirement]) -> Analysis:
+    return analyze(requirements, ROLES, (), Options(repairs=False))
 
 
 @pytest.mark.slow
@@ -50,11 +50,11 @@ def test_leaps_leave_what_lasts_as_it_is(
     ticks: int, within: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`p0` is certain when it has lasted since the first tick; a deadline from there is lost."""
-    rules = made(ticks, within)
-    slow = found(rules)
+    requirements = made(ticks, within)
+    slow = found(requirements)
     monkeypatch.setattr(squaring.IterativeSquaring, "is_due", lambda self: True)
     monkeypatch.setattr(game_traces, "_LONG", 0)
-    fast = found(rules)
+    fast = found(requirements)
     for answer in (slow, fast):
         assert [each.requirements for each in answer.conflicts] == [("R1", "R2"), ("R1", "R3")]
         lengths = [len(each.play) for each in answer.conflicts]

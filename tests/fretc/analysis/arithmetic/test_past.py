@@ -13,7 +13,7 @@ from fretc.analysis.games import game_traces, squaring
 from monitors.loading import load
 from tests.each import each
 from tests.effort import FULL
-from tests.requirement_sets import analyzed, conflicts, roles, rule, rules
+from tests.requirement_sets import analyzed, conflicts, requirement, requirements, roles
 
 RATE = "the sw shall always satisfy absReal(v - preReal(0.0, v)) <= 1"
 NAMED = roles(["t", "a"], ["v", "x"])
@@ -86,7 +86,10 @@ def test_what_is_not_remembered_is_left_open() -> None:
     slow = "the op shall always satisfy absReal(t - preReal(0.0, t)) <= 1"
     late = "whenever t >= 2 the sw shall immediately satisfy v < 0 & v > 0"
     found = analyze(
-        rules(late), named, [rule("A1", slow)], Options(1 if FULL else 0.3, repairs=False)
+        requirements(late),
+        named,
+        [requirement("A1", slow)],
+        Options(1 if FULL else 0.3, repairs=False),
     )
     assert found.verdict is Verdict.NOT_CHECKED
     assert "no more is remembered than which comparisons it makes true" in found.why
@@ -127,13 +130,13 @@ def test_plays_follow_their_own_numbers() -> None:
     shown = 0
     for seed in range(12) if FULL else (0, 3):  # which are answered in no time
         sentences = drawn(seed)
-        found = analyze(rules(*sentences), NAMED, (), Options(seconds=5, repairs=False))
+        found = analyze(requirements(*sentences), NAMED, (), Options(seconds=5, repairs=False))
         for conflict in found.conflicts:
             if not conflict.play or conflict.loop is not None:
                 continue
             shown += any(id == "R1" for id in conflict.requirements)
             kept = [sentences[int(id[1:]) - 1] for id in conflict.requirements]
-            machine: Any = load("monitor.py", target.text(*rules(*kept)))
+            machine: Any = load("monitor.py", target.text(*requirements(*kept)))
             verdicts = []
             for tick in conflict.play:
                 machine.step(**tick)
@@ -148,14 +151,14 @@ def test_plays_follow_their_own_numbers() -> None:
 def test_sorting_numbers_out_takes_the_time_of_the_question() -> None:
     many = [f"the sw shall always satisfy v{i} + v{i + 1} > v{i + 2}" for i in range(9)]
     named = roles(["a"], [f"v{i}" for i in range(11)])
-    found = analyze(rules(*many), named, (), Options(seconds=0.02))
+    found = analyze(requirements(*many), named, (), Options(seconds=0.02))
     assert found.verdict is Verdict.NOT_CHECKED
     assert found.why == "not answered within 0.02 s of a processor"
 
 
 @pytest.mark.slow
 def test_what_no_number_before_helps_cannot_be_kept() -> None:
-    """Whoever comes from below 1 by steps of 1 is not above 5 at the next tick."""
+    """Anyone who comes from below 1 by steps of 1 is not above 5 at the next tick."""
     sentences = (
         "the sw shall always satisfy v - preReal(0.0, v) <= 1",
         "whenever !a the sw shall immediately satisfy v < 1",

@@ -11,15 +11,15 @@ from hypothesis import strategies as st
 from compiler.formalization.formalize import formalize
 from compiler.logic import decision_diagrams as bdd
 from compiler.logic.decision_diagrams import Function
-from fretc.analysis.arena.alphabet import numbers
 from fretc.analysis.arena.budget import ENDLESS
 from fretc.analysis.arena.transition import Transition
+from fretc.analysis.arena.variables import numbers
 from fretc.analysis.arithmetic.alphabet import Cells
 from fretc.logs.signals.samples import Recording, Samples
 from fretc.logs.signals.traces import trace
 from fretish.bindings.declarations import Declarations, Role
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 from monitors.kernel.columns import truths
 from tests.effort import FULL
 from tests.fretc.logs.logs import declare
@@ -67,11 +67,11 @@ def lettered(tables: Sequence[str], role: Role = Role.OUTPUT) -> tuple[Declarati
     declarations = declared(tables)
     names = [f"p{n}" for n in range(len(tables))]
     sentence = f"the sw shall always satisfy {' | '.join(names)}"
-    requirement = Requirement("R1", Source("R1.fret", sentence).span())
-    rule, remarks = formalize(requirement, declarations)
-    assert rule is not None, remarks
+    entry = RequirementEntry("R1", Source("R1.fret", sentence).span())
+    requirement, remarks = formalize(entry, declarations)
+    assert requirement is not None, remarks
     roles = dict.fromkeys(names, role)
-    alphabet = Cells([rule], roles, numbers(), role, ENDLESS)
+    alphabet = Cells([requirement], roles, numbers(), role, ENDLESS)
     for name in names:
         alphabet.atom(name)
     return declarations, alphabet

@@ -21,7 +21,7 @@ from fretc.analysis.realizability_problem import RealizabilityProblem
 from monitors.kernel.verdicts import VIOLATED
 from tests.effort import FULL
 from tests.monitoring import monitor
-from tests.requirement_sets import assumed, drawn, rule, staged
+from tests.requirement_sets import assumed, drawn, requirement, staged
 
 ENDLESS = Budget(float("inf"))
 WAITS = (
@@ -40,7 +40,7 @@ def made(setting: RealizabilityProblem) -> Machine | None:
 
 def program(found: Machine, setting: RealizabilityProblem) -> Any:
     """The class that is written."""
-    ids = [rule.id for rule in setting.rules]
+    ids = [requirement.id for requirement in setting.requirements]
     text = controller([circuit(found, ids, 1)], dict.fromkeys(ids, ""), {}).text
     space: dict[str, Any] = {"__name__": "controller"}
     exec(compile(text, "controller.py", "exec"), space)  # it is ours
@@ -58,8 +58,11 @@ def runs_that(automaton: Any, formula: str) -> bool:
     ).is_empty()
 
 
-def formula(rules: Sequence[FormalizedRequirement]) -> str:
-    return " & ".join(f"({printing.future(rule.ft_infinite)})" for rule in rules) or "1"
+def formula(requirements: Sequence[FormalizedRequirement]) -> str:
+    return (
+        " & ".join(f"({printing.future(requirement.ft_infinite)})" for requirement in requirements)
+        or "1"
+    )
 
 
 def machines(
@@ -68,7 +71,7 @@ def machines(
     for seed in range(count):
         promises = [assumed(("controller", seed, i)) for i in range(2)] if given else []
         setting = staged(*drawn(("controller", seed), most=4), assumed=promises)
-        assumptions = [rule(f"A{i}", sentence) for i, sentence in enumerate(promises, 1)]
+        assumptions = [requirement(f"A{i}", sentence) for i, sentence in enumerate(promises, 1)]
         if given and not setting.runs((), ENDLESS).is_possible():
             continue
         found = made(setting)
@@ -83,8 +86,10 @@ def test_no_run_of_an_automaton_breaks_a_requirement(given: bool) -> None:
     count = 120 if FULL else 20
     for setting, assumptions, found in machines(count, given=given):
         automaton = spot.automaton(hoa(found))
-        wrong = f"({formula(assumptions)}) & !({formula(setting.rules)})"
-        assert not runs_that(automaton, wrong), [each.requirement.wording for each in setting.rules]
+        wrong = f"({formula(assumptions)}) & !({formula(setting.requirements)})"
+        assert not runs_that(automaton, wrong), [
+            each.entry.wording for each in setting.requirements
+        ]
         assert runs_that(automaton, "1")
         shown += 1
     assert shown > count / 4
@@ -111,11 +116,16 @@ def test_the_program_does_as_the_automaton_and_breaks_nothing() -> None:
 
 
 def assert_kept(setting: RealizabilityProblem, letters: Sequence[dict[str, bool]]) -> None:
-    names = {name for rule in setting.rules for s in rule.watch.signals for name in atoms(s)}
+    names = {
+        name
+        for requirement in setting.requirements
+        for s in requirement.watch.signals
+        for name in atoms(s)
+    }
     known = {
         name: sum(letter[name] << tick for tick, letter in enumerate(letters)) for name in names
     }
-    breaches = first_breaches(setting.rules, known, len(letters))
+    breaches = first_breaches(setting.requirements, known, len(letters))
     assert not [id for id, tick in breaches.items() if tick is not None]
 
 
@@ -131,7 +141,7 @@ PATTERNS: Sequence[Callable[[int], bool]] = (
 @pytest.mark.slow
 def test_generated_monitors_find_nothing_whatever_comes() -> None:
     for number, (setting, _, found) in enumerate(machines(25 if FULL else 12, given=False)):
-        sentences = [rule.requirement.wording.text for rule in setting.rules]
+        sentences = [requirement.entry.wording.text for requirement in setting.requirements]
         watching = monitor(*sentences)
         choose = random.Random(number)
         patterns = {name: choose.choice(PATTERNS) for name in found.inputs.values()}
@@ -148,7 +158,7 @@ def test_two_goals_take_turns() -> None:
     found = made(setting)
     assert found is not None
     automaton = spot.automaton(hoa(found))
-    assert not runs_that(automaton, f"!({formula(setting.rules)})")
+    assert not runs_that(automaton, f"!({formula(setting.requirements)})")
     step = program(found, setting)().step
     outputs = [step({"a": True, "b": True}) for _ in range(6)]
     assert {"x": True, "y": False} in outputs

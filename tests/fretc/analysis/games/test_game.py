@@ -15,7 +15,15 @@ from fretc.analysis.games.game_traces import Counterstrategy, Place, Strategy
 from fretc.analysis.games.replay import broken, columns, first_breaches
 from fretc.analysis.realizability_problem import RealizabilityProblem
 from tests.effort import FULL
-from tests.requirement_sets import assumed, drawn, roles, rule, satisfiable, staged, synthesized
+from tests.requirement_sets import (
+    assumed,
+    drawn,
+    requirement,
+    roles,
+    satisfiable,
+    staged,
+    synthesized,
+)
 
 SETS = 5_000 if FULL else 32
 """With `--hypothesis-profile=full` it takes two minutes."""
@@ -27,15 +35,20 @@ def assert_lost(setting: RealizabilityProblem) -> None:
     game = setting.game(setting.arena.counters, ENDLESS)
     play = Counterstrategy(game, game.solution(traps=True), ENDLESS).play()
     alphabet, letters = setting.arena.alphabet, play.letters
-    assert broken(setting.rules, alphabet, play), play
+    assert broken(setting.requirements, alphabet, play), play
     assert not broken(setting.assumptions, alphabet, play), play
-    breaches = first_breaches(setting.rules, known(setting, letters), len(letters))
+    breaches = first_breaches(setting.requirements, known(setting, letters), len(letters))
     earlier = {tick for tick in breaches.values() if tick is not None} - {len(letters) - 1}
     assert not earlier, "a play ends with the first breach"
 
 
 def known(setting: RealizabilityProblem, letters: Sequence[Letter]) -> dict[str, int]:
-    names = {name for rule in setting.rules for s in rule.watch.signals for name in atoms(s)}
+    names = {
+        name
+        for requirement in setting.requirements
+        for s in requirement.watch.signals
+        for name in atoms(s)
+    }
     return columns(setting.arena.alphabet, [(letter, 1) for letter in letters], names)
 
 
@@ -59,8 +72,8 @@ def assert_won(setting: RealizabilityProblem, choose: random.Random) -> None:
     ticks = [alphabet.values(letter) for letter in letters]
     values = [{name: bool(value) for name, value in tick.items()} for tick in ticks]
     loop = begins[place]
-    for each in setting.rules:
-        assert holds_on(each.ft_infinite, values[:loop], values[loop:]), each.requirement.wording
+    for each in setting.requirements:
+        assert holds_on(each.ft_infinite, values[:loop], values[loop:]), each.entry.wording
 
 
 @pytest.mark.slow
@@ -69,7 +82,7 @@ def test_the_game_is_spot_s_and_both_players_do_win() -> None:
     for seed in range(SETS):
         setting = staged(*drawn(seed))
         is_realizable = setting.game(setting.arena.counters, ENDLESS).solution().is_realizable
-        assert is_realizable is synthesized(setting.rules), drawn(seed)
+        assert is_realizable is synthesized(setting.requirements), drawn(seed)
         if is_realizable:
             assert_won(setting, random.Random(seed))
         else:
@@ -98,11 +111,11 @@ def test_leaps_over_many_ticks_change_no_verdict(monkeypatch: pytest.MonkeyPatch
             [assumed(("leap", seed))] if seed % 2 else [],
         )
         setting = staged(*sentences, assumed=given)
-        assumptions = [rule("A1", sentence) for sentence in given]
+        assumptions = [requirement("A1", sentence) for sentence in given]
         if given and not satisfiable(assumptions):
             continue
         is_realizable = setting.game(setting.arena.counters, ENDLESS).solution().is_realizable
-        assert is_realizable is synthesized(setting.rules, assumptions), (sentences, given)
+        assert is_realizable is synthesized(setting.requirements, assumptions), (sentences, given)
         if not is_realizable:
             assert_lost(setting)
         elif not given:
@@ -116,11 +129,14 @@ def test_what_inputs_are_assumed_to_keep_is_an_implication_to_spot() -> None:
     for seed in range(SETS // 2):
         sentences, given = drawn(("given", seed), most=5), [assumed((seed, i)) for i in range(2)]
         setting = staged(*sentences, assumed=given)
-        assumptions = [rule(f"A{i}", sentence) for i, sentence in enumerate(given, 1)]
+        assumptions = [requirement(f"A{i}", sentence) for i, sentence in enumerate(given, 1)]
         if not satisfiable(assumptions):
             continue  # nothing follows from assumptions that no run keeps
         solution = setting.game(setting.arena.counters, ENDLESS).solution(traps=True)
-        assert solution.is_realizable is synthesized(setting.rules, assumptions), (sentences, given)
+        assert solution.is_realizable is synthesized(setting.requirements, assumptions), (
+            sentences,
+            given,
+        )
         found[solution.is_realizable] += 1
         if not solution.is_realizable:
             assert_lost(setting)
@@ -144,7 +160,7 @@ def test_what_inputs_are_assumed_to_keep_is_an_implication_to_spot() -> None:
 )
 def test_the_environment_may_win_by_waiting_for_ever(sentences: tuple[str, ...]) -> None:
     setting = staged(*sentences)
-    assert not synthesized(setting.rules)
+    assert not synthesized(setting.requirements)
     game = setting.game(setting.arena.counters, ENDLESS)
     play = Counterstrategy(game, game.solution(traps=True), ENDLESS).play()
     assert play.loop is not None

@@ -1,4 +1,4 @@
-"""Runs that come back, for requirements without inputs: held against what arithmetic says."""
+"""Runs that come back, for requirements without inputs: compared with what arithmetic says."""
 
 from fractions import Fraction
 from itertools import pairwise
@@ -12,7 +12,7 @@ from fretc.analysis.findings import Verdict
 from fretc.analysis.games.lassos import Impossible, Lasso, lasso
 from fretish.bindings.declarations import Role
 from tests.effort import FULL, examples
-from tests.requirement_sets import ROLES, analyzed, drawn, roles, rules, staged
+from tests.requirement_sets import ROLES, analyzed, drawn, requirements, roles, staged
 
 NAMED = roles([], ["v", "x"])
 SOON = 3 if FULL else 0
@@ -26,7 +26,7 @@ RATE = "the sw shall always satisfy absReal(v - preReal({}, v)) <= {}"
 
 
 def found(*sentences: str, as_fret: bool = False) -> Lasso | Impossible | None:
-    return lasso(rules(*sentences), NAMED, Budget(60), as_fret=as_fret)
+    return lasso(requirements(*sentences), NAMED, Budget(60), as_fret=as_fret)
 
 
 def values(run: Lasso) -> list[Fraction]:
@@ -105,7 +105,7 @@ def test_without_numbers_it_is_as_the_game_says() -> None:
             sentences = drawn(("lassos", seed), most=5)
             game = staged(*sentences, roles=own, as_fret=as_fret)
             is_kept = game.game(game.arena.counters, Budget(60)).solution().is_realizable
-            run = lasso(rules(*sentences), own, Budget(60), as_fret=as_fret)
+            run = lasso(requirements(*sentences), own, Budget(60), as_fret=as_fret)
             assert isinstance(run, Lasso) is is_kept, sentences
             seen.add(is_kept)
     assert seen == {True, False}

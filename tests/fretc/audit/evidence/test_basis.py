@@ -451,7 +451,7 @@ AUDITED = REACHING if FULL else {n for n in TOLD if REACHING[n].things & {"clock
 
 
 def with_review(fretc: Fretc, base: Path) -> Fretc:
-    """The present folder gets the project, audited and reviewed; `base` keeps it from then on."""
+    """The current folder gets the project, audited and reviewed; `base` keeps it from then on."""
     if not any(base.iterdir()):
         for name, content in FILES.items():
             write(name, content)
@@ -471,7 +471,7 @@ def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def reviewed(fretc: Fretc, base: Path) -> Fretc:
-    """The project in the present folder: audited, and reviewed."""
+    """The project in the current folder: audited, and reviewed."""
     return with_review(fretc, base)
 
 

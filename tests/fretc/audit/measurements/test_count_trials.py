@@ -17,14 +17,14 @@ from monitors.kernel.columns import columns_of
 from monitors.kernel.verdicts import Truth
 from tests import meaning
 from tests.effort import some
-from tests.monitoring import monitor, packed, rule
+from tests.monitoring import monitor, packed, requirement
 from tests.strategies import Template, templates
 
 Columns = dict[str, list[bool]]
 
 
 def counted(sentence: str, columns: dict[str, list[Truth]]) -> Trials:
-    odds = chance(rule(sentence))
+    odds = chance(requirement(sentence))
     assert odds is not None
     ticks, packs = packed(columns)
     return trials(odds.obligation, packs, ticks)
@@ -233,7 +233,7 @@ def test_any_expressions_are_counted_as_their_meaning_says() -> None:
     for filled in some(fillings(chance_), 7):
         columns = {name: [chance_.random() < 0.5 for _ in range(5)] for name in filled.names}
         truths: dict[str, list[Truth]] = {"other": [None] * 5}
-        truths |= {name: [*columns[name]] for name in rule(filled.sentence).watched}
+        truths |= {name: [*columns[name]] for name in requirement(filled.sentence).watched}
         assert counted(filled.sentence, truths) == filled.naive(columns), (filled.sentence, columns)
 
 
@@ -290,7 +290,7 @@ def test_a_bound_of_a_thousand_million_ticks_costs_no_more_than_the_run() -> Non
 
 
 def test_an_empty_run_has_none() -> None:
-    odds = chance(rule(WITHIN))
+    odds = chance(requirement(WITHIN))
     assert odds is not None
     _, columns = columns_of([], 2)
     assert trials(odds.obligation, dict(zip("cr", columns, strict=True)), 0) == Trials(0, 0, 0)
@@ -308,16 +308,19 @@ def test_a_cut_tick_undoes_what_was_only_kept() -> None:
 
 @pytest.mark.slow
 def test_the_text_is_the_monitor_of_the_sentence_without_its_probability_and_says_so() -> None:
-    with_, without = text(rule(WITHIN)), text(rule(WITHIN.replace("with probability >= 0.99 ", "")))
+    with_, without = (
+        text(requirement(WITHIN)),
+        text(requirement(WITHIN.replace("with probability >= 0.99 ", ""))),
+    )
     more = [line for line in with_.splitlines() if line not in without.splitlines()]
     assert more == [
         "# R1 is here without its probability, >= 0.99: one run does not tell it; SHA-256 with it: "
-        f"{rule(WITHIN).fingerprint}"
+        f"{requirement(WITHIN).fingerprint}"
     ]
     assert with_.replace(f"{more[0]}\n", "") == without
 
 
 def test_a_rule_without_a_probability_stays_itself() -> None:
-    own = rule("whenever c the robot shall satisfy r")
+    own = requirement("whenever c the robot shall satisfy r")
     assert plain(own) is own
     assert chance(own) is None

@@ -29,10 +29,10 @@ TRUTHS = (False, True, None)
 
 
 def monitor(sentence: str) -> Monitor:
-    ((requirement,), _) = requirements(Source("R1.fret", sentence))
-    rule, diagnostics = formalize(requirement, declare(BINDINGS))
-    assert rule is not None, diagnostics
-    return load("monitor", text(rule))
+    ((entry,), _) = requirements(Source("R1.fret", sentence))
+    requirement, diagnostics = formalize(entry, declare(BINDINGS))
+    assert requirement is not None, diagnostics
+    return load("monitor", text(requirement))
 
 
 @pytest.mark.slow

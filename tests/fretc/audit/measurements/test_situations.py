@@ -15,7 +15,7 @@ from monitors.kernel.verdicts import Truth
 from tests.compiler.situations.by_index import At
 from tests.each import each
 from tests.effort import FULL, some
-from tests.emitting import rule
+from tests.emitting import requirement
 from tests.monitoring import packed
 from tests.strategies import Template, templates
 
@@ -68,7 +68,7 @@ def runs(drawn: Template, unknowns: int) -> Iterator[list[Row]]:
 @pytest.mark.slow
 @each("template", [*templates((0, 2))][::8])
 def test_what_is_known_is_seen_at_its_first_tick(template: Template) -> None:
-    of = situations(rule(template.sentence), exact=True)
+    of = situations(requirement(template.sentence), exact=True)
     for run in runs(template, unknowns=0):
         (known,) = completions(run)
         expected = {one.key: Encounter(one.key, met(one, run, known), None) for one in of}
@@ -86,7 +86,7 @@ def exact(one: Situation, firsts: Sequence[int | None]) -> Encounter:
 @pytest.mark.slow
 @each("template", [*templates((0, 2))][4::8])
 def test_seen_is_what_every_completion_shows_and_never_what_none_does(template: Template) -> None:
-    of = situations(rule(template.sentence), exact=True)
+    of = situations(requirement(template.sentence), exact=True)
     for run in runs(template, unknowns=4 if FULL else 2):
         possible = [*completions(run)]
         expected = {one.key: exact(one, [met(one, run, each) for each in possible]) for one in of}
@@ -107,7 +107,7 @@ def by_table(template: Template, run: Sequence[Mapping[str, bool]]) -> dict[str,
 @pytest.mark.slow
 @each("template", some(templates((0, 1, 3)), 16, 7))
 def test_every_situation_is_that_of_the_table_whatever_is_unknown(template: Template) -> None:
-    made = rule(template.sentence)
+    made = requirement(template.sentence)
     if template.scope != "null" and "m" not in made.propositions:
         return  # it is about tick 0 alone: nothing reads the mode
     of = [one for one in situations(made, exact=True) if ":" not in one.key]

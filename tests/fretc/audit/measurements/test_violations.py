@@ -19,7 +19,7 @@ from fretc.audit.measurements.violations import (
 from fretc.logs.signals.samples import Recording, Samples
 from monitors.kernel import VIOLATED, Outcome
 from tests.fretc.audit.test_one_log import FAR, MOVING, NEAR, STILL, audited, recorded
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 S = 10**9
 NAN, INF = float("nan"), float("inf")
@@ -100,13 +100,13 @@ def test_the_deadline_is_told_where_there_is_one_within_the_run() -> None:
     ],
 )
 def test_what_each_timing_demands(timing: str, expected: Demand) -> None:
-    assert demand(rule(f"whenever p the sw shall {timing} satisfy q")) == expected
+    assert demand(requirement(f"whenever p the sw shall {timing} satisfy q")) == expected
 
 
 def test_an_only_scope_demands_that_it_is_not_so() -> None:
-    assert demand(rule("only in m mode, the sw shall within 3 ticks satisfy q & r")) == Demand(
-        "not (within 3 ticks satisfy q & r)"
-    )
+    assert demand(
+        requirement("only in m mode, the sw shall within 3 ticks satisfy q & r")
+    ) == Demand("not (within 3 ticks satisfy q & r)")
 
 
 # Signals around it
@@ -174,7 +174,7 @@ def test_many_samples_are_thinned_evenly_with_the_least_and_the_greatest() -> No
 
 @pytest.mark.parametrize("broken", [8, 9])
 def test_the_last_sample_at_the_broken_tick_is_kept_exactly(broken: int) -> None:
-    """Its age is told: the signal falls silent 0.437 s before that tick."""
+    """Its age is reported: the signal falls silent 0.437 s before that tick."""
     silent = broken * S - 437 * S // 1000
     times = np.concatenate([np.arange(0, silent + 1, S // 1000), np.arange(10, 12) * S])
     log = Recording(

@@ -18,11 +18,11 @@ from tests.command import Fretc, write
 from tests.fretc.audit import results
 from tests.fretc.logs.broken import sound
 from tests.fretc.logs.logs import X_TEXT
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 S = 10**9
 ROOT = Path(__file__).parents[4]
-RULES = [rule("whenever p the sw shall within 3 ticks satisfy q", id) for id in ("R1", "R2")]
+RULES = [requirement("whenever p the sw shall within 3 ticks satisfy q", id) for id in ("R1", "R2")]
 
 
 def moment(tick: int, **more: Any) -> dict[str, Any]:

@@ -23,7 +23,7 @@ def leaves(tree: Any) -> Iterator[str]:
 
 def test_each_requirement_has_a_line_and_a_tab_with_its_numbers(tmp_path: Path) -> None:
     known = project(tmp_path, requirement("R1", SENTENCE), requirement("R-2", SENTENCE))
-    content = layout(known.rules)
+    content = layout(known.formalized)
     panels = content["configById"]
     assert [path["value"] for path in panels["StateTransitions!all"]["paths"]] == [
         "/fretc/R1.state",
@@ -46,9 +46,9 @@ def test_violated_requirements_come_first(tmp_path: Path) -> None:
         results.result(requirement="R1", verdict="satisfied", **of),
         results.result(requirement="R2", verdict="violated", **of),
     ]
-    ((path, data),) = layout_file(audited, known.rules, Path("out")).items()
+    ((path, data),) = layout_file(audited, known.formalized, Path("out")).items()
     assert path == Path("out") / LAYOUT
     lines = json.loads(data)["configById"]["StateTransitions!all"]["paths"]
     assert [line["label"] for line in lines] == ["Title of R2 (R2)", "Title of R1 (R1)"]
     assert lines[0]["value"] == f"{state_topic('R2')}.state"
-    assert not layout_file([results.result(requirement="R1")], known.rules, Path("out"))
+    assert not layout_file([results.result(requirement="R1")], known.formalized, Path("out"))

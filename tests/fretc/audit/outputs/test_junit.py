@@ -14,7 +14,7 @@ from fretc.audit.outputs.junit import github, junit
 from tests.fretc.audit import results
 from tests.fretc.logs.logs import declare
 from tests.fretc.report.junit_schema import MAY, complaints
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 
 def result(verdict: str, run: str = "a.mcap", id: str = "R1", **more: Any) -> Result:
@@ -87,14 +87,14 @@ def test_any_text_gives_xml_that_can_be_read(text: str) -> None:
     ],
 )
 def test_an_annotation_stands_at_the_sentence(verdict: str, level: str) -> None:
-    lines = github([result(verdict)], [rule("the sw shall always satisfy q").requirement])
+    lines = github([result(verdict)], [requirement("the sw shall always satisfy q").entry])
     assert lines == f"::{level} file=r.fret,line=1,title=R1 {verdict}::a.mcap: why\n"
 
 
 @given(st.text())
 def test_nothing_in_a_result_makes_another_annotation_or_moves_the_cursor(text: str) -> None:
     evil = result("violated", run=f"a\n::error::{text}", reason=f"100%\r\n{text}")
-    lines = github([evil], [rule("the sw shall always satisfy q").requirement])
+    lines = github([evil], [requirement("the sw shall always satisfy q").entry])
     assert lines[:-1].isprintable()
     assert lines.startswith("::error file=r.fret,line=1,title=R1 violated::a\\n::error::")
     assert "100%25\\r\\n" in lines

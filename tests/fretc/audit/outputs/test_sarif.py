@@ -19,7 +19,7 @@ from fretish.diagnostics.source import Source
 from tests.command import Fretc
 from tests.fretc.audit import results as results_of
 from tests.fretc.report.sarif_schema import SARIF
-from tests.monitoring import rule
+from tests.monitoring import requirement as rule
 
 ROOT = Path(__file__).parents[4]
 RULES = [rule(f"the sw shall\n always satisfy q{i}", f"R{i}") for i in range(1, 6)]

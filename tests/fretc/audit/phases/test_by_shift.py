@@ -59,10 +59,10 @@ SENTENCES = (
 
 @cache
 def monitor(sentence: str) -> Monitor:
-    ((requirement,), _) = requirements(Source("R1.fret", sentence))
-    rule, diagnostics = formalize(requirement, declared())
-    assert rule is not None, diagnostics
-    return load("monitor", text(rule))
+    ((entry,), _) = requirements(Source("R1.fret", sentence))
+    requirement, diagnostics = formalize(entry, declared())
+    assert requirement is not None, diagnostics
+    return load("monitor", text(requirement))
 
 
 def declared(
@@ -267,7 +267,7 @@ def test_a_search_that_ends_early_says_so() -> None:
     assert "nearest change" not in result.text
 
 
-# What is told
+# What is reported
 
 
 def phases_with(*stretches: Stretch, declared: int = 0, period: int = 100) -> Phases:

@@ -1,4 +1,4 @@
-"""A table that was changed, with its new hash in the manifest: whoever reads the store sees it."""
+"""A changed table, with its new hash in the manifest: every reader of the store sees it."""
 
 import json
 from collections.abc import Iterator
@@ -12,7 +12,8 @@ from compiler.files.records import decoded
 from fretc.audit.evidence.schema import Document
 from fretc.audit.evidence.writer import text
 from fretc.audit.store.agreement import COLUMNS
-from fretc.audit.store.anywhere import StoreError, read, source
+from fretc.audit.store.anywhere import read, source
+from fretc.audit.store.errors import StoreError
 from fretc.audit.store.tables import TABLES, TableName, tabled
 from fretc.audit.store.writer import write_document
 from fretish.diagnostics.diagnostic import Code, Diagnostic

@@ -1,4 +1,4 @@
-"""A stranger's store: what does not fit its manifest is F516, and costs little."""
+"""A untrusted store: what does not fit its manifest is F516, and costs little."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Evidence is the same in a file and in a store, to the letter."""
+"""Evidence is the same in a file and in a store, exactly."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Bags as rosbags writes them, held against MCAP files of the same messages."""
+"""Bags as rosbags writes them, compared with MCAP files of the same messages."""
 
 import sqlite3
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What evidence of a stranger can make us open."""
+"""What evidence of somebody else can make us open."""
 
 from pathlib import Path
 

@@ -324,7 +324,7 @@ def test_sarif_marks_suspect_evidence(reported: Fretc) -> None:
     assert "the bindings have changed since the audit" in first["message"]["text"]
 
 
-# GSN, by the rules that gsn2x states ----------------------------------------------------------
+# GSN, by the rules of gsn2x -------------------------------------------------------------------
 
 PREFIXES = ("CSn", "Sn", "G", "A", "J", "S", "C")
 """Of an id, the longest first: `CSn` is a counter-solution, `Sn` no strategy."""

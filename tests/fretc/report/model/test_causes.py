@@ -119,30 +119,32 @@ def judged(known: Project, log: Recording) -> list[tuple[FormalizedRequirement, 
         as_record(each) for each in audit(log, plan.declarations, monitored_requirements(plan))
     ]
     shown = [in_declared_units(each, known.declarations) for each in results]
-    rules = {rule.id: rule for rule in known.rules}
+    requirements = {requirement.id: requirement for requirement in known.formalized}
     return [
-        (rule, result, trace(rule.declarations, log, rule.watched))
+        (requirement, result, trace(requirement.declarations, log, requirement.watched))
         for result in shown
-        for rule in [rules[result.requirement]]
-        if rule.declarations is not None
+        for requirement in [requirements[result.requirement]]
+        if requirement.declarations is not None
     ]
 
 
 def kleene(
-    tree: e.Expression, truths: Trace, tick: int, rule: FormalizedRequirement
+    tree: e.Expression, truths: Trace, tick: int, requirement: FormalizedRequirement
 ) -> bool | None:
     """The response at a tick, written down from the definition."""
     match tree:
         case e.Not(arg):
-            value = kleene(arg, truths, tick, rule)
+            value = kleene(arg, truths, tick, requirement)
             return None if value is None else not value
         case e.And(args):
-            values = [kleene(arg, truths, tick, rule) for arg in args]
+            values = [kleene(arg, truths, tick, requirement) for arg in args]
             return False if False in values else None if None in values else True
         case e.Or(args):
-            return kleene(e.Not(e.And(tuple(e.Not(arg) for arg in args))), truths, tick, rule)
+            return kleene(
+                e.Not(e.And(tuple(e.Not(arg) for arg in args))), truths, tick, requirement
+            )
         case e.Implies(left, right):
-            return kleene(e.Or((e.Not(left), right)), truths, tick, rule)
+            return kleene(e.Or((e.Not(left), right)), truths, tick, requirement)
         case e.Name(id):
             return truths.columns[id].at(tick)
         case _:
@@ -185,25 +187,25 @@ def test_the_words_agree_with_what_the_monitor_saw(
     known: Project, of: dict[str, list[tuple[int, float]]], lost: list[tuple[int, int]]
 ) -> None:
     log = recording(known, of, gaps=tuple(lost), intact=not lost)
-    for rule, result, truths in judged(known, log):
+    for about, result, truths in judged(known, log):
         for violation in result.violations:
-            for cause in causes(violation, result, rule):
+            for cause in causes(violation, result, about):
                 seen = truths.columns[cause.proposition].at(violation.first_tick)
-                assert seen is cause.value, (rule.id, cause)
-            if falsity(violation, rule):
-                timing = rule.sentence.timing
+                assert seen is cause.value, (about.id, cause)
+            if falsity(violation, about):
+                timing = about.sentence.timing
                 trigger = violation.trigger if isinstance(timing, s.Within) else None
                 first = trigger or violation.first
                 for tick in range(first.tick, violation.last_tick + 1):
-                    value = kleene(rule.sentence.response, truths, tick, rule)
-                    assert value is isinstance(timing, s.Never), (rule.id, tick, value)
+                    value = kleene(about.sentence.response, truths, tick, about)
+                    assert value is isinstance(timing, s.Never), (about.id, tick, value)
 
 
 def said(known: Project, id: str, of: dict[str, list[tuple[int, float]]]) -> tuple[str, str]:
-    """What is said of the first violation of a requirement."""
-    rule, result, _ = next(one for one in judged(known, recording(known, of)) if one[0].id == id)
+    """What is said of the first violation of a about."""
+    about, result, _ = next(one for one in judged(known, recording(known, of)) if one[0].id == id)
     first = result.violations[0]
-    return falsity(first, rule), in_words(causes(first, result, rule))
+    return falsity(first, about), in_words(causes(first, result, about))
 
 
 def every(step: int, value: float) -> list[tuple[int, float]]:

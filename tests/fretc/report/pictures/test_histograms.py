@@ -109,8 +109,8 @@ def test_what_has_no_value_stands_apart_and_no_condition_in_the_colour_of_violat
     (*_, crossed) = layout(Histogram("t", "m", bins, 0.0, "", "", crossed=3), "h").columns
     assert (crossed.kind, crossed.label) == ("crossed", "3")
     style = render("report/style.css.j2")
-    (rule,) = re.findall(r"svg \.crossed \{ fill: var\((.*?)\)", style)
-    assert rule != "--bad"
+    (requirement,) = re.findall(r"svg \.crossed \{ fill: var\((.*?)\)", style)
+    assert requirement != "--bad"
 
 
 def test_without_a_bound_none_is_marked(tmp_path: Path) -> None:

@@ -34,7 +34,7 @@ CLAIM = "the monitor means what the sentence says (by fretc)"
 def reported(
     known: Project, folder: Path, *results: Mapping[str, Any], proofs: Any = None
 ) -> Report:
-    """The report, with an argument that every rule of gsn2x lets pass."""
+    """The report, with an argument that every requirement of gsn2x lets pass."""
     path = folder / "verification.json"
     if proofs is not None:
         document = {"schema": "fretc-verification-1", "fretc": "0.1.0", "evidence": proofs}

@@ -46,7 +46,7 @@ def proof(known: Project, outcome: str = "proved", **changes: Any) -> dict[str, 
         "detail": "12 states",
         "assumptions": [],
         "engine": "fretc",
-        "artefacts": {"r1_monitor.py": sha256(monitor.text(known.rules[0]))},
+        "artefacts": {"r1_monitor.py": sha256(monitor.text(known.formalized[0]))},
         **changes,
     }
 
@@ -157,8 +157,8 @@ def test_a_proof_of_the_monitor_in_another_language_stands(
 ) -> None:
     """If it is about the text that is made now; the same header says nothing."""
     folder = tmp_path_factory.mktemp(kind)
-    (rule,) = project(folder, requirement("R1", SENTENCE, verify=["verify"])).rules
-    made = reversed(TARGETS[kind].emit([rule]))  # a crate of samples has a `lib.rs` as well
+    (formalized,) = project(folder, requirement("R1", SENTENCE, verify=["verify"])).formalized
+    made = reversed(TARGETS[kind].emit([formalized]))  # a crate of samples has a `lib.rs` as well
     files = {file.path.name: sha256(file.text) for file in made}
     (name,) = files.keys() & {"r1_monitor.c", "lib.rs", "r1_monitor.mjs"}
     for artefacts, doubts in ((files, 0), ({**files, name: "0" * 64}, 1)):
@@ -183,11 +183,13 @@ KINDS = ("monitor", "c", "rust", "js")
 def test_a_proof_of_the_monitor_of_some_requirements_stands(
     tmp_path: Path, kind: str, part: tuple[str, ...]
 ) -> None:
-    """Whoever names some files gets a monitor of these; until one of its requirements changes."""
+    """A monitor of some files; its proof stands until one of its requirements changes."""
     own = requirement("R1", SENTENCE, verify=["verify"])
     beside = [requirement(id, SENTENCE.replace("30", n)) for id, n in (("R2", "5"), ("R3", "7"))]
-    rules = {rule.id: rule for rule in project(tmp_path, own, *beside).rules}
-    made = TARGETS[kind].emit([rules[id] for id in part], Options(one_file=True))
+    requirements = {
+        formalized.id: formalized for formalized in project(tmp_path, own, *beside).formalized
+    }
+    made = TARGETS[kind].emit([requirements[id] for id in part], Options(one_file=True))
     files = {file.path.name: sha256(file.text) for file in reversed(made)}
     lines = [{"requirement": id, "artefacts": files} for id in part]
     for place in (None, 0, 1):

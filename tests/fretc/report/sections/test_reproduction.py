@@ -51,7 +51,7 @@ def test_the_manifest_has_the_hash_of_everything(tmp_path: Path) -> None:
         ("run", "logs/a.mcap"),
     ]
     hashes = {line["kind"]: line["sha256"] for line in manifest}
-    assert hashes["ltl"] == sha256(ltl.text(known.rules[0]))
+    assert hashes["ltl"] == sha256(ltl.text(known.formalized[0]))
     assert hashes["evidence"] == sha256((tmp_path / "evidence.json").read_text(encoding="utf-8"))
     assert hashes["run"] == LOG
 

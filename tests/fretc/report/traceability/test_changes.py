@@ -105,7 +105,7 @@ EXPECTED: Mapping[str, dict[str, list[Expected]]] = {
     ),
     "header: a planned method is taken out": of(("verify", "audit, desk", "audit")),
     "header: no plan": of(("verify", "audit, desk", "")),
-    # Whatever is planned in addition is told, and makes nothing suspect.
+    # Whatever is planned in addition is reported, and makes nothing suspect.
     "header: a planned method": of(("verify", "audit, desk", "audit, desk, verify")),
     "header: a planned target": of(("verify", "audit, desk", "audit, desk, smv")),
     "hazard: its title": hazard("title", "It falls", "It flies"),
@@ -149,7 +149,7 @@ EXPECTED: Mapping[str, dict[str, list[Expected]]] = {
         ("verdict of logs/b.mcap", "satisfied", "inconclusive"),
     ),
 }
-"""What each single change is told as; a change that is not here changes nothing."""
+"""What each single change is reported as; a change that is not here changes nothing."""
 OF_EVIDENCE = {
     "another fretc": "another version of fretc has made the audit",
     "a sentence": "the sentence has changed since the audit",
@@ -170,7 +170,7 @@ def _base(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def reviewed(fretc: Fretc, _base: Path) -> Fretc:
-    """The project in the present folder: audited, and reviewed."""
+    """The project in the current folder: audited, and reviewed."""
     return with_review(fretc, _base)
 
 
@@ -208,7 +208,7 @@ def listed(found: dict[str, Difference]) -> dict[str, list[Expected]]:
 
 
 def kind(name: str) -> str:
-    """What a change is told as, whichever thing and value it is about."""
+    """What a change is reported as, whichever thing and value it is about."""
     told = {tuple(w) for each in EXPECTED.get(name, {}).values() for w in each}
     words = {
         (re.sub(r"\b(?:of [a-z]|of R1|p|q|ok|fine|HAZ-.)\b", "one", what), bool(old), bool(new))
@@ -273,7 +273,7 @@ def test_several_changes_are_told_each_by_itself(reviewed: Fretc) -> None:
 
 @pytest.mark.slow
 def test_a_suspect_link_has_a_change_that_makes_it_suspect(reviewed: Fretc) -> None:
-    """Whatever is suspect, something is told of it."""
+    """Whatever is suspect, something is reported it."""
     for name in ("sentence: a scope", "header: no plan", "clock: tick", "signal: another topic"):
         before = {path: path.read_text() for path in Path("requirements").glob("*.*")}
         CHANGES[name].make()
@@ -419,7 +419,7 @@ def test_texts_that_are_edited_are_refused_and_forged_ones_are_not_shown(
 
 
 def _sealed(lock: str) -> str:
-    """The same with seals that fit, as a stranger makes them."""
+    """The same with seals that fit, as somebody else makes them."""
     for _ in ALL:
         write(LOCK, lock)
         found = read(LOCK)

@@ -1,4 +1,4 @@
-"""The difference of two texts: nothing of either is lost, and one word is told alone."""
+"""The difference of two texts: nothing of either is lost, and one word is reported alone."""
 
 import pytest
 from hypothesis import given

@@ -15,14 +15,14 @@ from tests.effort import some
 from tests.fretc.testing.controllers import ASSUMED, FAULTS, RULES, program, seen_of
 
 
-def is_broken(rule: FormalizedRequirement, rows: tuple[Repeat, ...]) -> list[bool]:
+def is_broken(requirement: FormalizedRequirement, rows: tuple[Repeat, ...]) -> list[bool]:
     """Whether some demand is broken at each tick or before it, by the definition."""
     ticks = [row.values for row in rows for _ in range(row.count)]
     columns = {
         name: sum(bool(values[name]) << tick for tick, values in enumerate(ticks))
-        for name in rule.watched
+        for name in requirement.watched
     }
-    broken, _ = defined(rule, letters(rule, Word(rows, columns, len(ticks))))
+    broken, _ = defined(requirement, letters(requirement, Word(rows, columns, len(ticks))))
     return [broken is not None and tick >= broken for tick in range(len(ticks))]
 
 

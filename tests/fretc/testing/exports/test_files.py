@@ -26,10 +26,9 @@ from fretc.testing.suite import Polarity, Suite
 from monitors.loading import executed, load
 from tests.each import each
 from tests.effort import FULL, some
-from tests.monitoring import rule
+from tests.monitoring import requirement as formalized
 from tests.programs import needs
-from tests.requirement_sets import rule as requirement
-from tests.requirement_sets import rules
+from tests.requirement_sets import requirement, requirements
 
 LONG = 600 if FULL else 20
 SENTENCES = (
@@ -56,7 +55,7 @@ def batch_of(id: str, sentence: str) -> Batch:
 @cache
 def made(*sentences: str) -> tuple[Suite, tuple[FormalizedRequirement, ...]]:
     """A suite, each requirement by itself."""
-    every = rules(*sentences)
+    every = requirements(*sentences)
     return suite(every, (), [batch_of(f"R{i}", s) for i, s in enumerate(sentences, 1)]), every
 
 
@@ -116,7 +115,7 @@ def test_no_file_of_a_test_is_that_of_a_monitor_and_pytest_runs_them_from_anywhe
     tmp_path: Path,
 ) -> None:
     """The tests of `x_monitor` are in `test_x_monitor.py`, and so is the monitor of `test_x`."""
-    every = rule(SENTENCES[0], "x_monitor"), rule(SENTENCES[2], "test_x")
+    every = formalized(SENTENCES[0], "x_monitor"), formalized(SENTENCES[2], "test_x")
     found = suite(every, (), [batch(each, (), 60) for each in every])
     artifacts, _ = files(found, every, Form.PYTEST)
     assert len({each.path for each in artifacts}) == len(artifacts) == 4
@@ -223,7 +222,7 @@ WRONG = (
 def test_a_wrong_monitor_fails_in_its_language(
     wrong: tuple[str, str, str, str], tmp_path: Path
 ) -> None:
-    """Whoever of the three it is, and where it cannot be run."""
+    """Anyone who of the three it is, and where it cannot be run."""
     name, old, new, reason = wrong
     written(tmp_path, Form.PYTEST, SENTENCES[0], languages=ALL)
     path = tmp_path / name

@@ -18,7 +18,7 @@ from fretc.testing.generation import batch
 from fretc.testing.suite import Suite
 from tests.each import each
 from tests.effort import FULL
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 WITHIN = "whenever near the robot shall within 2 ticks satisfy stopped"
 NUMBERS = "whenever battery < 20 the robot shall within 2 ticks satisfy docking"
@@ -26,26 +26,29 @@ NUMBERS = "whenever battery < 20 the robot shall within 2 ticks satisfy docking"
 
 @dataclass(frozen=True)
 class Made:
-    rules: tuple[FormalizedRequirement, ...]
+    requirements: tuple[FormalizedRequirement, ...]
     document: Any
 
 
 @cache
 def made_once() -> Made:
-    rules = (rule(WITHIN, "R1"), rule(NUMBERS, "R2"))
-    return Made(rules, plain(suite(rules, (), [batch(each, (), 60.0) for each in rules])))
+    requirements = (requirement(WITHIN, "R1"), requirement(NUMBERS, "R2"))
+    return Made(
+        requirements,
+        plain(suite(requirements, (), [batch(each, (), 60.0) for each in requirements])),
+    )
 
 
 @pytest.fixture
 def made() -> Made:
     """Its document is one's own."""
-    return Made(made_once().rules, deepcopy(made_once().document))
+    return Made(made_once().requirements, deepcopy(made_once().document))
 
 
 @pytest.mark.slow
 def test_what_was_made_is_taken_as_it_is(made: Made) -> None:
     written = decoded(made.document, Suite)
-    found = saved(written, made.rules)
+    found = saved(written, made.requirements)
     assert (found.suite, found.others) == (written, ())
     assert {test.requirement for test in found.suite.tests} == {"R1", "R2"}
 
@@ -53,13 +56,13 @@ def test_what_was_made_is_taken_as_it_is(made: Made) -> None:
 @pytest.mark.slow
 @each("length", [1, 40, 99, 100, 101, 150] if FULL else [1, 100, 101])
 def test_what_was_made_is_taken_however_long_its_names_are(length: int) -> None:
-    rules = (
-        rule(f"the robot shall always satisfy {'n' * length} => s_{'m' * length}", "R1"),
-        rule("the robot shall always satisfy s => q", f"R{'2' * length}"),
-        rule("the robot shall always satisfy q => s", f"R{'2' * length}3"),
+    requirements = (
+        requirement(f"the robot shall always satisfy {'n' * length} => s_{'m' * length}", "R1"),
+        requirement("the robot shall always satisfy s => q", f"R{'2' * length}"),
+        requirement("the robot shall always satisfy q => s", f"R{'2' * length}3"),
     )
-    written = suite(rules, (), [batch(each, (), 60.0) for each in rules])
-    found = saved(decoded(plain(written), Suite), rules)
+    written = suite(requirements, (), [batch(each, (), 60.0) for each in requirements])
+    found = saved(decoded(plain(written), Suite), requirements)
     assert found.suite == written
     names = {test.name for test in written.tests}
     assert len(names) == len(written.tests)
@@ -68,7 +71,7 @@ def test_what_was_made_is_taken_however_long_its_names_are(length: int) -> None:
 
 @pytest.mark.slow
 def test_what_is_about_another_sentence_is_left_out(made: Made) -> None:
-    changed = (rule(WITHIN.replace("2", "3"), "R1"), made.rules[1])
+    changed = (requirement(WITHIN.replace("2", "3"), "R1"), made.requirements[1])
     found = saved(decoded(made.document, Suite), changed)
     assert found.others == ("R1",)
     for part in (found.suite.tests, found.suite.obligations, found.suite.mutants):
@@ -118,10 +121,10 @@ def test_a_test_that_is_none_is_refused(name: str, requirement: str) -> None:
     if requirement == "R1" and name == "a truth value for a number":
         message = "cannot be 'x'"
     with pytest.raises(WrongError, match=message):
-        saved(decoded(document, Suite), made_once().rules)
+        saved(decoded(document, Suite), made_once().requirements)
 
 
 def test_two_tests_of_one_name_are_refused(made: Made) -> None:
     made.document["tests"] = (*made.document["tests"], made.document["tests"][0])
     with pytest.raises(WrongError, match="comes twice"):
-        saved(decoded(made.document, Suite), made.rules)
+        saved(decoded(made.document, Suite), made.requirements)

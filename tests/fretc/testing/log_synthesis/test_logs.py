@@ -73,9 +73,9 @@ expr = "nameless > 1"
 def staged(sentence: str, folder: Path) -> list[StagedTest]:
     """What becomes of the tests of a sentence."""
     project = read(sentence, folder)
-    assumed, _ = assumptions(project.rules, project.declarations)
-    made = [batch for job in jobs(project.rules, assumed, 20) for batch in job.ask(())]
-    tests = suite(project.rules, assumed, made).tests
+    assumed, _ = assumptions(project.formalized, project.declarations)
+    made = [batch for job in jobs(project.formalized, assumed, 20) for batch in job.ask(())]
+    tests = suite(project.formalized, assumed, made).tests
     assert tests
     out = folder / "out"
     out.mkdir()

@@ -13,7 +13,7 @@ from fretc.verification.compiled.verifying import verified
 from fretc.verification.engines.sandbox import Limits
 from tests.compiled_monitors import WITHIN, edited, given_c
 from tests.each import each
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.programs import needs
 
 CC = compiler() or ""
@@ -25,7 +25,7 @@ pytestmark = needs("gcc")
     "edit", [("int32_t left;", "int64_t left;"), ("#endif\n\n/* The", "/* The"), ("uint8_t", "int")]
 )
 def test_a_header_of_another_form_is_refused(edit: tuple[str, str]) -> None:
-    one = rule(WITHIN)
+    one = requirement(WITHIN)
     monitor = given_c(one)
     assert edit[0] in monitor.header
     with pytest.raises(UnexpectedLayoutError):
@@ -40,7 +40,7 @@ def test_a_compiler_that_writes_nothing_is_none() -> None:
 @pytest.mark.slow
 def test_undefined_behaviour_ends_the_process_and_proves_nothing() -> None:
     """A counter that begins at the largest number overflows at the first tick."""
-    one = rule(WITHIN)
+    one = requirement(WITHIN)
     largest = edited(
         given_c(one),
         "rail->oldest_1 = -1;\n    rail->r1",
@@ -55,7 +55,7 @@ def test_undefined_behaviour_ends_the_process_and_proves_nothing() -> None:
 @pytest.mark.slow
 def test_an_overflow_that_a_compiler_need_not_see_proves_nothing() -> None:
     """Without it, the text would mean the same."""
-    one = rule(WITHIN)
+    one = requirement(WITHIN)
     counted = "(rail->oldest_1 < 4) ? (rail->oldest_1 + 1) : 4"
     twice, harmless = f"{counted} : {counted}", "rail->oldest_1 < 9"
     fine = edited(given_c(one), counted, f"({harmless}) ? {twice}")

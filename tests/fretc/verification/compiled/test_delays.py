@@ -13,7 +13,7 @@ from fretc.verification.compiled.verifying import explored
 from monitors.kernel.stepping import Window
 from tests.compiled_monitors import TONGUES, Checker, Tongue
 from tests.effort import FULL, some
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.programs import installed
 
 RINGED = (
@@ -62,7 +62,7 @@ CASES = [*product(("c", "rust"), RINGED)] if FULL else [("c", RINGED[0]), ("rust
 @pytest.mark.slow
 @pytest.mark.parametrize(("tongue", "sentence"), CASES, indirect=["tongue"])
 def test_both_ways_prove_what_fretc_writes(tongue: Tongue, checker: Checker, sentence: str) -> None:
-    one = rule(sentence, "R1")
+    one = requirement(sentence, "R1")
     checked, executable = checker.prepared(tongue.given(one), one)
     plan = checked.plan(one)
     assert plan.is_original
@@ -78,7 +78,7 @@ def test_both_ways_prove_what_fretc_writes(tongue: Tongue, checker: Checker, sen
 @pytest.mark.parametrize("tongue", some(["c", "rust"], 2), indirect=True)
 def test_a_line_of_another_kind_proves_nothing(tongue: Tongue, checker: Checker) -> None:
     """A library whose lines are no such lines is compared with all of their bits."""
-    one = rule(RINGED[0], "R1")
+    one = requirement(RINGED[0], "R1")
     checked, executable = checker.prepared(tongue.given(one), one)
     rail = library.CompiledDelayed
     honest = rail.step

@@ -9,14 +9,14 @@ from fretc.verification.compiled.verifying import explored
 from fretc.verification.javascript import language as javascript
 from tests.compiled_monitors import REFUTED, WITHIN, Checker, edited, given_javascript
 from tests.effort import FULL
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.node import needs_node
 
 
 @needs_node
 @pytest.mark.slow
 def test_a_counter_without_end_has_too_many_states(tmp_path: Path) -> None:
-    one = rule(WITHIN)
+    one = requirement(WITHIN)
     endless = edited(
         given_javascript(one), "rail.oldest_1 < 3 ? rail.oldest_1 + 1 : 3;", "rail.oldest_1 + 1;"
     )
@@ -28,7 +28,7 @@ def test_a_counter_without_end_has_too_many_states(tmp_path: Path) -> None:
 @needs_node
 def test_values_of_other_types_are_told_apart(tmp_path: Path) -> None:
     """What is no truth value counts as one in conditions; as a signal it does not."""
-    one = rule("whenever p the sw shall eventually satisfy q")
+    one = requirement("whenever p the sw shall eventually satisfy q")
     monitor = given_javascript(one)
     told = monitor.text[monitor.text.index("owed: ") :].partition(",\n")[0]
     wrong = edited(monitor, f"{told},", f"{told} ? 1 : 0,")

@@ -37,7 +37,7 @@ from tests.compiled_monitors import (
 )
 from tests.each import each
 from tests.effort import FULL, full_only, some
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.programs import installed
 from tests.strategies import templates
 
@@ -65,9 +65,9 @@ def test_each_requirement_of_one_text_is_proved(tongue: Tongue, checker: Checker
     drawn = random.Random(tongue.name).sample([*templates((0, 3))], 12 if FULL else 0)
     own = SENTENCES if tongue.name == "c" else some(SENTENCES, 3)
     sentences = (*own, *(each.sentence for each in drawn))
-    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
-    outcomes = checker.outcomes(tongue.given(*rules), rules)
-    for one, outcome in zip(rules, outcomes, strict=True):
+    requirements = [requirement(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
+    outcomes = checker.outcomes(tongue.given(*requirements), requirements)
+    for one, outcome in zip(requirements, outcomes, strict=True):
         assert outcome.result is Result.PROVED, one.sentence
 
 
@@ -75,7 +75,7 @@ def test_each_requirement_of_one_text_is_proved(tongue: Tongue, checker: Checker
 @pytest.mark.parametrize("tongue", some(TONGUES, 3), indirect=True)
 def test_a_long_bound_is_proved_as_it_is(tongue: Tongue, checker: Checker) -> None:
     bound = 1000 if FULL else 300
-    one = rule(f"whenever p the sw shall within {bound} ticks satisfy q")
+    one = requirement(f"whenever p the sw shall within {bound} ticks satisfy q")
     outcome = checker.outcome(tongue.given(one), one)
     assert outcome.result is Result.PROVED
     assert f"{bound + 2} states" in outcome.detail
@@ -85,8 +85,10 @@ def test_a_long_bound_is_proved_as_it_is(tongue: Tongue, checker: Checker) -> No
 @each("scope", meaning.SCOPES)
 def test_every_template_is_proved(scope: str, tongue: Tongue, checker: Checker) -> None:
     sentences = [each.sentence for each in templates((0, 1, 2, 3)) if each.scope == scope]
-    rules = [rule(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
-    for one, outcome in zip(rules, checker.outcomes(tongue.given(*rules), rules), strict=True):
+    requirements = [requirement(sentence, f"R{i}") for i, sentence in enumerate(sentences)]
+    for one, outcome in zip(
+        requirements, checker.outcomes(tongue.given(*requirements), requirements), strict=True
+    ):
         assert outcome.result is Result.PROVED, one.sentence
 
 
@@ -94,10 +96,10 @@ def test_every_template_is_proved(scope: str, tongue: Tongue, checker: Checker) 
 @pytest.mark.confined
 @pytest.mark.parametrize("tongue", some(TONGUES, 3), indirect=True)
 def test_what_takes_too_long_is_not_proved(tongue: Tongue, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A second of a processor; by default less on the wall clock, which ends it as well."""
+    """A CPU second; by default less on the wall clock, which ends it as well."""
     if not FULL:
         monkeypatch.setattr(Limits, "wall", 0.5)
-    one = rule("whenever p the sw shall within 100000 ticks satisfy q")
+    one = requirement("whenever p the sw shall within 100000 ticks satisfy q")
     program = tongue.language.tool()
     assert program is not None
     monitor = tongue.given(one)
@@ -109,7 +111,7 @@ def test_what_takes_too_long_is_not_proved(tongue: Tongue, monkeypatch: pytest.M
 @pytest.mark.slow
 @pytest.mark.parametrize("tongue", some(TONGUES, 3), indirect=True)
 def test_too_many_states_are_not_proved(tongue: Tongue, checker: Checker) -> None:
-    one = rule("whenever p the sw shall within 100 ticks satisfy q")
+    one = requirement("whenever p the sw shall within 100 ticks satisfy q")
     checked, executable = checker.prepared(tongue.given(one), one)
     outcome = explored(one, executable, checked.plan(one), 150)
     assert outcome.result is Result.NOT_CHECKED
@@ -117,7 +119,7 @@ def test_too_many_states_are_not_proved(tongue: Tongue, checker: Checker) -> Non
 
 @pytest.mark.slow
 def test_comments_and_layout_are_free(tongue: Tongue, checker: Checker) -> None:
-    one = rule(WITHIN)
+    one = requirement(WITHIN)
     monitor = tongue.given(one)
     text = re.sub(*tongue.comments, monitor.text).replace("    ", "\t")
     assert text != monitor.text
@@ -131,7 +133,7 @@ def test_comments_and_layout_are_free(tongue: Tongue, checker: Checker) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("tongue", some(TONGUES, 3, 1), indirect=True)
 def test_what_is_made_of_a_text_is_the_same_each_time(tongue: Tongue, tmp_path: Path) -> None:
-    one = rule(WITHIN)
+    one = requirement(WITHIN)
     monitor, program = tongue.given(one), tongue.language.tool()
     assert program is not None
     checked = tongue.language.checked(monitor, [one])
@@ -145,7 +147,7 @@ def test_what_is_made_of_a_text_is_the_same_each_time(tongue: Tongue, tmp_path: 
 @each("sentence", SENTENCES)
 def test_the_reference_tells_what_the_monitor_in_python_tells(sentence: str) -> None:
     """Saved and loaded at each tick, on both rails."""
-    one = rule(sentence)
+    one = requirement(sentence)
     choose = random.Random(sentence)
     machine, reference = load("r1", text(one)), load("r1", text(one))
     atoms = (*machine.PROPOSITIONS,)
@@ -175,19 +177,19 @@ def test_a_fault_comes_to_what_is_written_beside_it(
     """By default most in C: what is made of the text is explored alike in each language."""
     faults = some(edits.faults, 2 if tongue.name == "c" else 4)
     for sentence, old, new, expected in faults:
-        one = rule(sentence)
+        one = requirement(sentence)
         assert checker.kind(edited(tongue.given(one), old, new), one) == expected, (old, new)
 
 
 @pytest.mark.slow
 def test_what_may_do_more_is_not_run(tongue: Tongue, edits: Edits) -> None:
-    one = rule(WITHIN)
+    one = requirement(WITHIN)
     assert [each for each in edits.further if is_formed(tongue, one, each)] == []
 
 
 @pytest.mark.slow
 def test_what_keeps_a_number_of_ticks_is_as_fretc_writes_it(tongue: Tongue, edits: Edits) -> None:
-    one = rule(edits.keeping)
+    one = requirement(edits.keeping)
     tongue.language.checked(tongue.given(one), [one])
     assert [each for each in edits.kept if is_formed(tongue, one, each)] == []
 
@@ -206,26 +208,29 @@ def is_formed(tongue: Tongue, one: FormalizedRequirement, edit: Edit) -> bool:
 def test_what_is_no_text_of_the_language_is_not_proved(
     tongue: Tongue, checker: Checker, edits: Edits
 ) -> None:
-    one, edit = rule(WITHIN), (edits.since, edits.uncompiled)
+    one, edit = requirement(WITHIN), (edits.since, edits.uncompiled)
     assert is_formed(tongue, one, edit)
     assert checker.kind(edited(tongue.given(one), *edit), one) == REFUSED
 
 
 def test_a_monitor_of_other_requirements_is_refused(tongue: Tongue) -> None:
-    one, other = rule(WITHIN), rule(FOR, "R2")
-    for rules, reason in (((), "R2"), ((other,), "other requirements")):
+    one, other = requirement(WITHIN), requirement(FOR, "R2")
+    for requirements, reason in (((), "R2"), ((other,), "other requirements")):
         with pytest.raises(UnexpectedLayoutError, match=reason):
-            tongue.language.checked(tongue.given(other), (one, *rules)).plan(one)
+            tongue.language.checked(tongue.given(other), (one, *requirements)).plan(one)
 
 
 def test_what_a_requirement_does_not_speak_of_has_no_part_in_it(
     tongue: Tongue, edits: Edits
 ) -> None:
-    one, other = rule(WITHIN), rule("whenever r the sw shall immediately satisfy s", "R2")
-    monitor, rules = tongue.given(one, other), [one, other]
-    for each_ in rules:
-        tongue.language.checked(monitor, rules).plan(each_)
-    checked = tongue.language.checked(edited(monitor, edits.since, edits.foreign), rules)
+    one, other = (
+        requirement(WITHIN),
+        requirement("whenever r the sw shall immediately satisfy s", "R2"),
+    )
+    monitor, requirements = tongue.given(one, other), [one, other]
+    for each_ in requirements:
+        tongue.language.checked(monitor, requirements).plan(each_)
+    checked = tongue.language.checked(edited(monitor, edits.since, edits.foreign), requirements)
     checked.plan(other)
     with pytest.raises(
         UnexpectedLayoutError, match="R1 depends on what its sentence does not speak of"
@@ -237,7 +242,7 @@ def test_what_a_requirement_does_not_speak_of_has_no_part_in_it(
 @pytest.mark.parametrize("tongue", some(TONGUES, 3), indirect=True)
 def test_drawn_faults_are_refuted_or_refused(tongue: Tongue, checker: Checker) -> None:
     """A few of those below, in this process: what crashes a library is not among them."""
-    one = rule(WITHIN)
+    one = requirement(WITHIN)
     monitor = tongue.given(one)
     texts = [*dict.fromkeys(tongue.faults(monitor.text))]
     drawn = random.Random(tongue.name).sample(texts, 6)
@@ -252,7 +257,7 @@ def test_faults_are_refuted_or_refused_or_of_no_effect(
     sentence: str, tongue: Tongue, tmp_path: Path
 ) -> None:
     """What is proved tells the same as the monitor in Python on traces, run by another program."""
-    one, choose = rule(sentence), random.Random(sentence)
+    one, choose = requirement(sentence), random.Random(sentence)
     monitor, found = tongue.given(one), Counter[str]()
     texts = [*dict.fromkeys(tongue.faults(monitor.text))]
     drawn = choose.sample(texts, min(40, len(texts)))

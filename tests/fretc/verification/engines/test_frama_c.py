@@ -25,7 +25,7 @@ from tests.command import Fretc, write
 from tests.compiled_monitors import given_c as given
 from tests.each import each
 from tests.effort import full_only, some
-from tests.monitoring import rule
+from tests.monitoring import requirement
 from tests.programs import installed, needs
 from tests.strategies import templates
 
@@ -36,9 +36,9 @@ WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
 RING = "only in m upon c the sw shall after 40 ticks satisfy z"
 
 
-def asked(*rules: FormalizedRequirement) -> Run:
-    own = given(*rules)
-    return prepared(own, checked(own, rules))
+def asked(*requirements: FormalizedRequirement) -> Run:
+    own = given(*requirements)
+    return prepared(own, checked(own, requirements))
 
 
 def check(run: Run) -> Outcome:
@@ -51,7 +51,9 @@ def check(run: Run) -> Outcome:
 @needs_frama_c
 def test_requirements_in_one_text_are_proved() -> None:
     sentences = (WITHIN, RING, "the sw shall always satisfy p", "the sw shall eventually satisfy p")
-    outcome = check(asked(*(rule(sentence, f"R{i}") for i, sentence in enumerate(sentences))))
+    outcome = check(
+        asked(*(requirement(sentence, f"R{i}") for i, sentence in enumerate(sentences)))
+    )
     assert outcome.result is Result.PROVED, outcome.detail
 
 
@@ -60,7 +62,9 @@ def test_requirements_in_one_text_are_proved() -> None:
 @each("scope", meaning.SCOPES)
 def test_every_template_is_proved(scope: str) -> None:
     sentences = [each.sentence for each in templates() if each.scope == scope]
-    outcome = check(asked(*(rule(sentence, f"R{i}") for i, sentence in enumerate(sentences))))
+    outcome = check(
+        asked(*(requirement(sentence, f"R{i}") for i, sentence in enumerate(sentences)))
+    )
     assert outcome.result is Result.PROVED, outcome.detail
 
 
@@ -77,7 +81,9 @@ def test_every_template_is_proved(scope: str) -> None:
 )
 def test_no_input_and_long_bounds_are_proved(sentences: tuple[str, ...]) -> None:
     """A ring of 2 000 ticks has 63 words, set by a loop."""
-    outcome = check(asked(*(rule(sentence, f"R{i}") for i, sentence in enumerate(sentences))))
+    outcome = check(
+        asked(*(requirement(sentence, f"R{i}") for i, sentence in enumerate(sentences)))
+    )
     assert outcome.result is Result.PROVED, outcome.detail
 
 
@@ -115,7 +121,7 @@ FAULTS = (
 def test_a_fault_is_not_proved(fault: tuple[str, str, str, str | None]) -> None:
     """Here the text may have any form; one that is never reached does no harm."""
     sentence, old, new, kind = fault
-    run = asked(rule(sentence))
+    run = asked(requirement(sentence))
     assert re.search(old, run.text), old
     outcome = check(replace(run, text=re.sub(old, new, run.text, count=1)))
     if kind is None:
@@ -127,7 +133,7 @@ def test_a_fault_is_not_proved(fault: tuple[str, str, str, str | None]) -> None:
 
 def test_what_stands_in_comments_is_no_annotation() -> None:
     """`admit` is believed."""
-    one = rule(WITHIN)
+    one = requirement(WITHIN)
     own = given(one)
     for text, header in (
         (own.text.replace(BEGIN, f"{BEGIN}/*@ admit\n \\false; */"), own.header),
@@ -140,7 +146,7 @@ def test_what_stands_in_comments_is_no_annotation() -> None:
 
 
 def test_a_text_of_another_form_is_refused() -> None:
-    one = rule(WITHIN)
+    one = requirement(WITHIN)
     own = given(one)
     strange = own.text.replace(BEGIN, f"{BEGIN}#ifdef __FRAMAC__\n#endif\n")
     (examined,) = analysed([one], replace(own, text=strange), "", LIMITS)
@@ -244,8 +250,8 @@ def test_a_proof_that_cannot_be_made_again_is_not_checked(
 ) -> None:
     """Neither standing nor different, where Frama-C is not installed."""
     project = load([write("r1.fret", "the sw shall always satisfy p")])
-    (rule,) = project.rules
-    claim = proof(rule.id, Layer.MONITOR, CLAIM, proved("as it is"), "Frama-C 25.0, -eva")
+    (requirement,) = project.formalized
+    claim = proof(requirement.id, Layer.MONITOR, CLAIM, proved("as it is"), "Frama-C 25.0, -eva")
     monkeypatch.setenv("PATH", str(tmp_path))
     document = Document(SCHEMA, __version__, (claim,))
     found = prove_again(project, Proofs("v.json", "", document), LIMITS, ["r1"], print)

@@ -16,7 +16,14 @@ from fretc.verification.engines.crosshair import with_crosshair
 from fretc.verification.engines.dafny import answer as dafny_answer
 from fretc.verification.engines.dafny import with_dafny
 from fretish.diagnostics.extras import install
-from tests.compiler.targets.test_dafny import BINDINGS, CONDITIONS, TIMINGS, bound, emitted, rule
+from tests.compiler.targets.test_dafny import (
+    BINDINGS,
+    CONDITIONS,
+    TIMINGS,
+    bound,
+    emitted,
+    requirement,
+)
 from tests.each import each
 from tests.effort import FULL, full_only
 from tests.loops import edited as replaced
@@ -147,7 +154,7 @@ def test_without_dafny_nothing_is_known_and_what_to_do_is_said(
 
 def test_nothing_is_claimed_of_another_text(dafny: Fake) -> None:
     dafny.says(f'echo "{FINISHED} 99 verified, 0 errors"')
-    formalized = rule("whenever p robot shall within 5 ticks satisfy q")
+    formalized = requirement("whenever p robot shall within 5 ticks satisfy q")
     good = text(formalized, None)
     for other in (good.replace("==>", "==> true ||"), good + "\n"):
         proofs = with_dafny(formalized, other, None)
@@ -158,7 +165,7 @@ def test_nothing_is_claimed_of_another_text(dafny: Fake) -> None:
 def test_each_part_of_the_file_has_a_line_of_its_own(dafny: Fake) -> None:
     dafny.says(f'echo "{FINISHED} 99 verified, 0 errors"')
     declarations = bound()
-    formalized = rule("whenever p robot shall within 3 ticks satisfy q", declarations)
+    formalized = requirement("whenever p robot shall within 3 ticks satisfy q", declarations)
     proofs = with_dafny(formalized, text(formalized, declarations), declarations)
     assert [(one.layer, one.claim) for one in proofs] == [
         (

@@ -56,12 +56,12 @@ def test_time_on_the_wall_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def pretend(seconds: float) -> None:
-    """Have the process believe that it has taken so many seconds of a processor."""
+    """Have the process believe that it has taken so many CPU seconds."""
     resource.getrusage = lambda who: SimpleNamespace(ru_utime=seconds, ru_stime=0.0)  # type: ignore[assignment,return-value]
 
 
 def limit() -> tuple[int, int]:
-    """The process, and after how many seconds of a processor it is stopped."""
+    """The process, and after how many CPU seconds it is stopped."""
     return os.getpid(), resource.getrlimit(resource.RLIMIT_CPU)[0]
 
 
@@ -95,7 +95,7 @@ def test_calls_of_a_session_share_a_process_and_each_has_its_limits() -> None:
     assert multiprocessing.active_children() == []
 
 
-@full_only("seconds of a processor")
+@full_only("CPU seconds")
 def test_the_limit_is_counted_from_what_was_taken_before_the_call() -> None:
     with Session(Limits(seconds=1)) as session:
         assert session.call(spin) == Stopped("out of time: more than 1 s of a processor")

@@ -40,7 +40,7 @@ def project(fretc: Fretc) -> Project:
 def add(
     monkeypatch: pytest.MonkeyPatch, *methods: Method, mistake: Diagnostic | None = None
 ) -> None:
-    """Give the table more rows, whose modules know nothing of their rules, or find a mistake."""
+    """Give the table more rows, whose modules know no requirements, or find a mistake."""
     for method in methods:
         module = ModuleType(method.name)
         module.prove = partial(_prove, method, mistake)  # type: ignore[attr-defined]
@@ -51,11 +51,11 @@ def add(
 def _prove(
     method: Method,
     mistake: Diagnostic | None,
-    rules: Sequence[FormalizedRequirement],
+    requirements: Sequence[FormalizedRequirement],
     project: Project,
     request: Request,
 ) -> list[Proof] | Diagnostic:
-    ids = [rule.id for rule in rules]
+    ids = [requirement.id for requirement in requirements]
     names = ids if method.of_requirement else ["+".join(ids)]
     return mistake or [
         proof(name, Layer.AGENT, method.claim, not_checked("new"), method.name) for name in names
@@ -95,11 +95,11 @@ def test_monitors_are_refused_only_where_a_layer_steps_them(
     project: Project, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     refusal = Diagnostic(Code.NOT_EXPRESSIBLE, "no monitor can express it")
-    monkeypatch.setattr(monitor, "refuse", lambda rule: refusal)
+    monkeypatch.setattr(monitor, "refuse", lambda requirement: refusal)
     for method in TABLE:
         layers = [layer for layer in Layer if layer == method.name]
         request = Request(layers, Limits(), provers=[method.name])
-        ids = [rule.id for rule in project.rules]
+        ids = [requirement.id for requirement in project.formalized]
         expected = dict.fromkeys(ids, refusal) if method.needs_monitor else {}
         assert verify.refusals(project, request) == expected, method.name
     assert {method.name for method in TABLE if method.needs_monitor} == {

@@ -15,7 +15,7 @@ from fretc.verification.loop.search import Parts
 from monitors.interceptor import Options
 from tests.effort import FULL, some
 from tests.loops import CORE, EVENTUALLY, WITHIN, case, edited, interceptor_options
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 HUNDRED_MS = 10**8
 USUAL = interceptor_options(hold=4, stop_timeout=24)
@@ -25,7 +25,7 @@ DECLARED = Channel(2, latency=2, lost=1, braking=4)
 def question(
     sentence: str, settings: Options = USUAL, channel: Channel = DECLARED, core: str = CORE
 ) -> Question:
-    parsed = rule(sentence)
+    parsed = requirement(sentence)
     return Question(
         case(sentence, settings, channel, core), parsed.sentence, parsed.ticks, HUNDRED_MS
     )
@@ -112,7 +112,7 @@ def test_small_times_say_nothing_of_long_ones_where_the_core_is_another() -> Non
 
 
 def test_a_twin_that_promises_too_much_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Held against the loop with one lost message less than there is."""
+    """Compared with the loop with one lost message less than there is."""
     loop = Parts.of(case(WITHIN.format(9), interceptor_options(), Channel(1, lost=2))).loop
     assert covered(loop, 10**5, 9).uncovered is None
     loop.channel = replace(loop.channel, lost=1)

@@ -1,7 +1,7 @@
 # ruff: noqa: E501
 """Faults that were put into a monitor's text by hand: what becomes of each is written beside it.
 
-They are of the kinds that a proof about verdicts of known values does not see: what is told of
+They are of the kinds that a proof about verdicts of known values does not see: what is reported
 triggers, answers and open demands, the handling of unknown values, columns, names.
 """
 
@@ -17,7 +17,7 @@ from monitors.loading import load
 from tests.compiler.formalization.test_mutants import DIFFERS, MARK, REFUSED, REFUTED, SAME, Judge
 from tests.each import each
 from tests.effort import some
-from tests.monitoring import rule, with_step, without_step
+from tests.monitoring import requirement, with_step, without_step
 
 WITHIN = "in m mode whenever p the sw shall within 3 ticks satisfy q"
 FOR = "upon p the sw shall for 2 ticks satisfy q & !m"
@@ -145,7 +145,7 @@ FAULTS = (
 
 @cache
 def judge(sentence: str) -> tuple[str, Judge]:
-    formalized = rule(sentence)
+    formalized = requirement(sentence)
     return target.text(formalized), Judge(formalized)
 
 
@@ -184,7 +184,7 @@ def test_a_step_that_has_another_tick_in_it_than_its_rail_is_refused(old: str, n
 @each("name", "row tick doubt known must may rows refused Signals since other_name".split())
 def test_a_parameter_of_another_name_than_its_proposition_has_is_refused(name: str) -> None:
     """`row` hid unknown values: it is what a step calls the values of a tick."""
-    formalized = rule("in m mode whenever longname the sw shall within 3 ticks satisfy q")
+    formalized = requirement("in m mode whenever longname the sw shall within 3 ticks satisfy q")
     text = target.text(formalized)
     place = text.index(MARK)
     own = re.sub(r'(?<!")\blongname\b(?!"| the)', name, text[place:])

@@ -11,7 +11,7 @@ from compiler.targets.python import monitor as target
 from fretc.verification.monitor.verifying import verified
 from tests.each import each
 from tests.effort import some
-from tests.monitoring import rule
+from tests.monitoring import requirement
 
 SENTENCE = "whenever battery < 20 & preReal(0, speed) < 2 the agv shall within 1 ticks satisfy docking | level = 3"
 LESS = 'compared(battery, "<", exact("20"))'
@@ -80,7 +80,7 @@ FAULTS = (
 
 @cache
 def made() -> tuple[FormalizedRequirement, str]:
-    right = rule(SENTENCE)
+    right = requirement(SENTENCE)
     return right, target.text(right)
 
 
@@ -118,8 +118,8 @@ def test_another_name_for_what_is_kept_changes_nothing() -> None:
 
 def test_a_monitor_that_is_given_the_truth_of_a_comparison_is_refused() -> None:
     """So were monitors until numbers could be given: where is it compared?"""
-    right = rule("the agv shall always satisfy x < 2")
-    opaque = target.text(rule("the agv shall always satisfy p"))
+    right = requirement("the agv shall always satisfy x < 2")
+    opaque = target.text(requirement("the agv shall always satisfy p"))
     place = opaque.index("# The requirements ---")
     own = opaque[place:].replace('"p": "p"', '"(x < 2)": "x_lt_2"').replace(right.id, "R1")
     for old, new in (('"p"', '"(x < 2)"'), ("not_p", "not_x_lt_2"), ("(p,)", "(x_lt_2,)")):
@@ -129,21 +129,23 @@ def test_a_monitor_that_is_given_the_truth_of_a_comparison_is_refused() -> None:
 
 @pytest.mark.slow
 def test_each_requirement_of_a_file_is_compared_for_itself() -> None:
-    rules = [rule(f"the agv shall always satisfy x < {n} & p", f"R{n}") for n in (2, 3)]
-    text = target.text(*rules)
+    requirements = [
+        requirement(f"the agv shall always satisfy x < {n} & p", f"R{n}") for n in (2, 3)
+    ]
+    text = target.text(*requirements)
     wrong = text.replace('exact("3")', 'exact("4")')
-    for one, expected in zip(rules, (SAME, WRONG), strict=True):
-        others = [other for other in rules if other is not one]
+    for one, expected in zip(requirements, (SAME, WRONG), strict=True):
+        others = [other for other in requirements if other is not one]
         assert verified(one, text, others=others).result is SAME
         assert verified(one, wrong, others=others).result is expected
 
 
 @pytest.mark.slow
 def test_a_file_may_read_as_a_truth_value_what_one_requirement_takes_for_a_number() -> None:
-    rules = [
-        rule("the agv shall always satisfy x < 2", "R1"),
-        rule("the agv shall satisfy x", "R2"),
+    requirements = [
+        requirement("the agv shall always satisfy x < 2", "R1"),
+        requirement("the agv shall satisfy x", "R2"),
     ]
-    text = target.text(*rules)
-    assert verified(rules[0], text, others=rules[1:]).result is SAME
-    assert verified(rules[0], text).result is REFUSED
+    text = target.text(*requirements)
+    assert verified(requirements[0], text, others=requirements[1:]).result is SAME
+    assert verified(requirements[0], text).result is REFUSED

@@ -14,7 +14,7 @@ from fretc.verification.monitor.slices import slice_of
 from fretc.verification.monitor.verifying import verified
 from monitors.loading import load
 from tests.effort import FULL
-from tests.monitoring import emitted, rule
+from tests.monitoring import emitted, requirement
 from tests.strategies import Template, templates
 
 SENTENCES = (
@@ -27,8 +27,8 @@ MANY = tuple(f"whenever a{i} the sw shall within 2 ticks satisfy b{i}" for i in 
 
 
 def check(place: int, text: str, sentences: tuple[str, ...] = SENTENCES) -> Outcome:
-    rules = [rule(sentence, f"R{i + 1}") for i, sentence in enumerate(sentences)]
-    return verified(rules[place], text, others=rules)
+    requirements = [requirement(sentence, f"R{i + 1}") for i, sentence in enumerate(sentences)]
+    return verified(requirements[place], text, others=requirements)
 
 
 @pytest.mark.slow
@@ -105,7 +105,7 @@ def test_no_counterexample_has_comparisons_that_contradict_each_other() -> None:
         ("            if x_lt_2:\n", "            if x_lt_2 and not x_gt_3:\n"),
         ("since(x_gt_3,", "since(x_lt_2,"),
     ):
-        outcome = verified(rule(CONTRADICTING), broken(text, old, new))
+        outcome = verified(requirement(CONTRADICTING), broken(text, old, new))
         assert outcome.result is not Result.PROVED
         if outcome.trace is not None:
             places = [outcome.trace.names.index(name) for name in ("(x < 2)", "(x > 3)")]

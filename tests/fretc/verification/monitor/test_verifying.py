@@ -16,7 +16,7 @@ from monitors.source_text import kernel
 from tests.each import each
 from tests.effort import FULL, some
 from tests.meaning import COUNTING
-from tests.monitoring import emitted, rule, with_step, without_step
+from tests.monitoring import emitted, requirement, with_step, without_step
 from tests.strategies import Template, few_templates, templates
 
 WITHIN = "whenever p the sw shall within 3 ticks satisfy q"
@@ -26,7 +26,7 @@ RUNTIME = "the run time in it is not the one of this version of fretc"
 
 
 def check(sentence: str, text: str | None = None, limit: int = 10**6) -> Outcome:
-    return verified(rule(sentence), emitted(sentence) if text is None else text, limit)
+    return verified(requirement(sentence), emitted(sentence) if text is None else text, limit)
 
 
 def edited(text: str, *edits: tuple[str, str]) -> str:
@@ -113,14 +113,14 @@ def test_each_requirement_of_one_text_is_proved() -> None:
     sentences = (WITHIN, FOR, "in m mode the sw shall before s satisfy q")
     text = emitted(*sentences)
     for number, sentence in enumerate(sentences, 1):
-        outcome = verified(rule(sentence, f"R{number}"), text)
+        outcome = verified(requirement(sentence, f"R{number}"), text)
         assert outcome.result is Result.PROVED, sentence
 
 
 def test_of_several_requirements_only_the_wrong_one_is_refuted() -> None:
     text = edited(emitted(WITHIN, FOR), ("since_1 = oldest_1 >= 3", "since_1 = oldest_1 >= 4"))
-    assert judged_wrongly(verified(rule(WITHIN, "R1"), text))
-    assert verified(rule(FOR, "R2"), text).result is Result.PROVED
+    assert judged_wrongly(verified(requirement(WITHIN, "R1"), text))
+    assert verified(requirement(FOR, "R2"), text).result is Result.PROVED
 
 
 NAMES = (
@@ -142,7 +142,7 @@ def test_names_do_not_confuse_it(names: tuple[str, str, str]) -> None:
 @pytest.mark.slow
 @each("id", some(["tick", "doubt", "Monitor", "3", "a-b", "since_1", "self", "first"], 3))
 def test_ids_do_not_confuse_it(id: str) -> None:
-    formalized = rule(WITHIN, id)
+    formalized = requirement(WITHIN, id)
     assert verified(formalized, target.text(formalized)).result is Result.PROVED
 
 
@@ -239,7 +239,7 @@ def test_the_trace_of_a_disagreement_names_the_atoms_in_their_order() -> None:
     other = "the sw shall always satisfy q | z"
     text = emitted(other, sentence)
     wrong = edited(text, ("p & not_q, 3, every)", "p & not_q, 4, every)"))
-    trace = disagreement(verified(rule(sentence, "R2"), wrong))
+    trace = disagreement(verified(requirement(sentence, "R2"), wrong))
     assert trace.names == ("p", "q", "z")
     *_, last = trace.rows
     assert last[1] is not True, "an overdue demand shows where q does not come"
@@ -267,7 +267,7 @@ def test_more_states_than_the_limit_are_not_checked() -> None:
 
 
 def test_a_monitor_of_other_requirements_is_not_checked() -> None:
-    outcome = verified(rule(WITHIN, "R2"), emitted(WITHIN))
+    outcome = verified(requirement(WITHIN, "R2"), emitted(WITHIN))
     assert reason(outcome) == "the monitor is of other requirements"
 
 

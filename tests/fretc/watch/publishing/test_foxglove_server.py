@@ -59,7 +59,7 @@ def assert_all_fit(client: Listened) -> None:
 
 @pytest.mark.slow
 def test_a_client_sees_the_topics_as_they_came_and_the_state_of_each_requirement() -> None:
-    """Whoever connects, at any time, has it within a period."""
+    """Anyone who connects, at any time, has it within a period."""
     with published() as (watch, publishing, address), listened(address, *TOPICS) as client:
         client.wait("it is opened", lambda: client.of(Opened))
         at = iter(range(0, 10**6, 10))

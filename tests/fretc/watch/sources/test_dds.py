@@ -61,10 +61,10 @@ def by_stamps(folder: Path) -> Plan:
     (folder / "bindings.toml").write_text(stamps)
     (folder / "r1.fret").write_bytes((ROOT / "requirements" / "r1.fret").read_bytes())
     project = read_project(folder)
-    (rule,) = project.rules
-    assert perception.refuse(rule) is None
-    (folder / "perception.py").write_text(perception.text([rule]))
-    (folder / "monitors.py").write_text(monitor.text(rule))
+    (requirement,) = project.formalized
+    assert perception.refuse(requirement) is None
+    (folder / "perception.py").write_text(perception.text([requirement]))
+    (folder / "monitors.py").write_text(monitor.text(requirement))
     plan = planned(project)
     assert isinstance(plan, Plan)
     return plan

@@ -1,4 +1,4 @@
-"""What DDS tells of publishers, and what a watch makes of it; and what strangers may send."""
+"""What DDS tells of publishers, and what a watch makes of it; and what others may send."""
 
 from __future__ import annotations
 
@@ -263,7 +263,7 @@ def test_a_type_that_is_not_what_its_name_says_is_not_read(robot: Domain) -> Non
     topic: Any = Topic(robot._participant, "rt/stop", types)
     writer = Writer(robot._participant, topic, offer)
     with Listening("/stop") as listening:
-        until("it is told of", lambda: listening.says(Code.PUBLISHER_NOT_READ))
+        until("it is reported", lambda: listening.says(Code.PUBLISHER_NOT_READ))
         assert writer.readers == 0
     assert all(each.is_error for each in listening.problems())
 
@@ -320,7 +320,7 @@ def test_names_of_strangers_never_reach_the_terminal_as_they_are(robot: Domain) 
         topic: Any = Topic(robot._participant, "rt/stop", struct)
         writers.append(DataWriter(robot._participant, topic))
     with Listening("/stop") as listening:
-        until("it is told of", lambda: listening.says(Code.PUBLISHER_NOT_READ))
+        until("it is reported", lambda: listening.says(Code.PUBLISHER_NOT_READ))
     texts = [render(each) for each in listening.problems()]
     assert not [text for text in texts if not text.replace("\n", "").isprintable()]
 
@@ -331,7 +331,7 @@ def test_kinds_without_end_are_not_read(robot: Domain) -> None:
         for i in range(MOST_KINDS + 5)
     ]
     with Listening("/stop") as listening:
-        until("it is told of", lambda: listening.says(Code.PUBLISHER_NOT_READ), 30)
+        until("it is reported", lambda: listening.says(Code.PUBLISHER_NOT_READ), 30)
     assert max(each.readers for each in writers) <= MOST_KINDS
 
 

@@ -1,4 +1,4 @@
-"""`fretc watch foxglove`: what it says is what an audit says, whoever the server is."""
+"""`fretc watch foxglove`: what it says is what an audit says, no matter who the server is."""
 
 import json
 import os
@@ -89,11 +89,11 @@ def test_channels_and_messages_are_those_that_were_sent() -> None:
             for i, name in enumerate(CHANNELS):
                 _send_until_it_comes(robot, found, name, bytes([i, 0, 255]), 10**18 + i)
             robot.ask("withdraw", channel="cdr")
-            found.wait("it is told", lambda: Code.CHANNEL_REFUSED in found.codes)
+            found.wait("it is reported", lambda: Code.CHANNEL_REFUSED in found.codes)
             robot.ask("advertise", **advertised("again", CHANNELS["cdr"]))
             _send_until_it_comes(robot, found, "again", b"2", 5)
             robot.ask("time")
-            found.wait("it is told", lambda: Code.SIMULATED_TIME in found.codes)
+            found.wait("it is reported", lambda: Code.SIMULATED_TIME in found.codes)
     arrivals = found.of(Arrival)
     sent_by = {name: bytes([i, 0, 255]) for i, name in enumerate(CHANNELS)}
     for name, about in CHANNELS.items():
@@ -289,13 +289,13 @@ def test_nothing_of_a_stranger_reaches_the_terminal_as_it_is(
 ) -> None:
     word = json.dumps({"op": "status", "level": 2, "message": "\x1b[2J\x07"})
     with hostile(saying(GREETING, word), closes) as url, listened(url) as found:
-        found.wait("it is told", lambda: found.codes)
+        found.wait("it is reported", lambda: found.codes)
     plan = plan_of(Setting(slow="y < 5"))
     lines = Lines()
     for problem in found.of(Problem):
         lines.tell(Found(problem.diagnostic), Session(plan))
     with hostile(closes) as url, listened(url) as found:
-        found.wait("it is told", lambda: found.of(Interrupted))
+        found.wait("it is reported", lambda: found.of(Interrupted))
     for event in found.of(Interrupted):
         lines.tell(event, Session(plan))
     output = capsys.readouterr()
@@ -342,7 +342,7 @@ def test_a_channel_that_the_server_does_not_know_yet_is_asked_for_again() -> Non
 
     with hostile(late) as url, listened(url) as found:
         found.wait("the message comes", lambda: found.of(Arrival))
-        found.wait("now it is told", lambda: found.codes)
+        found.wait("now it is reported", lambda: found.codes)
     assert len(requests) == 4
     assert all(request == requests[0] for request in requests)
     assert found.codes == [Code.SERVER_STATUS]

@@ -1,4 +1,4 @@
-"""What a server of a stranger says is a message, nothing of interest, or not of the protocol."""
+"""What a server of somebody else says is a message, nothing of interest, or not of the protocol."""
 
 import json
 from contextlib import suppress

@@ -87,7 +87,7 @@ def test_verdicts_of_a_running_robot_are_those_of_the_audit_of_the_recording(
         assert found["HALT"][1]["verdict"] == "violated"
         assert int(found["sources"][1]["messages of /stop"]) > 0
         here.world("second", drives=True, stop=None)
-        until("two publishers are told of", lambda: Code.SEVERAL_PUBLISHERS.number in run.codes())
+        until("two publishers are reported", lambda: Code.SEVERAL_PUBLISHERS.number in run.codes())
         assert run.end() == 1
     finally:
         run.close()
@@ -181,7 +181,7 @@ def test_without_rospy_the_package_is_named(tmp_path: Path) -> None:
     assert str(tmp_path / "python") in absent.diagnostic.message
 
 
-@full_only("each by itself is told of by default")
+@full_only("each by itself is reported by default")
 def test_another_type_than_bound_and_a_simulated_clock_are_told_of(
     here: Ros, folder: Path, tmp_path: Path
 ) -> None:
@@ -195,7 +195,7 @@ def test_another_type_than_bound_and_a_simulated_clock_are_told_of(
     run = Watched(here.environment, tmp_path, "ros1", "--requirements", "requirements")
     expected = {Code.WRONG_TYPE.number, Code.SIMULATED_TIME.number}
     try:
-        until("both are told of", lambda: expected <= run.codes(), 30)
+        until("both are reported", lambda: expected <= run.codes(), 30)
         assert run.verdict("GO") != "satisfied"
     finally:
         run.close()

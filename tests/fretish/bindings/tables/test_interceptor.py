@@ -1,4 +1,4 @@
-"""`[interceptor]` and `[assume]`: what each field means, and where each field's mistake is told."""
+"""`[interceptor]` and `[assume]`: what each field means, and where its mistakes are reported."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""`bindings.toml`: what each field means, and where each field's mistake is told."""
+"""`bindings.toml`: what each field means, and where each field's mistake is reported."""
 
 from fractions import Fraction
 

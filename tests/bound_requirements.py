@@ -1,4 +1,4 @@
-"""A sentence and the text of its bindings → the rule that fretc makes of both."""
+"""A sentence and the text of its bindings → the requirement that fretc makes of both."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from compiler.formalization.formalized import FormalizedRequirement
 from fretish.bindings.declarations import Declarations
 from fretish.bindings.tables.reader import read_bindings
 from fretish.diagnostics.source import Source
-from fretish.documents import Requirement
+from fretish.documents import RequirementEntry
 
 
 @lru_cache(maxsize=256)
@@ -22,9 +22,9 @@ def declared(text: str) -> Declarations:
 
 
 @lru_cache(maxsize=4096)
-def bound_rule(sentence: str, bindings: str = "", id: str = "R1") -> FormalizedRequirement:
-    """The rule of a sentence with these bindings; tests that ask for the same one share it."""
-    requirement = Requirement(id, Source("r.fret", sentence).span())
+def bound_requirement(sentence: str, bindings: str = "", id: str = "R1") -> FormalizedRequirement:
+    """The requirement of a sentence with these bindings; equal ones are made once."""
+    requirement = RequirementEntry(id, Source("r.fret", sentence).span())
     made, diagnostics = formalize(requirement, declared(bindings) if bindings else None)
     assert made is not None, diagnostics
     return made
