@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
@@ -13,6 +13,9 @@ from tests.browsing import Visits
 from tests.command import Fretc
 from tests.play_pages import expected_to
 from tests.simulation.missions import Missions, cut_off
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Locator, Page
 
 ROOT = Path(__file__).parents[3]
 WITHIN = "whenever near the robot shall within 2 ticks satisfy stopped"
@@ -40,13 +43,24 @@ def test_a_report_opens_the_page_at_a_requirement(fretc: Fretc, visits: Visits) 
     assert inset.locator("#which").input_value() == "1"
     assert "b, satisfied" in inset.locator("#status").inner_text()
     first = inset.locator("td[aria-label^='q at tick 0']")
+    until_reached(page, first)
     first.click()
     verdict = inset.locator("td[aria-label^='b at this tick at tick 0']")
     violated = "b at this tick at tick 0: violated"
-    expected_to(verdict).to_have_attribute("aria-label", violated)  # the frame takes its time
+    expected_to(verdict).to_have_attribute("aria-label", violated)
     with page.expect_download() as download:
         inset.get_by_role("button", name="Save CSV").click()
     assert download.value.suggested_filename == "b.csv"
+
+
+def until_reached(page: Page, place: Locator) -> None:
+    """Wait until the pointer reaches a place in a frame: at first the page itself may have it."""
+    for _ in range(100):
+        page.mouse.move(0, 0)
+        place.hover()
+        if place.evaluate("cell => cell.matches(':hover')"):
+            return
+        page.wait_for_timeout(50)
 
 
 @pytest.mark.slow
