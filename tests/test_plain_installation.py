@@ -26,7 +26,7 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-OF_DEVELOPERS = {"dev", "peers"}
+OF_DEVELOPERS = {"dev", "peers", "prose"}
 EXTRAS = PROJECT["optional-dependencies"].keys() - OF_DEVELOPERS
 Done = dict[str, Any]
 
@@ -88,7 +88,7 @@ def help_of(command: str) -> str:
     import click
 
     text = cli.commands[command].get_help(click.Context(cli.commands[command]))
-    return " ".join(text.partition("Extras, which ")[2].split())
+    return " ".join(text.partition("Optional packages ")[2].split())
 
 
 def extra_of(done: Done) -> str | None:

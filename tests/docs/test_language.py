@@ -64,7 +64,7 @@ def form(grammar_rule: Rule) -> str:
 
 def forms_of(name: str) -> list[str]:
     """Each way in which the grammar lets one spell a part of a sentence."""
-    found = [form(r) for r in GRAMMAR.requirements if name in (r.origin.name, r.alias)]
+    found = [form(r) for r in GRAMMAR.rules if name in (r.origin.name, r.alias)]
     return list(dict.fromkeys(found))
 
 
@@ -138,7 +138,7 @@ def uses_in(sentences: list[str]) -> set[Use]:
 
 
 def test_each_alternative_of_the_grammar_stands_on_the_page() -> None:
-    every = set[Use]().union(*map(uses_of, GRAMMAR.requirements)) - ELSEWHERE
+    every = set[Use]().union(*map(uses_of, GRAMMAR.rules)) - ELSEWHERE
     assert every - uses_in([*SENTENCES, *subjects(TEXT, "picture"), *SPELT]) == set()
 
 
@@ -155,7 +155,7 @@ SPELT = [
 
 
 def test_each_scope_and_timing_has_its_forms_and_a_picture() -> None:
-    known = {r.alias for r in GRAMMAR.requirements if r.origin.name in ("scope", "timing")}
+    known = {r.alias for r in GRAMMAR.rules if r.origin.name in ("scope", "timing")}
     assert {*SCOPES, *TIMINGS} == known
     read = [requirement(sentence).sentence for sentence in subjects(TEXT, "picture")]
     assert {s.scope_key(each) for each in read} == {"null", *s.ScopeKind}

@@ -118,7 +118,7 @@ def places(number: int, line: tuple[str, ...]) -> list[int]:
         return [*range(len(PROJECTS))]
     step = COSTLY.get(line[0])
     if step is None:
-        return [number % len(PROJECTS)]
+        return [number // 2 % len(PROJECTS)] if number % 2 == 0 else []
     return [SMALL[number // step % len(SMALL)]] if number % step == 0 else []
 
 

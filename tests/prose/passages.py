@@ -8,11 +8,16 @@ import re
 import tokenize
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("fretish", "monitors", "compiler", "fretc", "simulation", "benchmarks")
-OTHERS = {"templates": (".j2", ".js", ".css"), "fretish": (".toml",), "requirements": (".fret",)}
+OTHERS = {
+    "templates": (".j2", ".js", ".css", ".json"),
+    "fretish": (".toml",),
+    "requirements": (".fret",),
+}
 
 
 @dataclass(frozen=True)
@@ -24,8 +29,13 @@ class Passage:
     text: str
 
 
-def passages() -> Iterator[Passage]:
+@cache
+def passages() -> tuple[Passage, ...]:
     """Every passage of the project, in the order of the files."""
+    return tuple(_passages())
+
+
+def _passages() -> Iterator[Passage]:
     for page in pages():
         yield Passage(_name(page), 1, page.read_text(encoding="utf-8"))
     for package in PACKAGES:

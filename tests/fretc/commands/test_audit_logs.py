@@ -76,7 +76,7 @@ def test_where_no_log_is_left_nothing_is_shown_and_evidence_stays(robot: Fretc) 
     before = Path("build/evidence/manifest.json").read_bytes()
     run = robot("audit", "runs", "--since", "2030-01-01")
     assert run.status == 3
-    assert "nothing is audited" in run.err
+    assert "no log is audited" in run.err
     assert Path("build/evidence/manifest.json").read_bytes() == before
 
 

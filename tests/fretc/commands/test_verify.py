@@ -297,9 +297,8 @@ assumptions
 (`requests`, [assume])
    2  stop messages are heard in the order of sending, each within 100 ms (`latency`, [assume])
    3  never are more than 1 stop messages lost in a row (`lost`, [assume])
-   4  `stopped` is false while the wheels are commanded to move, and true once they have had zero
-   for \
-170 ms (`braking`, [assume]), or earlier
+   4  `stopped` is false while the wheels are commanded to move, and true once they \
+have had zero for 170 ms (`braking`, [assume]), or earlier
    5  the wheels have at once what was published last, and keep it while nothing is published
    6  at the first tick the robot stands, and nothing has been heard yet
    7  the node around the interceptor's step hands on every message, and publishes what it gives

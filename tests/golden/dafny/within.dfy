@@ -7,7 +7,7 @@
 // Monitor -----------------------------------------------------------------------------------------
 //
 // The step of the monitor, and what it says after every number of ticks of every sequence of ticks,
-// held against the definition of the timing over the whole sequence.
+// compared with the definition of the timing over the whole sequence.
 
 // One tick: the propositions of the sentence.
 datatype Tick = Tick(p: bool, q: bool)

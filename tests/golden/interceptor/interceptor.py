@@ -72,7 +72,7 @@ class StopHeard:
 
 @dataclass(frozen=True, slots=True)
 class CommandHeard:
-    """A message of the planner, or of whoever drives."""
+    """A message of the planner, or of another driver."""
 
     command: Velocity
 
@@ -338,7 +338,7 @@ class Gate:
 
 
 def tell(what: str) -> None:
-    """To whoever has started the node."""
+    """To the user who started the node."""
     print(f"interceptor.py: {what}", file=sys.stderr, flush=True)
 
 

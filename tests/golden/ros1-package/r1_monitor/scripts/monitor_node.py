@@ -41,7 +41,7 @@ STOP_FOR = ('R1',)
 
 
 def tell(what: str) -> None:
-    """To whoever has started the node."""
+    """To the user who started the node."""
     print(f"monitor_node.py: {what}", file=sys.stderr, flush=True)
 
 

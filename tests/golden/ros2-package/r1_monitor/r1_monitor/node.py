@@ -67,7 +67,7 @@ INACTIVE = Status(STALE, "node", "not active: nothing is judged", ())
 FLUSH = 0.1
 """Seconds for the last request to leave this process."""
 KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""Reliable, and the last message is there for whoever subscribes later."""
+"""Reliable, and late subscribers get the last message."""
 
 
 class MonitorNode(LifecycleNode):
@@ -209,7 +209,7 @@ def singles(topic, kind):
 
 
 def tell(what):
-    """Say something to whoever has started the node."""
+    """Print something for the user who started the node."""
     print(f"{NAME}: {what}", file=sys.stderr, flush=True)
 
 
