@@ -1,14 +1,18 @@
 """The words of the project's texts, and what finds those that a newcomer does not understand."""
 
+import pytest
+
 from tests.prose.passages import Passage, of_module, passages, without_code
 from tests.prose.words import Word, private_words, words
 
 
+@pytest.mark.slow
 def test_no_text_has_a_private_word() -> None:
     uses = [*private_words(passages(), words())]
     assert not uses, "\n".join(uses)
 
 
+@pytest.mark.slow
 def test_every_kind_of_text_is_read() -> None:
     paths = {passage.path for passage in passages()}
     for path in (

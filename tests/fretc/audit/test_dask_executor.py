@@ -135,6 +135,7 @@ def test_a_worker_with_another_fretc_is_refused(
     assert diagnostic.message.startswith("the worker tcp://127.0.0.1:")
 
 
+@pytest.mark.slow
 def test_a_worker_without_fretc_is_refused(
     fretc: Fretc, cluster: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -233,6 +234,7 @@ def test_the_former_meaning_of_engine_is_told_its_new_name(fretc: Fretc) -> None
     assert run.err == "F907 `online` is no engine\nhelp: write `--evaluation online`\n"
 
 
+@pytest.mark.slow
 def test_without_the_extra_the_line_that_installs_it_is_told(
     fretc: Fretc, monkeypatch: pytest.MonkeyPatch
 ) -> None:
