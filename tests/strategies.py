@@ -17,7 +17,7 @@ from tests.effort import FULL, pairwise
 
 # Templates -----------------------------------------------------------------------------------
 
-_SCOPES = {
+SCOPES = {
     "null": "",
     "in": "in m mode",
     "notin": "when not in m mode",
@@ -27,8 +27,8 @@ _SCOPES = {
     "onlyBefore": "only before m mode",
     "onlyAfter": "only after m mode",
 }
-_CONDITIONS = {"null": "", "regular": "upon p", "holding": "whenever p"}
-_TIMINGS = {
+CONDITIONS = {"null": "", "regular": "upon p", "holding": "whenever p"}
+TIMINGS = {
     "null": "",
     "immediately": "immediately",
     "next": "at the next timepoint",
@@ -56,8 +56,8 @@ class Template:
     @property
     def sentence(self) -> str:
         """The template as a sentence about m, p, q and s."""
-        timing = _TIMINGS[self.timing].format(n=self.n)
-        return f"{_SCOPES[self.scope]} {_CONDITIONS[self.condition]} sw shall {timing} satisfy q"
+        timing = TIMINGS[self.timing].format(n=self.n)
+        return f"{SCOPES[self.scope]} {CONDITIONS[self.condition]} sw shall {timing} satisfy q"
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from tests import meaning
 from tests.each import each
 from tests.effort import some
 from tests.monitoring import requirement
+from tests.strategies import CONDITIONS, SCOPES, TIMINGS
 
 
 def pctl(sentence: str) -> str:
@@ -68,32 +69,6 @@ def test_a_demand_has_its_probability_from_its_trigger_on(sentence: str, text: s
 
 
 # All templates --------------------------------------------------------------------------------
-
-SCOPES = {
-    "null": "",
-    "in": "in m mode",
-    "notin": "unless in m mode",
-    "before": "before m mode",
-    "after": "after m mode",
-    "onlyIn": "only in m mode",
-    "onlyBefore": "only before m mode",
-    "onlyAfter": "only after m mode",
-}
-CONDITIONS = {"null": "", "regular": "upon p", "holding": "whenever p"}
-TIMINGS = {
-    "null": "",
-    "immediately": "immediately",
-    "next": "at the next timepoint",
-    "finally": "finally",
-    "eventually": "eventually",
-    "always": "always",
-    "never": "never",
-    "within": "within {n} ticks",
-    "for": "for {n} ticks",
-    "after": "after {n} ticks",
-    "until": "until s",
-    "before": "before s",
-}
 
 
 def templates(probability: str) -> Iterator[str]:
