@@ -208,7 +208,7 @@ def test_what_becomes_of_a_fault(project: Path) -> None:
         fault("monitors/brake.py", "near(gap)\n", "True\n"),
         fault("monitors/search.py", "- 1", "+ 0"),
     ]
-    bench = Bench(project, jobs=1, seconds=4)
+    bench = Bench(project, jobs=1, seconds=3)
     found, survived, endless = bench.trials(faults)
     assert (found.finding, found.why) == (
         Finding.FOUND,
